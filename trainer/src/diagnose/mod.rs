@@ -1,0 +1,1 @@
+//! Which physics is missing: noise, evidence, calibration, naming, localising, proving, advising.

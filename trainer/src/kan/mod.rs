@@ -1,0 +1,1 @@
+//! The Kolmogorov-Arnold network: splines, loss and gradient, optimisers, attribution, pruning. Knows no files.

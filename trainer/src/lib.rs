@@ -1,0 +1,12 @@
+//! Frikan trainer: a recording walks through these rooms in one direction,
+//! `recording -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
+
+pub mod compile;
+pub mod diagnose;
+pub mod kan;
+pub mod law;
+pub mod physics;
+pub mod plant;
+pub mod recording;
+pub mod report;
+pub mod samples;

@@ -1,0 +1,1 @@
+//! The catalogue of effects: one file an effect, with its equation, regressors and states.

@@ -1,0 +1,1 @@
+//! A simulated joint in closed loop. Shares no equations with the diagnosis.

@@ -1,0 +1,1 @@
+//! Recordings in: formats, columns, units and checks. Knows no model.

@@ -1,0 +1,1 @@
+//! Pictures and pages. Only commands know this room.
