@@ -5,6 +5,7 @@ pub mod compile;
 pub mod diagnose;
 pub mod kan;
 pub mod law;
+pub mod parameter;
 pub mod physics;
 pub mod plant;
 pub mod recording;

@@ -34,6 +34,17 @@ pub enum Factor {
     One,
 }
 
+impl Factor {
+    /// How the factor reads in an equation.
+    pub fn text(self) -> &'static str {
+        match self {
+            Factor::Sign => "tanh(v/v_eps)",
+            Factor::Velocity => "v",
+            Factor::One => "1",
+        }
+    }
+}
+
 /// Channel or derived axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {

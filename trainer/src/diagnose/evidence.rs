@@ -120,6 +120,15 @@ impl Bench {
         Some(VariantEvidence { statistic: base_residual - residual, degrees: d, residual, fold_train, fold_likelihood })
     }
 
+    /// Energy of a whitened column that the base cannot hold: the non-centrality of unit amplitude.
+    pub fn visible_energy(&self, column: &[f64]) -> Option<f64> {
+        let runs = self.runs();
+        let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, column, &runs)));
+        let normal = self.sums.iter().fold(DMatrix::zeros(self.base.len(), self.base.len()), |sum, s| sum + &s.base);
+        let energy = dot(column, column, &runs) - explained(&normal, &right)?;
+        (energy > 0.0).then_some(energy)
+    }
+
     /// Coefficients of the base and the given whitened columns, with their covariance.
     pub fn solve(&self, columns: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
         let runs = self.runs();
