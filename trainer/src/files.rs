@@ -14,8 +14,9 @@ use crate::error::{Error, Result, codes};
 /// temporary file is removed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     if path.is_dir() {
-        return Err(Error::new(&codes::IS_A_DIRECTORY, "cannot write a file over a folder")
-            .in_file(path.display().to_string()));
+        return Err(
+            Error::new(&codes::IS_A_DIRECTORY, "cannot write a file over a folder").in_file(path.display().to_string())
+        );
     }
     let temporary = temporary_beside(path)?;
     let outcome = write_and_sync(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
@@ -50,8 +51,9 @@ pub fn open(path: &Path) -> Result<File> {
     let file = File::open(path).map_err(|error| Error::from_io(path, &error))?;
     let metadata = file.metadata().map_err(|error| Error::from_io(path, &error))?;
     if metadata.is_dir() {
-        return Err(Error::new(&codes::IS_A_DIRECTORY, "this is a folder, not a file")
-            .in_file(path.display().to_string()));
+        return Err(
+            Error::new(&codes::IS_A_DIRECTORY, "this is a folder, not a file").in_file(path.display().to_string())
+        );
     }
     Ok(file)
 }

@@ -154,7 +154,9 @@ impl Joint {
         refuse("drive.gear_ratio", drive.gear_ratio, "a gear ratio cannot be zero", |x| x.abs() > 0.0)?;
         for (quantity, mapping) in &self.columns {
             let key = format!("columns.{quantity}.scale");
-            refuse(&key, Some(mapping.scale), "this has to be finite and not zero", |x| x.is_finite() && x.abs() > 0.0)?;
+            refuse(&key, Some(mapping.scale), "this has to be finite and not zero", |x| {
+                x.is_finite() && x.abs() > 0.0
+            })?;
         }
         Ok(())
     }

@@ -1,9 +1,9 @@
 //! Which column is which quantity, and its values in SI on the joint side.
 
+use super::Channel;
 use super::quantity::{Axis, ColumnName, Quantity, Unit, read_column_name};
 use super::table::TextTable;
 use super::text::RawTable;
-use super::Channel;
 use crate::error::{Error, Result, codes};
 use crate::joint::{Joint, Side};
 
@@ -73,7 +73,9 @@ pub(super) fn assign(table: &TextTable, joint: &Joint) -> Result<Assigned> {
     }
     let notes = unusable
         .iter()
-        .map(|(quantity, column)| format!("column {column} is kept as a named channel: {} has its own", quantity.name()))
+        .map(|(quantity, column)| {
+            format!("column {column} is kept as a named channel: {} has its own", quantity.name())
+        })
         .collect();
     let axis = axis_of(&columns, header)?;
     Ok(Assigned { columns, axis, unusable, notes })

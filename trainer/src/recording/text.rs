@@ -83,7 +83,8 @@ fn next<R: Read>(reader: &mut csv::Reader<R>, record: &mut csv::ByteRecord) -> R
 }
 
 fn stream(error: &std::io::Error) -> Error {
-    let code = if error.kind() == std::io::ErrorKind::IsADirectory { &codes::IS_A_DIRECTORY } else { &codes::INPUT_OUTPUT };
+    let code =
+        if error.kind() == std::io::ErrorKind::IsADirectory { &codes::IS_A_DIRECTORY } else { &codes::INPUT_OUTPUT };
     Error::new(code, error.to_string())
 }
 
