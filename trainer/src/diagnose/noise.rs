@@ -22,6 +22,11 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// White noise of unit variance over `rows`: what is assumed before anything is known.
+    pub fn white(rows: usize) -> Self {
+        Self { autoregression: Vec::new(), deviation: vec![1.0; rows], rms: 1.0 }
+    }
+
     /// Fits colour and variance to a residual. `runs` are the stretches of consecutive rows; `features` are columns on
     /// which log sigma^2 depends linearly (a constant is added).
     pub fn fit(residual: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Self {

@@ -104,8 +104,8 @@ impl Prepared {
             acceleration,
             sign_velocity: 0.0,
             sign: Vec::new(),
-            rigid_body: signals.rigid_body.clone(),
-            load: signals.load.clone().or_else(|| signals.rigid_body.clone()),
+            rigid_body: signals.rigid_body.as_ref().map(|series| wide.over(series, segments)),
+            load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| wide.over(series, segments)),
             temperature: signals.temperature.as_ref().map(|series| slow(series, segments, period)),
             link_position: signals.link_position.as_ref().map(|series| wide.over(series, segments)),
             other_joints: signals

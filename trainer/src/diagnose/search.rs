@@ -278,14 +278,18 @@ struct Round<'s, 'a> {
 
 impl<'s, 'a> Round<'s, 'a> {
     fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>, seed: u64) -> Self {
-        // Noise from the base and the two best candidates: from the bare base the effect would pass for noise.
-        let rough = search.noise_after(&base, None);
-        let (_, bench, variants) = weigh_all(search, base.clone(), &rough);
-        let mut generous = base.clone();
-        generous.extend(best_two(search, &bench, &variants));
-        let noise = search.noise_after(&generous, Some(&rough));
+        // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
+        // effect for colour. So the first candidates are chosen as if the noise were white.
+        let mut noise = Noise::white(search.prepared.rows.len());
+        for _ in 0..2 {
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise);
+            let mut generous = base.clone();
+            generous.extend(best_two(search, &bench, &variants));
+            noise = search.noise_after(&generous, Some(&noise));
+        }
         let (white, bench, variants) = weigh_all(search, base, &noise);
         let alone = bench.alone();
+        if std::env::var("DBG").is_ok() { eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms); }
         let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
         let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
         Self { search, noise, bench, alone, variants, null }

@@ -1,5 +1,10 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
+use super::filter::second_derivative;
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::recording::{Axis, Quantity, Recording};
+use crate::samples::EvenClock;
 use std::ops::Range;
 
 /// Signals of one joint on an even clock; all series of one length; SI, joint side.
@@ -39,4 +44,62 @@ pub struct Signals {
     pub rotary: bool,
     /// Smallest step of the position in its unit; 0 when unknown.
     pub position_resolution: f64,
+}
+
+impl Signals {
+    /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque
+    /// where the recording carries none.
+    ///
+    /// # Errors
+    /// `FRK-D009` when clock, motion or actuator is missing.
+    pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
+        let even = EvenClock::of(recording)?;
+        let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
+        let actuator = [Quantity::Torque, Quantity::Force, Quantity::Current, Quantity::FrictionTorque].into_iter().find_map(owned);
+        let torque = match actuator {
+            Some(torque) => torque,
+            None => {
+                recording.require(&[Quantity::Torque, Quantity::Force, Quantity::Current], "a diagnosis")?;
+                Vec::new()
+            }
+        };
+        let position = match owned(Quantity::Position) {
+            Some(position) => position,
+            None => {
+                recording.require(&[Quantity::Position], "a diagnosis")?;
+                Vec::new()
+            }
+        };
+        let rotary = recording.axis == Axis::Rotary;
+        let rigid_body =
+            owned(Quantity::RigidBodyTorque).or_else(|| given_rigid_body(joint, &position, &even.segments, even.period_s));
+        Ok(Self {
+            period: even.period_s,
+            time: even.time.clone(),
+            rigid_body,
+            load: owned(Quantity::LoadTorque),
+            temperature: owned(Quantity::Temperature),
+            link_position: owned(Quantity::LinkPosition),
+            other_positions: even.named("other_position_rad").map(<[f64]>::to_vec).into_iter().collect(),
+            segments: even.segments.clone(),
+            gear_ratio: joint.drive.gear_ratio,
+            rotary,
+            position_resolution: recording.health.position_resolution.unwrap_or(0.0),
+            torque,
+            position,
+            ..Self::default()
+        })
+    }
+}
+
+/// Torque of the inertia and gravity given for a joint; `None` when neither is.
+fn given_rigid_body(joint: &Joint, position: &[f64], segments: &[Range<usize>], period: f64) -> Option<Vec<f64>> {
+    let body = &joint.rigid_body;
+    if body.inertia_kgm2.is_none() && body.gravity_torque_nm.is_none() {
+        return None;
+    }
+    let acceleration = second_derivative(position, segments, period);
+    let (inertia, gravity) = (body.inertia_kgm2.unwrap_or(0.0), body.gravity_torque_nm.unwrap_or(0.0));
+    let phase = body.gravity_phase_rad.unwrap_or(0.0);
+    Some(position.iter().zip(&acceleration).map(|(q, a)| inertia * a + gravity * (q + phase).sin()).collect())
 }

@@ -4,6 +4,7 @@
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
 pub mod filter;
+mod even;
 mod grid;
 pub mod plan;
 mod prepare;
@@ -12,6 +13,7 @@ pub mod rigid_body;
 
 use std::ops::Range;
 
+pub use even::EvenClock;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 
