@@ -70,5 +70,11 @@ impl Controller {
 
 /// Nearest multiple of `step`; the value itself when `step` is 0.
 pub(crate) fn round_to(value: f64, step: f64) -> f64 {
-    if step > 0.0 { (value / step).round() * step } else { value }
+    if step > 0.0 {
+        // Dividing by the inverse keeps decimal steps decimal: 31.7, not 31.700000000000003.
+        let inverse = 1.0 / step;
+        (value * inverse).round() / inverse
+    } else {
+        value
+    }
 }

@@ -223,10 +223,10 @@ fn run(
             gravity_torque: *gravity_torque,
             gravity_phase: joint.gravity_phase_rad,
         };
-        bench.rest(trajectory.pause_before_s, row as f64 * sample_s + paused, &load, hidden);
+        bench.rest(trajectory.pause_before_s, row as f64 / joint.drive.rate_Hz + paused, &load, hidden);
         paused += trajectory.pause_before_s;
         for k in 0..reference.position.len() {
-            let time = row as f64 * sample_s + paused;
+            let time = row as f64 / joint.drive.rate_Hz + paused;
             let reading = round_to(bench.motor.position, resolution);
             let target = Target {
                 position: reference.position[k],

@@ -54,7 +54,7 @@ fn maxwell_slip(draws: &mut Draws, level: f64) -> Mechanism {
     })
 }
 
-/// Friction that follows a change of speed late (Hess & Soom 1990): the steady law at a lagged velocity.
+/// Friction that follows a change of speed late (Hess & Soom 1990): at amplitude 1 the whole law at a lagged velocity.
 pub(super) fn frictional_lag(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let lag = draws.log_uniform("lag_s", 0.01, 0.06);
     let width = draws.uniform("sign_width_rad_s", 0.03, 0.08);
@@ -63,7 +63,7 @@ pub(super) fn frictional_lag(draws: &mut Draws, setting: &Setting) -> Mechanism 
     Mechanism::torque(move |m: &Moment, step_s: f64| {
         lagged += (m.velocity - lagged) * -(-step_s / lag).exp_m1();
         let steady = |v: f64| coulomb * (v / width).tanh() + viscous * v;
-        Resistance::smooth(0.5 * (steady(lagged) - steady(m.velocity)))
+        Resistance::smooth(steady(lagged) - steady(m.velocity))
     })
 }
 
