@@ -3,8 +3,12 @@
 
 pub mod compile;
 pub mod diagnose;
+pub mod error;
+pub mod files;
+pub mod joint;
 pub mod kan;
 pub mod law;
+pub mod parameter;
 pub mod physics;
 pub mod plant;
 pub mod recording;
