@@ -15,6 +15,10 @@ impl Hypothesis for Saturation {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        // The regressor is the recorded torque itself: where the model explains little of it, it would explain itself.
+        if state.explained_share() < 0.8 {
+            return Vec::new();
+        }
         let mut shapes: Vec<Shape> = [0.7, 0.8, 0.87, 0.92, 0.96, 0.985]
             .into_iter()
             .map(|share| vec![quantile(state.torque.iter().map(|t| t.abs()), share)])
