@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
     /// Builds the design of every hypothesis that the recording can show.
     pub fn new(prepared: &'a Prepared, base: &'a Base, hypotheses: &'a [Box<dyn Hypothesis + Send>], settings: Settings) -> Self {
         let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
-        let design = Design::new(prepared, hypotheses, left_out);
+        let t0 = std::time::Instant::now(); let design = Design::new(prepared, hypotheses, left_out); if std::env::var("DBG").is_ok() { eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len()); }
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
     }
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
         loop {
             let base = self.base_with(&accepted, None);
             let round = Round::new(self, base, self.settings.seed.wrapping_add(accepted.len() as u64));
-            let table = round.score_table(&accepted);
+            let t0 = std::time::Instant::now(); let table = round.score_table(&accepted); if std::env::var("DBG").is_ok() { eprintln!("score {:?}", t0.elapsed()); }
             let finding = choose(&table, &self.settings);
             match finding {
                 Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
@@ -280,6 +280,7 @@ impl<'s, 'a> Round<'s, 'a> {
     fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>, seed: u64) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
+        let t0 = std::time::Instant::now();
         let mut noise = Noise::white(search.prepared.rows.len());
         for _ in 0..2 {
             let (_, bench, variants) = weigh_all(search, base.clone(), &noise);
@@ -288,10 +289,12 @@ impl<'s, 'a> Round<'s, 'a> {
             noise = search.noise_after(&generous, Some(&noise));
         }
         let (white, bench, variants) = weigh_all(search, base, &noise);
+        let t1 = t0.elapsed();
         let alone = bench.alone();
         if std::env::var("DBG").is_ok() { eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms); }
         let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
         let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
+        if std::env::var("DBG").is_ok() { eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1); }
         Self { search, noise, bench, alone, variants, null }
     }
 

@@ -149,13 +149,6 @@ impl JointState {
         (quantile(self.position.iter().copied(), 0.005), quantile(self.position.iter().copied(), 0.995))
     }
 
-    /// Share of the torque's energy that the base model explains.
-    pub fn explained_share(&self) -> f64 {
-        let energy: f64 = self.torque.iter().map(|t| t * t).sum();
-        let rest: f64 = self.torque.iter().zip(&self.predicted).map(|(t, p)| (t - p).powi(2)).sum();
-        1.0 - rest / energy.max(f64::MIN_POSITIVE)
-    }
-
     /// Recorded duration in s, gaps left out.
     pub fn duration(&self) -> f64 {
         self.len() as f64 * self.period
