@@ -3,6 +3,7 @@
 //! [`Preparation::plan`] chooses one filter for all recordings, [`prepare`] applies it alike to every channel, and
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
+mod bending;
 pub mod filter;
 mod grid;
 pub mod plan;
