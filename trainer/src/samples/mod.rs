@@ -4,11 +4,13 @@
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
 mod bending;
+pub mod blocks;
 pub mod filter;
 mod grid;
 pub mod plan;
 mod prepare;
 pub mod regression;
+pub mod relevance;
 pub mod rigid_body;
 
 use std::ops::Range;
