@@ -6,6 +6,7 @@
 mod bending;
 pub mod blocks;
 pub mod filter;
+mod even;
 mod grid;
 pub mod plan;
 mod prepare;
@@ -15,6 +16,7 @@ pub mod rigid_body;
 
 use std::ops::Range;
 
+pub use even::EvenClock;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 
