@@ -3,12 +3,15 @@
 //! [`Preparation::plan`] chooses one filter for all recordings, [`prepare`] applies it alike to every channel, and
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
+mod bending;
+pub mod blocks;
 pub mod filter;
 mod even;
 mod grid;
 pub mod plan;
 mod prepare;
 pub mod regression;
+pub mod relevance;
 pub mod rigid_body;
 
 use std::ops::Range;
