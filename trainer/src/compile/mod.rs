@@ -1,1 +1,9 @@
 //! From a network or a law to the model that a drive evaluates, with a certified error.
+//!
+//! A law arrives as a [`formula::Formula`] or as a [`network::KanNetwork`], leaves as cells, programs and tables of a
+//! [`frikan_shared::model::Model`], and is proved against the runtime by [`verify`], with an evaluator of its own in [`reference`].
+
+pub mod formula;
+pub mod interval;
+
+pub mod series;
