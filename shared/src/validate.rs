@@ -56,7 +56,7 @@ fn bounded(x: f32) -> bool {
 
 /// A scale by which something is divided.
 fn scale(x: f32) -> bool {
-    x >= 1.0 / LARGEST && x <= LARGEST
+    (1.0 / LARGEST..=LARGEST).contains(&x)
 }
 
 impl<const CELLS: usize> Model<CELLS> {

@@ -165,6 +165,8 @@ impl Mul for Series {
 
 impl Div for Series {
     type Output = Self;
+    // Long division of power series multiplies and subtracts.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         let mut quotient = Self([ZERO; ORDERS]);
         for k in 0..ORDERS {
