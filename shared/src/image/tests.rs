@@ -166,7 +166,11 @@ fn effects_are_written_and_read() {
     image.model.inputs.push(input(Quantity::Position)).unwrap();
     let harmonics = [Harmonic { order: 12.5, cosine: 0.1, sine: -0.2 }; 3];
     image.model.effects.extend([
-        Effect::Ripple { kind: Kind::Friction, harmonics: heapless::Vec::from_slice(&harmonics).unwrap() },
+        Effect::Ripple {
+            kind: Kind::Friction,
+            smoothing_velocity: 0.01,
+            harmonics: heapless::Vec::from_slice(&harmonics).unwrap(),
+        },
         Effect::Play { half_width: 1.0e-3, torque: 0.5 },
     ]);
     assert_eq!(decode(&encoded(&image)).as_ref(), Ok(&image));
