@@ -51,7 +51,8 @@ impl Dataset<'_> {
         };
         shape("input columns", inputs, self.inputs.len())?;
         let named = self.inputs.iter().enumerate().map(|(i, column)| (format!("input {i}"), column.as_slice()));
-        let linear = self.linear.iter().enumerate().map(|(i, column)| (format!("linear column {i}"), column.as_slice()));
+        let linear =
+            self.linear.iter().enumerate().map(|(i, column)| (format!("linear column {i}"), column.as_slice()));
         for (name, column) in named.chain(linear).chain([("target".to_owned(), self.target)]) {
             shape("rows of a column", self.rows(), column.len())?;
             if let Some(row) = column.iter().position(|value| !value.is_finite()) {

@@ -1,19 +1,20 @@
 //! One call from data to a trained network: pilot, independent starts, training, choice of the best.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::architecture::Architecture;
 use super::dataset::{Dataset, row_count};
 use super::error::KanError;
-use super::gauss_newton::{Settings, minimise};
-use super::knots::{Pilot, pilot};
+use super::knots::pilot;
 use super::model::Model;
 use super::network::Network;
 use super::outcome::{Convergence, Step};
 use super::random::Random;
 use super::start::initial;
-use super::training::{ProgressCallback, Smoothing, Watch};
+use super::training::{Optimiser, ProgressCallback, Settings, Smoothing, Watch, minimise};
 
 /// What to train, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,16 +27,30 @@ pub struct FitOptions {
     pub restarts: usize,
     /// Most steps of one start.
     pub steps: usize,
+    /// How it is trained.
+    pub optimiser: Optimiser,
     /// How smooth activations shall be.
     pub smoothing: Smoothing,
+    /// Whether edges train a SiLU base weight as well. A cubic spline covers what it does inside the grid; under noise
+    /// each weight costs a degree of freedom.
+    pub base_weights: bool,
     /// Relative fall of the loss per step below which a step counts as no progress.
     pub tolerance: f64,
 }
 
 impl FitOptions {
-    /// One start of at most 100 steps with estimated smoothing.
+    /// One start of at most 60 steps with estimated smoothing and without base weights.
     pub fn new(architecture: Architecture) -> Self {
-        Self { architecture, seed: 0, restarts: 1, steps: 100, smoothing: Smoothing::Estimated, tolerance: 1e-4 }
+        Self {
+            architecture,
+            seed: 0,
+            restarts: 1,
+            steps: 60,
+            optimiser: Optimiser::GaussNewton,
+            smoothing: Smoothing::Estimated,
+            base_weights: false,
+            tolerance: 1e-4,
+        }
     }
 }
 
@@ -54,7 +69,7 @@ pub struct FitResult {
     pub snapshots: Vec<(usize, Network)>,
     /// Which start won.
     pub restart: usize,
-    /// Root mean square of the residuals of the training rows, and of the validation rows.
+    /// Root mean square of the residuals of the training rows.
     pub train_rmse: f64,
     /// The same of the validation rows.
     pub validation_rmse: Option<f64>,
@@ -81,58 +96,101 @@ pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) 
     dataset.check(options.architecture.inputs)?;
     let rows = dataset.training_rows();
     let pilot = pilot(dataset, &rows)?;
-    let candidates: Vec<Candidate> = (0..options.restarts.max(1))
-        .into_par_iter()
-        .map(|restart| train(dataset, options, &pilot, restart, progress))
-        .collect::<Result<_, _>>()?;
-    let best = (0..candidates.len()).min_by(|&a, &b| candidates[a].score.total_cmp(&candidates[b].score)).unwrap_or(0);
-    let winner = candidates.into_iter().nth(best).expect("there is at least one start");
-    let rmse = |rows: &[std::ops::Range<usize>]| {
-        winner.model.physical_loss(winner.model.residual_sum(dataset, rows), row_count(rows)).sqrt()
+    let train = |restart: usize| -> Result<Trained, KanError> {
+        let network = initial(&options.architecture, &pilot, &mut Random::new(options.seed, restart as u64))?;
+        let mut model = Model::scaled_to(network, dataset, &rows);
+        model.linear.copy_from_slice(pilot.linear());
+        Ok(Trained::run(model, dataset, options, restart, progress))
     };
-    let validation = &dataset.blocks.validation;
-    Ok(FitResult {
-        linear_coefficients: winner.model.linear_coefficients(),
-        convergence: winner.convergence,
-        restart: best,
-        train_rmse: rmse(&rows),
-        validation_rmse: (!validation.is_empty()).then(|| rmse(validation)),
-        degrees_of_freedom: winner.history.last().and_then(|step| step.degrees_of_freedom),
-        history: winner.history,
-        snapshots: winner.snapshots,
-        network: winner.model.network,
-    })
+    let first = train(0)?;
+    let others: Vec<Trained> = (1..options.restarts).into_par_iter().map(train).collect::<Result<_, _>>()?;
+    let mut best = (0, first);
+    for (index, trained) in others.into_iter().enumerate() {
+        if trained.criterion < best.1.criterion {
+            best = (index + 1, trained);
+        }
+    }
+    Ok(best.1.into_result(dataset, best.0))
 }
 
-struct Candidate {
-    model: Model,
+/// Goes on training a network, for instance after edges were switched off by hand.
+///
+/// # Errors
+/// As [`fit`].
+pub fn refit(
+    network: &Network,
+    linear_coefficients: &[f64],
+    dataset: &Dataset,
+    options: &FitOptions,
+    progress: ProgressCallback,
+) -> Result<FitResult, KanError> {
+    dataset.check(network.inputs.len())?;
+    Ok(refit_from(network.clone(), linear_coefficients, dataset, options, progress).into_result(dataset, 0))
+}
+
+pub(super) fn refit_from(
+    network: Network,
+    linear_coefficients: &[f64],
+    dataset: &Dataset,
+    options: &FitOptions,
+    progress: ProgressCallback,
+) -> Trained {
+    let model = Model::resumed(network, linear_coefficients, dataset, &dataset.training_rows());
+    Trained::run(model, dataset, options, 0, progress)
+}
+
+/// A model at the end of its training.
+pub(super) struct Trained {
+    pub(super) model: Model,
+    /// Mean squared error, normalised: of the validation rows, without them by generalised cross-validation.
+    pub(super) criterion: f64,
     convergence: Convergence,
     history: Vec<Step>,
     snapshots: Vec<(usize, Network)>,
-    score: f64,
 }
 
-fn train(
-    dataset: &Dataset,
-    options: &FitOptions,
-    pilot: &Pilot,
-    restart: usize,
-    progress: ProgressCallback,
-) -> Result<Candidate, KanError> {
-    let rows = dataset.training_rows();
-    let mut random = Random::new(options.seed, restart as u64);
-    let network = initial(&options.architecture, pilot, &mut random)?;
-    let mut model = Model::scaled_to(network, dataset, &rows);
-    model.linear.copy_from_slice(pilot.linear());
-    let mut watch = Watch::new(progress, restart, &dataset.blocks.validation);
-    let settings = Settings {
-        steps: options.steps,
-        smoothing: options.smoothing,
-        tolerance: options.tolerance,
-        with_base: true,
-    };
-    let (convergence, criterion) = minimise(&mut model, dataset, &rows, &settings, &mut watch);
-    let validation = &dataset.blocks.validation;
-    let score = if validation.is_empty() { criterion } else { model.residual_sum(dataset, validation) };
-    Ok(Candidate { model, convergence, history: watch.history, snapshots: watch.snapshots, score })
+impl Trained {
+    fn run(
+        mut model: Model,
+        dataset: &Dataset,
+        options: &FitOptions,
+        restart: usize,
+        progress: ProgressCallback,
+    ) -> Self {
+        let validation = &dataset.blocks.validation;
+        let mut watch = Watch::new(progress, restart, validation);
+        let settings = Settings {
+            optimiser: options.optimiser,
+            steps: options.steps,
+            smoothing: options.smoothing,
+            tolerance: options.tolerance,
+            with_base: options.base_weights,
+        };
+        let (convergence, cross_validation) =
+            minimise(&mut model, dataset, &dataset.training_rows(), &settings, &mut watch);
+        let held_out = row_count(validation);
+        let criterion = match held_out {
+            0 => cross_validation,
+            rows => model.residual_sum(dataset, validation) / rows as f64,
+        };
+        Self { model, criterion, convergence, history: watch.history, snapshots: watch.snapshots }
+    }
+
+    pub(super) fn into_result(self, dataset: &Dataset, restart: usize) -> FitResult {
+        let rmse = |rows: &[Range<usize>]| {
+            self.model.physical_loss(self.model.residual_sum(dataset, rows), row_count(rows)).sqrt()
+        };
+        let validation = &dataset.blocks.validation;
+        FitResult {
+            linear_coefficients: self.model.linear_coefficients(),
+            convergence: self.convergence,
+            restart,
+            train_rmse: rmse(&dataset.training_rows()),
+            validation_rmse: (row_count(validation) > 0).then(|| rmse(validation)),
+            degrees_of_freedom: self.history.iter().rev().find_map(|step| step.degrees_of_freedom),
+            history: self.history,
+            snapshots: self.snapshots,
+            network: self.model.network,
+        }
+    }
 }

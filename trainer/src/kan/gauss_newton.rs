@@ -11,17 +11,7 @@ use super::jacobian::NormalEquations;
 use super::model::{Model, Unknowns};
 use super::outcome::{Convergence, Status, Step};
 use super::penalty::{Penalty, reestimate};
-use super::training::{Smoothing, Watch};
-
-/// Settings of the iteration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settings {
-    pub(super) steps: usize,
-    pub(super) smoothing: Smoothing,
-    /// Relative fall of the penalised loss below which a step counts as no progress.
-    pub(super) tolerance: f64,
-    pub(super) with_base: bool,
-}
+use super::training::{Settings, Smoothing, Watch};
 
 /// Pull towards zero, relative to the mean curvature, that decides between equivalent parameters.
 const RIDGE: f64 = 1e-9;
@@ -55,39 +45,22 @@ pub(super) fn minimise(
     let mut normal = NormalEquations::of(model, &unknowns, dataset, rows);
     let mut damping = 1e-3;
     let mut report = Convergence { status: Status::StepLimit, steps: 0, evaluations: 1, gradient_norm: f64::NAN };
-    let mut score = f64::INFINITY;
+    let mut score;
     let mut idle = 0;
 
     loop {
         let ridge = RIDGE * mean_diagonal(&normal).max(f64::MIN_POSITIVE);
-        let mut matrix = normal.matrix.clone();
-        let mut gradient = normal.gradient.clone();
-        for penalty in &penalties {
-            penalty.add_to(&values, normal.size, &mut matrix, &mut gradient);
-        }
-        for (i, value) in values.iter().enumerate() {
-            matrix[i * normal.size + i] += ridge;
-            gradient[i] += ridge * value;
-        }
-        let mut flexibility = None;
-        if settings.smoothing == Smoothing::Estimated {
-            if let Some(factor) = Cholesky::new(&matrix, normal.size) {
-                let found = reestimate(&mut penalties, &normal, &factor, ridge, &values, samples, SMOOTHING_LIMIT);
-                let spare = (1.0 - found.degrees_of_freedom / samples as f64).max(0.1);
-                score = normal.residual_sum / samples as f64 / (spare * spare);
-                flexibility = Some(found.degrees_of_freedom);
-                matrix.copy_from_slice(&normal.matrix);
-                gradient.copy_from_slice(&normal.gradient);
-                for penalty in &penalties {
-                    penalty.add_to(&values, normal.size, &mut matrix, &mut gradient);
-                }
-                for (i, value) in values.iter().enumerate() {
-                    matrix[i * normal.size + i] += ridge;
-                    gradient[i] += ridge * value;
-                }
-            }
-        } else {
-            score = normal.residual_sum / samples as f64;
+        let (mut matrix, mut gradient) = penalised(&normal, &penalties, ridge, &values);
+        let mut degrees_of_freedom = None;
+        score = normal.residual_sum / samples as f64;
+        if settings.smoothing == Smoothing::Estimated
+            && let Some(factor) = Cholesky::new(&matrix, normal.size)
+        {
+            let found = reestimate(&mut penalties, &normal, &factor, ridge, &values, samples, SMOOTHING_LIMIT);
+            // Generalised cross-validation (Craven and Wahba, 1979).
+            score /= (1.0 - found / samples as f64).max(0.1).powi(2);
+            degrees_of_freedom = Some(found);
+            (matrix, gradient) = penalised(&normal, &penalties, ridge, &values);
         }
         report.gradient_norm = 2.0 * norm(&gradient) / samples as f64;
         let step = Step {
@@ -95,7 +68,7 @@ pub(super) fn minimise(
             loss: model.physical_loss(normal.residual_sum, samples),
             validation_loss: None,
             gradient_norm: report.gradient_norm,
-            degrees_of_freedom: flexibility,
+            degrees_of_freedom,
         };
         if watch.observe(step, model, dataset) {
             report.status = Status::ValidationRose;
@@ -134,7 +107,15 @@ pub(super) fn minimise(
             let promised = promised_fall(&matrix, &gradient, &step);
             if after.is_finite() && after <= before {
                 let ratio = (before - after) / promised.max(f64::MIN_POSITIVE);
-                damping = (damping * if ratio > 0.75 { 0.1 } else if ratio > 0.25 { 0.5 } else { 2.0 }).max(1e-12);
+                damping = (damping
+                    * if ratio > 0.75 {
+                        0.1
+                    } else if ratio > 0.25 {
+                        0.5
+                    } else {
+                        2.0
+                    })
+                .max(1e-12);
                 accepted = Some((candidate, (before - after) / before.max(f64::MIN_POSITIVE)));
                 break;
             }
@@ -152,6 +133,20 @@ pub(super) fn minimise(
     }
     watch.restore_best(model);
     (report, score)
+}
+
+/// Matrix (upper triangle) and half gradient of residuals, penalties and ridge together.
+fn penalised(normal: &NormalEquations, penalties: &[Penalty], ridge: f64, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut matrix, mut gradient) = (normal.matrix.clone(), normal.gradient.clone());
+    for penalty in penalties {
+        penalty.add_gradient(values, 1.0, &mut gradient);
+        penalty.add_curvature(normal.size, &mut matrix);
+    }
+    for (i, value) in values.iter().enumerate() {
+        matrix[i * normal.size + i] += ridge;
+        gradient[i] += ridge * value;
+    }
+    (matrix, gradient)
 }
 
 /// Fall of the quadratic model, `2 g's - s'As` for the step `-s`.

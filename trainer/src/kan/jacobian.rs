@@ -159,7 +159,9 @@ mod tests {
         let target = column(40);
         let blocks = Blocks::default();
         let dataset = Dataset { inputs: &inputs, target: &target, linear: &linear, blocks: &blocks };
-        for (shape, outer_tanh) in [("[2,1]", false), ("[2,3,1]", true), ("[2,[2,2],[1,1],1]", false), ("[2,[1,1],2,1]", true)] {
+        for (shape, outer_tanh) in
+            [("[2,1]", false), ("[2,3,1]", true), ("[2,[2,2],[1,1],1]", false), ("[2,[1,1],2,1]", true)]
+        {
             let mut architecture: Architecture = shape.parse().unwrap();
             architecture.outer_tanh = outer_tanh;
             let mut model = randomised(&architecture, &dataset, 5);

@@ -5,11 +5,10 @@ use std::ops::Range;
 use super::architecture::Architecture;
 use super::dataset::{Dataset, row_count};
 use super::error::KanError;
-use super::gauss_newton::{Settings, minimise};
 use super::model::Model;
 use super::network::Network;
 use super::spline::{Grid, SplineBasis};
-use super::training::{Smoothing, Watch};
+use super::training::{Optimiser, Settings, Smoothing, Watch, minimise};
 
 /// Monotone map from a normalised input in `[-1, 1]` to a share of the knots in `[0, 1]`, linear between points.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +30,17 @@ impl Placement {
     /// Boundaries of `cells` cells; inner ones are moved by `shift` cells, `-0.5 ..= 0.5`.
     pub(super) fn breaks(&self, cells: usize, shift: f64) -> Vec<f64> {
         let inner = |i: usize| interpolate(&self.share, &self.position, (i as f64 + shift) / cells as f64);
-        let mut breaks: Vec<f64> = (0..=cells).map(|i| if i == 0 { -1.0 } else if i == cells { 1.0 } else { inner(i) }).collect();
+        let mut breaks: Vec<f64> = (0..=cells)
+            .map(|i| {
+                if i == 0 {
+                    -1.0
+                } else if i == cells {
+                    1.0
+                } else {
+                    inner(i)
+                }
+            })
+            .collect();
         // Cells never vanish, however steep the law.
         let least = MINIMUM_CELL / cells as f64;
         for i in 1..cells {
@@ -83,7 +92,13 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
     let mut model = Model::scaled_to(Network::zeros(&architecture)?, dataset, rows);
     let samples: Vec<Placement> =
         (0..inputs).map(|i| quantiles(dataset.inputs[i].as_slice(), &model, i, rows)).collect();
-    let settings = Settings { steps: 12, smoothing: Smoothing::Estimated, tolerance: 1e-3, with_base: false };
+    let settings = Settings {
+        optimiser: Optimiser::GaussNewton,
+        steps: 12,
+        smoothing: Smoothing::Estimated,
+        tolerance: 1e-3,
+        with_base: false,
+    };
     let mut placements = vec![Placement::uniform(); inputs];
     let mut best: Option<(f64, Pilot)> = None;
     for _ in 0..ROUNDS {

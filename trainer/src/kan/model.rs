@@ -21,12 +21,16 @@ impl Model {
     pub(super) fn scaled_to(mut network: Network, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
         network.inputs = dataset.inputs.iter().map(|column| range_of(column, rows)).collect();
         network.output = spread_of(dataset.target, rows);
-        let rms = |column: &Vec<f64>| {
-            let (sum, count) = over(column, rows).fold((0.0, 0usize), |(sum, count), v| (sum + v * v, count + 1));
-            positive((sum / count.max(1) as f64).sqrt())
-        };
-        let linear_width: Vec<f64> = dataset.linear.iter().map(rms).collect();
+        let linear_width: Vec<f64> = dataset.linear.iter().map(|column| root_mean_square(column, rows)).collect();
         Self { network, linear: vec![0.0; linear_width.len()], linear_width }
+    }
+
+    /// Takes up a network that already has its scalings. Missing coefficients of linear columns start from zero.
+    pub(super) fn resumed(network: Network, coefficients: &[f64], dataset: &Dataset, rows: &[Range<usize>]) -> Self {
+        let linear_width: Vec<f64> = dataset.linear.iter().map(|column| root_mean_square(column, rows)).collect();
+        let width = network.output.width;
+        let coefficient = |(i, w): (usize, &f64)| coefficients.get(i).map_or(0.0, |c| c * w / width);
+        Self { linear: linear_width.iter().enumerate().map(coefficient).collect(), network, linear_width }
     }
 
     /// Coefficients of the linear columns in physical units (target unit per column unit).
@@ -58,6 +62,11 @@ impl Model {
 
 fn over<'a>(column: &'a [f64], rows: &'a [Range<usize>]) -> impl Iterator<Item = f64> + 'a {
     rows.iter().flat_map(|range| column[range.clone()].iter().copied())
+}
+
+fn root_mean_square(column: &[f64], rows: &[Range<usize>]) -> f64 {
+    let (sum, count) = over(column, rows).fold((0.0, 0usize), |(sum, count), v| (sum + v * v, count + 1));
+    positive((sum / count.max(1) as f64).sqrt())
 }
 
 /// One when there is no spread to divide by.

@@ -123,7 +123,8 @@ impl Network {
             inputs = nodes.count();
         }
         let unit = Scaling { centre: 0.0, width: 1.0 };
-        let mut network = Self { inputs: vec![unit; architecture.inputs], output: unit, layers, parameters: Vec::new() };
+        let mut network =
+            Self { inputs: vec![unit; architecture.inputs], output: unit, layers, parameters: Vec::new() };
         network.lay_out();
         Ok(network)
     }
@@ -244,7 +245,8 @@ impl Network {
     /// [`KanError::Shape`] when there is no such edge.
     pub fn set_active(&mut self, layer: usize, from: usize, to: usize, active: bool) -> Result<(), KanError> {
         let layers = self.layers.len();
-        let layer = self.layers.get_mut(layer).ok_or(KanError::Shape { what: "layer", expected: layers, found: layer })?;
+        let layer =
+            self.layers.get_mut(layer).ok_or(KanError::Shape { what: "layer", expected: layers, found: layer })?;
         if from >= layer.inputs || to >= layer.nodes.terminals() {
             let expected = layer.edges.len();
             return Err(KanError::Shape { what: "edge of the layer", expected, found: to * layer.inputs + from });

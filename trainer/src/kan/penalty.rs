@@ -63,13 +63,19 @@ impl Penalty {
         self.strength * self.roughness(values)
     }
 
-    /// Adds this penalty's part to matrix (upper triangle) and gradient.
-    pub(super) fn add_to(&self, values: &[f64], size: usize, matrix: &mut [f64], gradient: &mut [f64]) {
+    /// Adds `factor` times half the gradient of the energy.
+    pub(super) fn add_gradient(&self, values: &[f64], factor: f64, gradient: &mut [f64]) {
+        for first in self.rows() {
+            let applied = factor * self.strength * self.applied(first, values);
+            stencil(self.difference).iter().zip(&mut gradient[first..]).for_each(|(s, g)| *g += s * applied);
+        }
+    }
+
+    /// Adds half the second derivative of the energy to the upper triangle of a matrix.
+    pub(super) fn add_curvature(&self, size: usize, matrix: &mut [f64]) {
         let stencil = stencil(self.difference);
         for first in self.rows() {
-            let applied = self.applied(first, values);
             for (i, a) in stencil.iter().enumerate() {
-                gradient[first + i] += self.strength * a * applied;
                 for (j, b) in stencil.iter().enumerate().skip(i) {
                     matrix[(first + i) * size + first + j] += self.strength * a * b;
                 }
@@ -93,17 +99,9 @@ impl Penalty {
     }
 }
 
-/// What the penalised normal equations say about noise and flexibility.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Flexibility {
-    /// Effective degrees of freedom: trace of the influence matrix.
-    pub(super) degrees_of_freedom: f64,
-    /// Residual variance, normalised target.
-    pub(super) noise_variance: f64,
-}
-
 /// Re-estimates all strengths from the data by restricted maximum likelihood (generalised Fellner-Schall update;
-/// Wood and Fasiolo, 2017). Each strength may change by at most `limit`-fold.
+/// Wood and Fasiolo, 2017). Each strength may change by at most `limit`-fold. Returns the effective degrees of freedom,
+/// the trace of the influence matrix.
 pub(super) fn reestimate(
     penalties: &mut [Penalty],
     normal: &NormalEquations,
@@ -112,7 +110,7 @@ pub(super) fn reestimate(
     values: &[f64],
     samples: usize,
     limit: f64,
-) -> Flexibility {
+) -> f64 {
     let size = normal.size;
     let inverse = factor.inverse_factor_transposed();
     let traces: Vec<f64> = penalties.iter().map(|penalty| penalty.trace(&inverse, size)).collect();
@@ -123,11 +121,12 @@ pub(super) fn reestimate(
     let noise_variance = normal.residual_sum / spare;
     for (penalty, trace) in penalties.iter_mut().zip(traces) {
         let rank = penalty.rows().count() as f64;
-        let wanted = noise_variance * (rank - penalty.strength * trace).max(1e-6) / penalty.roughness(values).max(1e-30);
+        let wanted =
+            noise_variance * (rank - penalty.strength * trace).max(1e-6) / penalty.roughness(values).max(1e-30);
         let strength = wanted.clamp(penalty.strength / limit, penalty.strength * limit);
         penalty.strength = strength.clamp(STRENGTH_RANGE.start, STRENGTH_RANGE.end);
     }
-    Flexibility { degrees_of_freedom, noise_variance }
+    degrees_of_freedom
 }
 
 /// Strengths outside this range are indistinguishable from none and from a straight line.

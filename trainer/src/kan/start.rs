@@ -19,7 +19,8 @@ pub(super) fn initial(architecture: &Architecture, pilot: &Pilot, random: &mut R
         for position in 0..layer.edges.len() {
             let resolution = architecture.resolution(index, position % layer.inputs);
             // A single spline keeps its knots symmetric; several share the work by standing between each other's.
-            let shift = if layer.nodes.terminals() * depth_factor(architecture) > 1 { random.uniform(-0.5, 0.5) } else { 0.0 };
+            let shift =
+                if layer.nodes.terminals() * depth_factor(architecture) > 1 { random.uniform(-0.5, 0.5) } else { 0.0 };
             let breaks = match index {
                 0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, shift),
                 _ => staggered(resolution.cells, shift),
@@ -77,5 +78,15 @@ fn effect_range(pilot: &Pilot, input: usize) -> (f64, f64) {
 /// Equal cells over `[-1, 1]`, inner boundaries moved by `shift` cells.
 fn staggered(cells: usize, shift: f64) -> Vec<f64> {
     let inner = |i: usize| -1.0 + 2.0 * (i as f64 + shift) / cells as f64;
-    (0..=cells).map(|i| if i == 0 { -1.0 } else if i == cells { 1.0 } else { inner(i) }).collect()
+    (0..=cells)
+        .map(|i| {
+            if i == 0 {
+                -1.0
+            } else if i == cells {
+                1.0
+            } else {
+                inner(i)
+            }
+        })
+        .collect()
 }

@@ -8,7 +8,6 @@ use super::spline::LocalBasis;
 pub(super) struct EdgeTrace {
     pub(super) local: LocalBasis,
     pub(super) silu: f64,
-    pub(super) spline: f64,
     pub(super) value: f64,
     pub(super) slope: f64,
 }
@@ -28,13 +27,7 @@ impl EdgeTrace {
         let logistic = 1.0 / (1.0 + libm::exp(-x));
         let silu = x * logistic;
         let silu_slope = logistic * (1.0 + x * (1.0 - logistic));
-        Self {
-            local,
-            silu,
-            spline,
-            value: base * silu + scale * spline,
-            slope: base * silu_slope + scale * spline_slope,
-        }
+        Self { local, silu, value: base * silu + scale * spline, slope: base * silu_slope + scale * spline_slope }
     }
 }
 
@@ -42,6 +35,8 @@ impl EdgeTrace {
 struct LayerTrace {
     inputs: Vec<f64>,
     edges: Vec<EdgeTrace>,
+    /// What the edges add up to, before tanh.
+    sums: Vec<f64>,
     terminals: Vec<f64>,
     /// Derivative of the network's output with respect to each sum, before tanh.
     terminal_adjoints: Vec<f64>,
@@ -60,6 +55,7 @@ impl Trace {
         let layers = network.layers.iter().map(|layer| LayerTrace {
             inputs: vec![0.0; layer.inputs],
             edges: vec![EdgeTrace::default(); layer.edges.len()],
+            sums: vec![0.0; layer.nodes.terminals()],
             terminals: vec![0.0; layer.nodes.terminals()],
             terminal_adjoints: vec![0.0; layer.nodes.terminals()],
             input_adjoints: vec![0.0; layer.inputs],
@@ -123,9 +119,9 @@ impl Trace {
         &self.layers[layer].inputs
     }
 
-    /// Sums that the edges of a layer end in, after tanh where the layer has it.
-    pub(super) fn terminals(&self, layer: usize) -> &[f64] {
-        &self.layers[layer].terminals
+    /// What the edges of a layer add up to.
+    pub(super) fn sums(&self, layer: usize) -> &[f64] {
+        &self.layers[layer].sums
     }
 }
 
@@ -141,6 +137,7 @@ impl LayerTrace {
                     self.edges[to * layer.inputs + from] = trace;
                 }
             }
+            self.sums[to] = sum;
             self.terminals[to] = if layer.outer_tanh { libm::tanh(sum) } else { sum };
         }
     }

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::dataset::{Dataset, row_count};
 use super::model::Model;
 use super::network::Network;
-use super::outcome::Step;
+use super::outcome::{Convergence, Step};
+use super::{first_order, gauss_newton};
 
 /// How strongly neighbouring spline coefficients are tied.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +20,47 @@ pub enum Smoothing {
     Fixed(f64),
     /// As strongly as the noise in the data warrants, per input and layer (restricted maximum likelihood).
     Estimated,
+}
+
+/// How the network is trained.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Optimiser {
+    /// Damped Gauss-Newton: converges in tens of steps; time grows with the cube of the number of coefficients. The
+    /// only one that can estimate smoothing.
+    GaussNewton,
+    /// L-BFGS: hundreds of steps, any size.
+    Lbfgs,
+    /// Adam with a constant rate, for comparison.
+    Adam {
+        /// Step size.
+        rate: f64,
+    },
+}
+
+/// Settings of one optimisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Settings {
+    pub(super) optimiser: Optimiser,
+    pub(super) steps: usize,
+    pub(super) smoothing: Smoothing,
+    /// Relative fall of the penalised loss below which a step counts as no progress.
+    pub(super) tolerance: f64,
+    pub(super) with_base: bool,
+}
+
+/// Trains the model with whichever optimiser is asked for; also returns the criterion by which fits are compared.
+pub(super) fn minimise(
+    model: &mut Model,
+    dataset: &Dataset,
+    rows: &[Range<usize>],
+    settings: &Settings,
+    watch: &mut Watch,
+) -> (Convergence, f64) {
+    match settings.optimiser {
+        Optimiser::GaussNewton => gauss_newton::minimise(model, dataset, rows, settings, watch),
+        Optimiser::Lbfgs | Optimiser::Adam { .. } => first_order::minimise(model, dataset, rows, settings, watch),
+    }
 }
 
 /// What a progress callback is told.
@@ -44,8 +86,6 @@ pub(super) struct Watch<'a> {
     progress: ProgressCallback<'a>,
     restart: usize,
     validation: Vec<Range<usize>>,
-    /// Steps taken by earlier stages of the same restart.
-    first_step: usize,
     pub(super) history: Vec<Step>,
     pub(super) snapshots: Vec<(usize, Network)>,
     stride: usize,
@@ -58,7 +98,6 @@ impl<'a> Watch<'a> {
             progress,
             restart,
             validation: validation.to_vec(),
-            first_step: 0,
             history: Vec::new(),
             snapshots: Vec::new(),
             stride: 1,
@@ -66,15 +105,8 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// A further stage (another grid, a pruned network) goes on counting where the last one ended.
-    pub(super) fn next_stage(&mut self) {
-        self.first_step = self.history.last().map_or(0, |step| step.step + 1);
-        self.best = None;
-    }
-
     /// Records a step; true when training should end because the validation loss no longer falls.
     pub(super) fn observe(&mut self, mut step: Step, model: &Model, dataset: &Dataset) -> bool {
-        step.step += self.first_step;
         if !self.validation.is_empty() {
             let rows = row_count(&self.validation);
             step.validation_loss = Some(model.physical_loss(model.residual_sum(dataset, &self.validation), rows));
@@ -98,7 +130,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Puts back the model with the lowest validation loss of this stage.
+    /// Puts back the model with the lowest validation loss.
     pub(super) fn restore_best(&mut self, model: &mut Model) {
         if let Some((_, _, best)) = self.best.take() {
             *model = best;
