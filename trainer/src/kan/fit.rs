@@ -49,7 +49,7 @@ impl FitOptions {
             optimiser: Optimiser::GaussNewton,
             smoothing: Smoothing::Estimated,
             base_weights: false,
-            tolerance: 1e-4,
+            tolerance: 1e-2,
         }
     }
 }
@@ -144,7 +144,7 @@ pub(super) struct Trained {
     pub(super) model: Model,
     /// Mean squared error, normalised: of the validation rows, without them by generalised cross-validation.
     pub(super) criterion: f64,
-    convergence: Convergence,
+    pub(super) convergence: Convergence,
     history: Vec<Step>,
     snapshots: Vec<(usize, Network)>,
 }
@@ -158,7 +158,7 @@ impl Trained {
         progress: ProgressCallback,
     ) -> Self {
         let validation = &dataset.blocks.validation;
-        let mut watch = Watch::new(progress, restart, validation);
+        let mut watch = Watch::new(progress, restart, validation, options.steps);
         let settings = Settings {
             optimiser: options.optimiser,
             steps: options.steps,

@@ -44,7 +44,7 @@ impl Placement {
         // Cells never vanish, however steep the law.
         let least = MINIMUM_CELL / cells as f64;
         for i in 1..cells {
-            breaks[i] = breaks[i].clamp(breaks[i - 1] + least, 1.0 - least * (cells - i) as f64);
+            breaks[i] = breaks[i].max(breaks[i - 1] + least).min(1.0 - least * (cells - i) as f64);
         }
         breaks
     }
@@ -104,7 +104,8 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
     for _ in 0..ROUNDS {
         let bases: Vec<SplineBasis> = placements.iter().map(|p| p.basis(cells, 3, 0.0)).collect::<Result<_, _>>()?;
         model.network.set_bases(bases.iter().cloned());
-        let (_, score) = minimise(&mut model, dataset, rows, &settings, &mut Watch::new(&|_| {}, 0, &[]));
+        let (_, score) =
+            minimise(&mut model, dataset, rows, &settings, &mut Watch::new(&|_| {}, 0, &[], settings.steps));
         let found = Pilot { placements: placements.clone(), model: model.clone() };
         let moved: Vec<Placement> = (0..inputs).map(|i| equidistributed(&found, i, &bases[i], &samples[i])).collect();
         if best.as_ref().is_none_or(|(least, _)| score < *least) {

@@ -180,10 +180,12 @@ fn every_optimiser_learns_and_says_how_it_ended() {
     let blocks = Blocks { train: vec![0..150, 200..400], validation: vec![150..200] };
     let inputs = [v];
     let dataset = Dataset { inputs: &inputs, target: &torque, linear: &[], blocks: &blocks };
-    for (optimiser, steps) in [(Optimiser::GaussNewton, 50), (Optimiser::Lbfgs, 200), (Optimiser::Adam { rate: 0.02 }, 600)] {
-        let options = FitOptions { optimiser, steps, ..options("[1,3,1]") };
+    let trials =
+        [(Optimiser::GaussNewton, 50, 0.01), (Optimiser::Lbfgs, 200, 0.03), (Optimiser::Adam { rate: 0.02 }, 600, 0.1)];
+    for (optimiser, steps, bound) in trials {
+        let options = FitOptions { optimiser, steps, tolerance: 1e-4, ..options("[1,3,1]") };
         let result = fit(&dataset, &options, &silent).unwrap();
-        assert!(result.train_rmse < 0.03, "{optimiser:?}: {}", result.train_rmse);
+        assert!(result.train_rmse < bound, "{optimiser:?}: {}", result.train_rmse);
         assert!(result.convergence.gradient_norm.is_finite() && result.convergence.evaluations > 0);
         assert_eq!(result.history.len(), result.convergence.steps + 1);
         let rmse_at = |share: f64| rmse(&result.network_at(share).evaluate_columns(&inputs), &torque);

@@ -78,14 +78,17 @@ pub type ProgressCallback<'a> = &'a (dyn Fn(&Progress) + Sync);
 /// Networks kept for pictures of the training.
 const SNAPSHOTS: usize = 32;
 
-/// Steps without a better validation loss after which training ends.
+/// Steps without a better validation loss after which training ends: at least this many, and at least this share of
+/// the steps allowed.
 const VALIDATION_PATIENCE: usize = 8;
+const PATIENCE_SHARE: usize = 10;
 
 /// Watches one optimisation.
 pub(super) struct Watch<'a> {
     progress: ProgressCallback<'a>,
     restart: usize,
     validation: Vec<Range<usize>>,
+    patience: usize,
     pub(super) history: Vec<Step>,
     pub(super) snapshots: Vec<(usize, Network)>,
     stride: usize,
@@ -93,11 +96,17 @@ pub(super) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(progress: ProgressCallback<'a>, restart: usize, validation: &[Range<usize>]) -> Self {
+    pub(super) fn new(
+        progress: ProgressCallback<'a>,
+        restart: usize,
+        validation: &[Range<usize>],
+        steps: usize,
+    ) -> Self {
         Self {
             progress,
             restart,
             validation: validation.to_vec(),
+            patience: VALIDATION_PATIENCE.max(steps / PATIENCE_SHARE),
             history: Vec::new(),
             snapshots: Vec::new(),
             stride: 1,
@@ -122,7 +131,7 @@ impl<'a> Watch<'a> {
         (self.progress)(&Progress { restart: self.restart, step });
         let Some(loss) = step.validation_loss else { return false };
         match &self.best {
-            Some((best, at, _)) if loss >= *best => step.step - at >= VALIDATION_PATIENCE,
+            Some((best, at, _)) if loss >= *best => step.step - at >= self.patience,
             _ => {
                 self.best = Some((loss, step.step, model.clone()));
                 false
