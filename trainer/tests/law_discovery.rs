@@ -56,8 +56,8 @@ fn velocity(values: Vec<f64>) -> Channel {
 
 /// Adds noise of `share` times the range of the target.
 fn data(channels: Vec<Channel>, clean: Vec<f64>, share: f64, random: &mut Random) -> LawData {
-    let range = clean.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-        - clean.iter().copied().fold(f64::INFINITY, f64::min);
+    let range =
+        clean.iter().copied().fold(f64::NEG_INFINITY, f64::max) - clean.iter().copied().fold(f64::INFINITY, f64::min);
     let target: Vec<f64> = clean.iter().map(|y| y + share * range * random.normal()).collect();
     let blocks = (0..target.len()).map(|i| i * 10 / target.len()).collect();
     LawData { channels, target, target_unit: "N m".into(), nuisance: Vec::new(), blocks }
@@ -85,10 +85,16 @@ fn clean_reference_law_is_found_exactly_for_every_joint() {
         let start = Instant::now();
         let found = discover(&joint(k, 1000, 0.0, 7), &SearchOptions::default()).unwrap();
         let seconds = start.elapsed().as_secs_f64();
-        println!("joint {}: {} nodes, {} structures, {seconds:.2} s", j + 1, found.law.expression.node_count(), found.explored);
+        println!(
+            "joint {}: {} nodes, {} structures, {seconds:.2} s",
+            j + 1,
+            found.law.expression.node_count(),
+            found.explored
+        );
         assert_eq!(found.law.structure, truth, "joint {}: {:?}", j + 1, found.front);
         assert!(found.law.expression.node_count() <= 20);
-        let names = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient", "smoothing"];
+        let names =
+            ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient", "smoothing"];
         for (name, truth) in names.into_iter().zip([k[0], k[1], k[2], k[3], 50.0]) {
             let got = value(&found, name).unwrap();
             assert!((got / truth - 1.0).abs() < 1e-3, "{name} {got} {truth}");

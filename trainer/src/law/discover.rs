@@ -127,8 +127,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let explored = explore(searched, beam, evidence_of(searched, None), &[]);
 
     let rough = evidence_of(searched, best(&explored, evidence_of(searched, None), 1).first().copied());
-    let finalists: Vec<Fit> =
-        best(&explored, rough, 12).par_iter().map(|f| polish(&problem, f, &[])).collect();
+    let finalists: Vec<Fit> = best(&explored, rough, 12).par_iter().map(|f| polish(&problem, f, &[])).collect();
     let evidence = evidence_of(&problem, finalists.first());
     let mut ranked: Vec<(f64, f64, Fit)> = finalists
         .into_par_iter()
@@ -172,11 +171,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
 fn evidence_of(problem: &Problem<'_>, fit: Option<&Fit>) -> Evidence {
     let rows = problem.rows();
     let length = fit.map_or(1.0, |f| correlation_length(&problem.residuals(f)));
-    Evidence {
-        rows,
-        effective: (rows as f64 / length).max(10.0),
-        exact: EXACT * EXACT * problem.total() / rows as f64,
-    }
+    Evidence { rows, effective: (rows as f64 / length).max(10.0), exact: EXACT * EXACT * problem.total() / rows as f64 }
 }
 
 /// Mean square over all samples, each predicted from constants fitted without its block.
@@ -248,8 +243,7 @@ fn settle_smoothing(
     let mut psi = fit.params[..names.len()].to_vec();
     psi[at] = bound;
     let held = vec![Nonlinear::Smoothing];
-    let fixed =
-        problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::FINAL);
+    let fixed = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::FINAL);
     let rows = problem.rows() as f64;
     let worse = 2.0 * (evidence.misfit(fixed.rss / rows) - evidence.misfit(fit.rss / rows));
     if worse > 3.84 {
@@ -274,9 +268,8 @@ fn allow_for_viscous(
     uncertainty: &mut Uncertainty,
     remarks: &mut Vec<String>,
 ) {
-    let sees_speed = |t: &Term| {
-        matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::SignPower)
-    };
+    let sees_speed =
+        |t: &Term| matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::SignPower);
     let exact = uncertainty.noise <= EXACT * (problem.total() / problem.rows() as f64).sqrt();
     if exact || fit.structure.terms().is_empty() || fit.structure.terms().iter().any(sees_speed) {
         return;

@@ -306,7 +306,7 @@ mod tests {
         let law = stribeck().bind(&[22.0, 8.0, 0.1, 50.0, 0.03]);
         let mut stack = Vec::new();
         for step in law.postfix() {
-            let mut two = |f: fn(f64, f64) -> f64, s: &mut Vec<f64>| {
+            let two = |f: fn(f64, f64) -> f64, s: &mut Vec<f64>| {
                 let b = s.pop().unwrap();
                 let a = s.pop().unwrap();
                 s.push(f(a, b));

@@ -184,7 +184,9 @@ impl<'a> Problem<'a> {
                 converged = true;
                 break;
             }
-            let Some((trial, tried, reduction)) = self.step(&tape, (&ranges, &free, held.coefficient), &psi, &point, &mut damping) else {
+            let Some((trial, tried, reduction)) =
+                self.step(&tape, (&ranges, &free, held.coefficient), &psi, &point, &mut damping)
+            else {
                 // No damping gave a descent: a minimum to rounding.
                 converged = true;
                 break;

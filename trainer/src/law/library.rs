@@ -63,8 +63,7 @@ pub fn admissible(structure: &Structure) -> bool {
     let count = |f: &dyn Fn(&Term) -> bool| structure.terms().iter().filter(|t| f(t)).count();
     let plain = |t: &Term| t.modulation == Modulation::Plain;
     let one_stribeck = count(&|t| plain(t) && t.shape.is_stribeck()) <= 1;
-    let stribeck_shapes: Vec<Shape> =
-        structure.terms().iter().map(|t| t.shape).filter(|s| s.is_stribeck()).collect();
+    let stribeck_shapes: Vec<Shape> = structure.terms().iter().map(|t| t.shape).filter(|s| s.is_stribeck()).collect();
     let one_shape = stribeck_shapes.windows(2).all(|w| w[0] == w[1]);
     let one_power = count(&|t| t.shape.is_power() || t.shape == Shape::Quadratic) <= 1;
     let decays = |shape| count(&|t| t.shape == shape && matches!(t.modulation, Modulation::Decay(_)));
@@ -86,7 +85,8 @@ pub fn moves(structure: &Structure, library: &[Vec<Term>]) -> Vec<Move> {
     }
     for &removed in structure.terms() {
         all.push(Move { removed: vec![removed], added: Vec::new(), sign });
-        let kin = library.iter().filter(|a| a.iter().all(|t| !structure.has(*t)) && a.iter().any(|t| related(removed, *t)));
+        let kin =
+            library.iter().filter(|a| a.iter().all(|t| !structure.has(*t)) && a.iter().any(|t| related(removed, *t)));
         all.extend(kin.map(|added| Move { removed: vec![removed], added: added.clone(), sign }));
         if removed.shape.is_stribeck() && removed.modulation == Modulation::Plain {
             let general = Term::plain(Shape::StribeckPower);
@@ -115,7 +115,8 @@ fn related(a: Term, b: Term) -> bool {
         Shape::AbsSign | Shape::AbsViscous | Shape::Offset => 2,
         Shape::Sign => 3,
     };
-    (a.modulation == b.modulation && family(a.shape) == family(b.shape)) || (a.shape == b.shape && a.modulation != b.modulation)
+    (a.modulation == b.modulation && family(a.shape) == family(b.shape))
+        || (a.shape == b.shape && a.modulation != b.modulation)
 }
 
 impl Move {

@@ -1,4 +1,7 @@
 //! Symbolic laws: known forms, function library, search, simplification, names, rendering. Knows no files.
+//!
+//! A law is looked for in samples alone: [`discover()`] searches the structures that [`structure`] can say, fits each with
+//! all its constants at once ([`mod@fit`]), prices it ([`price`]) and names what it finds ([`naming`]).
 
 pub mod canonical;
 pub mod data;
@@ -11,7 +14,14 @@ pub mod naming;
 pub mod price;
 pub mod projection;
 pub mod ranges;
+pub mod render;
 pub mod search;
 pub mod structure;
 pub mod tape;
 pub mod uncertainty;
+
+pub use data::{Channel, ChannelRole, LawData, LawError, Nuisance};
+pub use discover::{Discovery, FrontEntry, Law, NuisanceCoefficient, Parameter, SearchOptions, discover};
+pub use expression::{Expr, Step, Unary};
+pub use known_forms::{FormFit, KnownForm, fit_form};
+pub use render::{Language, render};

@@ -22,7 +22,12 @@ fn naming(name: impl Into<String>, symbol: impl Into<String>, unit: impl Into<St
 /// units.
 pub fn name_all(structure: &Structure, data: &LawData, layout: &Layout, values: &[f64]) -> Vec<Naming> {
     let names = structure.nonlinear();
-    let context = Context { structure, data, layout, exponent: names.iter().position(|n| *n == Nonlinear::Exponent).map(|k| values[k]) };
+    let context = Context {
+        structure,
+        data,
+        layout,
+        exponent: names.iter().position(|n| *n == Nonlinear::Exponent).map(|k| values[k]),
+    };
     names.iter().map(|n| context.nonlinear(*n)).chain(structure.terms().iter().map(|t| context.term(*t))).collect()
 }
 
@@ -59,9 +64,7 @@ impl Context<'_> {
             Nonlinear::StribeckExponent => naming("stribeck_exponent", "α", "1"),
             Nonlinear::BreakawayVelocity => naming("breakaway_velocity", "v_b", self.speed()),
             Nonlinear::Exponent => naming("velocity_exponent", "p", "1"),
-            Nonlinear::Rate(i) => {
-                naming(format!("{}_rate", channel(i).name), "κ", divided("", &channel(i).unit, 1.0))
-            }
+            Nonlinear::Rate(i) => naming(format!("{}_rate", channel(i).name), "κ", divided("", &channel(i).unit, 1.0)),
             Nonlinear::Order(i) => {
                 naming(format!("{}_ripple_order", channel(i).name), "n", divided("", &channel(i).unit, 1.0))
             }
@@ -81,9 +84,7 @@ impl Context<'_> {
             Shape::SignPower => naming("viscous_power_coefficient", "F_p", over(self.exponent.unwrap_or(1.0))),
             Shape::Viscous => naming("viscous_coefficient", "F_v", over(1.0)),
             Shape::Quadratic => naming("quadratic_coefficient", "F_2", over(2.0)),
-            Shape::OddPower => {
-                naming("viscous_power_coefficient", "F_p", over(1.0 + self.exponent.unwrap_or(0.0)))
-            }
+            Shape::OddPower => naming("viscous_power_coefficient", "F_p", over(1.0 + self.exponent.unwrap_or(0.0))),
             Shape::AbsSign => naming(format!("coulomb_asymmetry_{kind}"), "ΔF_c", target),
             Shape::AbsViscous => naming("viscous_asymmetry_coefficient", "ΔF_v", over(1.0)),
             Shape::Offset => naming(format!("offset_{kind}"), "F_0", target),
@@ -122,7 +123,8 @@ fn divided(unit: &str, by: &str, power: f64) -> String {
             format!("{base}^{power:.3}")
         }
     };
-    let numerator = [unit, raised(under).as_str()].iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join(" ");
+    let numerator =
+        [unit, raised(under).as_str()].iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join(" ");
     format!("{}/{}", if numerator.is_empty() { "1" } else { &numerator }, raised(over))
 }
 

@@ -123,11 +123,8 @@ fn reduced(parent: &Fit, change: &Move) -> Fit {
     let kept: Vec<Term> = parent.structure.terms().iter().copied().filter(|t| !change.removed.contains(t)).collect();
     let structure = Structure::new(parent.structure.sign(), kept);
     let known = parent.nonlinear();
-    let mut params: Vec<f64> = structure
-        .nonlinear()
-        .iter()
-        .filter_map(|n| known.iter().find(|(k, _)| k == n).map(|(_, x)| *x))
-        .collect();
+    let mut params: Vec<f64> =
+        structure.nonlinear().iter().filter_map(|n| known.iter().find(|(k, _)| k == n).map(|(_, x)| *x)).collect();
     params.resize(params.len() + structure.terms().len(), 0.0);
     Fit { params, structure, rss: f64::INFINITY, converged: false, dependent: Vec::new() }
 }

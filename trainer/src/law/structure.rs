@@ -123,9 +123,7 @@ impl Shape {
         match self {
             Self::Sign | Self::AbsSign => &[Nonlinear::Smoothing],
             Self::StribeckExponential | Self::StribeckGaussian => &[Nonlinear::Smoothing, Nonlinear::StribeckVelocity],
-            Self::StribeckPower => {
-                &[Nonlinear::Smoothing, Nonlinear::StribeckVelocity, Nonlinear::StribeckExponent]
-            }
+            Self::StribeckPower => &[Nonlinear::Smoothing, Nonlinear::StribeckVelocity, Nonlinear::StribeckExponent],
             Self::Breakaway => &[Nonlinear::Smoothing, Nonlinear::BreakawayVelocity],
             Self::SignPower => &[Nonlinear::Smoothing, Nonlinear::Exponent],
             Self::OddPower => &[Nonlinear::Exponent],
@@ -185,11 +183,8 @@ impl Structure {
         terms.sort_unstable();
         terms.dedup();
         // Without a term that holds the sign there is only one structure.
-        let sign = if terms.iter().any(|t| t.nonlinear().any(|n| n == Nonlinear::Smoothing)) {
-            sign
-        } else {
-            SignForm::Tanh
-        };
+        let sign =
+            if terms.iter().any(|t| t.nonlinear().any(|n| n == Nonlinear::Smoothing)) { sign } else { SignForm::Tanh };
         Self { sign, terms }
     }
 
@@ -370,10 +365,7 @@ mod tests {
     }
 
     fn reference() -> Structure {
-        Structure::new(
-            SignForm::Tanh,
-            [Shape::Viscous, Shape::Sign, Shape::StribeckExponential].map(Term::plain),
-        )
+        Structure::new(SignForm::Tanh, [Shape::Viscous, Shape::Sign, Shape::StribeckExponential].map(Term::plain))
     }
 
     #[test]
@@ -395,9 +387,7 @@ mod tests {
             Shape::AbsSign,
             Shape::Offset,
         ];
-        for sign in
-            [SignForm::Tanh, SignForm::Arctan, SignForm::Algebraic, SignForm::Parabolic, SignForm::Cubic]
-        {
+        for sign in [SignForm::Tanh, SignForm::Arctan, SignForm::Algebraic, SignForm::Parabolic, SignForm::Cubic] {
             let structure = Structure::new(sign, all.map(Term::plain))
                 .with(Term { shape: Shape::Viscous, modulation: Modulation::Decay(1) })
                 .with(Term { shape: Shape::Sign, modulation: Modulation::Magnitude(1) });
@@ -418,20 +408,13 @@ mod tests {
 
     #[test]
     fn the_parabolic_sign_is_that_of_bengisu_and_akay() {
-        let structure = Structure::new(
-            SignForm::Parabolic,
-            [Shape::Sign, Shape::StribeckExponential].map(Term::plain),
-        );
+        let structure = Structure::new(SignForm::Parabolic, [Shape::Sign, Shape::StribeckExponential].map(Term::plain));
         let (v0, vs, fc, fs) = (0.05, 0.2, 10.0, 14.0);
         let law = structure.template(&layout());
         for v in [-0.8f64, -0.03, 0.01, 0.05, 0.3] {
             let m = v.abs();
             let expected = v.signum()
-                * if m < v0 {
-                    fs - fs / (v0 * v0) * (m - v0).powi(2)
-                } else {
-                    fc + (fs - fc) * (-(m - v0) / vs).exp()
-                };
+                * if m < v0 { fs - fs / (v0 * v0) * (m - v0).powi(2) } else { fc + (fs - fc) * (-(m - v0) / vs).exp() };
             assert!((law.value(&[v, 0.0], &[v0, vs, fc, fs - fc]) - expected).abs() < 1e-12);
         }
     }

@@ -82,7 +82,15 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         .collect();
     let coefficients = problem.nuisance_coefficients(fit);
     let nuisance = coefficients.into_iter().zip(&linear.errors).map(|(c, e)| (c, spread * e)).collect();
-    Uncertainty { standard_errors, intervals, nuisance, condition: linear.condition, entangled, noise, correlation_length }
+    Uncertainty {
+        standard_errors,
+        intervals,
+        nuisance,
+        condition: linear.condition,
+        entangled,
+        noise,
+        correlation_length,
+    }
 }
 
 struct Linearised {
@@ -145,7 +153,12 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             }
             None => Some((k - names.len(), value)),
         };
-        problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient }, Effort { iterations: 30, tolerance: 1e-7 })
+        problem.fit_from(
+            &fit.structure,
+            &psi,
+            Held { nonlinear: &kept, coefficient },
+            Effort { iterations: 30, tolerance: 1e-7 },
+        )
     };
     let end = |direction: f64| -> f64 {
         let first = if se.is_finite() && se > 0.0 { NORMAL_95 * se } else { best.abs().max(1e-3) };
