@@ -23,7 +23,7 @@ pub(crate) const CALIBRATION_NOPS: usize = 1024;
 /// Status of a request that the harness cannot serve.
 pub(crate) const BAD_REQUEST: u32 = u32::MAX;
 /// Most inputs a row.
-pub(crate) const MAX_INPUTS: usize = 8;
+pub(crate) const MAX_INPUTS: usize = 4;
 
 /// The inputs of one evaluation; those that the model does not have are zero.
 pub type Row = [f32; MAX_INPUTS];
