@@ -3,6 +3,9 @@
 
 pub mod compile;
 pub mod diagnose;
+pub mod error;
+pub mod files;
+pub mod joint;
 pub mod kan;
 pub mod law;
 pub mod physics;
