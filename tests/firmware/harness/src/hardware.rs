@@ -20,13 +20,14 @@ fn panic(_: &PanicInfo) -> ! {
     frikan_firmware_can_panic()
 }
 
-/// The first `length` bytes of the image window, or `None` where the window is smaller.
-pub(crate) fn flashed_image(length: usize) -> Option<&'static [u8]> {
+/// The flash that `memory.x` keeps for the image.
+#[must_use]
+pub fn flash() -> &'static [u8] {
     let (start, end) = (&raw const _image_start, &raw const _image_end);
-    let window = (end as usize).checked_sub(start as usize)?;
+    let bytes = (end as usize).saturating_sub(start as usize);
     // SAFETY: `memory.x` keeps the window out of every section, it lies in memory that is there from reset on, and
     // nothing ever writes to it.
-    (length <= window).then(|| unsafe { core::slice::from_raw_parts(start, length) })
+    unsafe { core::slice::from_raw_parts(start, bytes) }
 }
 
 /// Bytes below the stack pointer that [`stack_depth`] watches.

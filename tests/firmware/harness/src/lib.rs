@@ -16,6 +16,7 @@ mod protocol;
 mod semihosting;
 mod session;
 
+pub use hardware::flash;
 pub use protocol::Row;
 pub use session::{Evaluator, serve};
 

@@ -1,6 +1,6 @@
 //! One run: the request in, the image decoded, every row evaluated, the answer out.
 
-use crate::hardware::{calibration_call, clock, empty_call, flashed_image, set_floating_point_control, stack_depth};
+use crate::hardware::{calibration_call, clock, empty_call, flash, set_floating_point_control, stack_depth};
 use crate::measure::{Call, ticks, ticks_and_stack};
 use crate::protocol::{ANSWER_WORDS, BAD_REQUEST, COUNT, EVALUATE, MAGIC, MAX_INPUTS, REQUEST_WORDS, Row};
 use crate::semihosting::{File, Mode, exit};
@@ -43,7 +43,7 @@ fn session<E: Evaluator>() -> Option<()> {
     let mut requests = File::open(c"request.bin", Mode::Read)?;
     let mut answers = File::open(c"answer.bin", Mode::Write)?;
     let request = read_request(&mut requests)?;
-    let Some(image) = flashed_image(request.image_bytes) else { return refuse(&mut answers, BAD_REQUEST) };
+    let Some(image) = flash().get(..request.image_bytes) else { return refuse(&mut answers, BAD_REQUEST) };
     if !set_floating_point_control(request.floating_point_control) {
         return refuse(&mut answers, BAD_REQUEST);
     }
@@ -57,16 +57,8 @@ fn session<E: Evaluator>() -> Option<()> {
     let (_, calibration_ticks) = ticks(calibration_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
     let call: Call<E> = core::hint::black_box(evaluate::<E>);
     let (_, evaluate_stack) = stack_depth(|| call(&mut evaluator, &[0.5; MAX_INPUTS]));
-    let header: [u32; ANSWER_WORDS] = [
-        MAGIC,
-        0,
-        empty_ticks,
-        calibration_ticks,
-        decode_ticks,
-        decode_stack,
-        evaluate_stack,
-        size_of::<E>() as u32,
-    ];
+    let header: [u32; ANSWER_WORDS] =
+        [MAGIC, 0, empty_ticks, calibration_ticks, decode_ticks, decode_stack, evaluate_stack, size_of::<E>() as u32];
     write_words(&mut answers, &header)?;
     // State is part of an evaluation: the rows start from a fresh evaluator.
     let mut evaluator = E::decode(image).ok()?;
