@@ -3,6 +3,7 @@
 
 pub mod compile;
 pub mod diagnose;
+pub mod emulator;
 pub mod error;
 pub mod files;
 pub mod joint;
