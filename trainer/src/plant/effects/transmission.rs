@@ -30,10 +30,10 @@ pub(super) fn elasticity(draws: &mut Draws, setting: &Setting) -> Mechanism {
     Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, 0.05, setting)))
 }
 
-/// A gap between motor and link; the amplitude multiplies its width. Weak gaps get stiff flanks, so that at no amplitude
-/// elasticity takes the place of the gap.
+/// A gap between motor and link; the amplitude multiplies its width. The flanks are stiff, so that what is left of a
+/// narrow gap is next to nothing.
 pub(super) fn backlash(draws: &mut Draws, setting: &Setting) -> Mechanism {
-    let stiffness = draws.log_uniform("stiffness_Nm_rad", 8_000.0, 20_000.0) / setting.amplitude.clamp(0.02, 1.0);
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 20_000.0, 50_000.0);
     let half_gap = setting.amplitude * draws.log_uniform("half_gap_rad", 5e-4, 2e-3);
     let gear = Compliant { half_gap, ..compliant(stiffness, 0.3, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))

@@ -93,8 +93,9 @@ fn amplitude_scales_every_torque_and_zero_hides_nothing() {
         let rms = |amplitude| conceal(&joint, entry.name, amplitude, 2).unwrap().truth.effect_rms();
         let (weak, full) = (rms(0.25), rms(0.5));
         if full > 0.0 {
-            // Impacts of a gap grow with less than its width.
-            assert!((0.3..0.8).contains(&(weak / full)), "{}: {weak} to {full}", entry.name);
+            // Impacts grow with less than the width of the gap they cross.
+            let most = if entry.name == "backlash" { 0.9 } else { 0.7 };
+            assert!((0.3..most).contains(&(weak / full)), "{}: {weak} to {full}", entry.name);
         }
     }
 }
