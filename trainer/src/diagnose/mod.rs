@@ -22,8 +22,10 @@ mod random;
 mod refine;
 mod run;
 mod search;
+pub mod sentence;
 mod signals;
 mod strength;
+mod traces;
 
 pub use advise::Advice;
 pub use base::{Base, BaseKind};
@@ -38,3 +40,4 @@ pub use run::{Options, Refusal, diagnose};
 pub use search::{Accepted, Scored, Search, SearchOutcome, Settings};
 pub use signals::Signals;
 pub use strength::{Strength, strength};
+pub use traces::Traces;
