@@ -55,7 +55,9 @@ impl Signals {
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
         let even = EvenClock::of(recording)?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
-        let actuator = [Quantity::Torque, Quantity::Force, Quantity::Current, Quantity::FrictionTorque].into_iter().find_map(owned);
+        let actuator = [Quantity::Torque, Quantity::Force, Quantity::Current, Quantity::FrictionTorque]
+            .into_iter()
+            .find_map(owned);
         let torque = match actuator {
             Some(torque) => torque,
             None => {
@@ -71,8 +73,8 @@ impl Signals {
             }
         };
         let rotary = recording.axis == Axis::Rotary;
-        let rigid_body =
-            owned(Quantity::RigidBodyTorque).or_else(|| given_rigid_body(joint, &position, &even.segments, even.period_s));
+        let rigid_body = owned(Quantity::RigidBodyTorque)
+            .or_else(|| given_rigid_body(joint, &position, &even.segments, even.period_s));
         Ok(Self {
             period: even.period_s,
             time: even.time.clone(),

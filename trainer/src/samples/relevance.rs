@@ -9,7 +9,7 @@ use super::regression::least_squares;
 use crate::error::Result;
 
 /// An input besides velocity is picked when it explains at least this share of the variance of friction more.
-pub const LEAST_ADDED_SHARE: f64 = 0.02;
+pub const LEAST_ADDED_SHARE: f64 = 0.05;
 /// Quantile bins of an input, for each direction of motion.
 const BINS: usize = 12;
 /// Folds of blocks that are held out in turn.
