@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::bending::BendingLaw;
 use super::filter::{GaussianFilter, Order, sigma_for_acceleration_noise};
+use super::grid::Grid;
 use super::prepare::prepare;
 use super::regression::{dot, norm};
 use super::{Samples, rigid_body};
@@ -15,7 +16,7 @@ use crate::recording::{Quantity, Recording};
 /// Share of the torque residual that the noise of the acceleration may reach after the filter.
 const ACCELERATION_NOISE_SHARE: f64 = 0.1;
 /// Share of the root mean square velocity that the noise of the velocity may reach after the filter.
-const VELOCITY_NOISE_SHARE: f64 = 0.002;
+const VELOCITY_NOISE_SHARE: f64 = 0.01;
 /// The filter may not be wider than this share of the time scale of the motion, rms(q) / rms(v).
 const MOTION_SHARE: f64 = 0.15;
 /// Gain left at half the output rate, as the product of frequency and sigma: 10 dB below the passband.
@@ -156,7 +157,11 @@ impl Motion {
             let velocity = motion.values.clone();
             return Ok(Self { period_s, noise: 0.0, velocity, rms_velocity, longest_sigma_s: 0.01 * span, source });
         };
-        let noise = position_noise(position, recording.health.position_resolution);
+        // On the rows themselves an uneven clock would look like noise.
+        let grid = Grid::of(recording, time);
+        let longest = grid.segments.iter().max_by_key(|segment| segment.points);
+        let even = longest.map_or_else(Vec::new, |segment| grid.values(segment, time, position));
+        let noise = position_noise(&even, recording.health.position_resolution);
         let mean = position.iter().sum::<f64>() / position.len() as f64;
         let centred: Vec<f64> = position.iter().map(|q| q - mean).collect();
         let rms_position = norm(&centred) / (centred.len() as f64).sqrt();
