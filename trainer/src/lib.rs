@@ -1,8 +1,10 @@
 //! Frikan trainer: a recording walks through these rooms in one direction,
 //! `recording -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
 
+pub mod commands;
 pub mod compile;
 pub mod diagnose;
+pub mod emulator;
 pub mod error;
 pub mod files;
 pub mod joint;

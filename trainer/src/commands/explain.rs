@@ -1,16 +1,16 @@
 //! `trainer explain CODE`: an error code or the name of an effect, at length.
 
 use clap::Args;
-use frikan_trainer::error::{Class, Code, Error, Result, codes};
+use crate::error::{Class, Code, Error, Result, codes};
 
 /// One section an effect: a line `# name`, a title, labelled paragraphs.
 const EFFECTS: &str = include_str!("explain/effects.txt");
 
 /// Explains an error code or an effect name at length; without argument lists both.
 #[derive(Debug, Args)]
-pub(crate) struct Explain {
+pub struct Explain {
     /// An error code such as FRK-D005, or an effect such as stribeck
-    topic: Option<String>,
+    pub topic: Option<String>,
 }
 
 impl Explain {
@@ -18,7 +18,7 @@ impl Explain {
     ///
     /// # Errors
     /// `FRK-U003` for a topic that is neither.
-    pub(crate) fn run(&self) -> Result<String> {
+    pub fn run(&self) -> Result<String> {
         match self.topic.as_deref() {
             None => Ok(listing()),
             Some(topic) => explain(topic),
@@ -91,9 +91,8 @@ fn effects() -> impl Iterator<Item = Effect> {
 
 #[cfg(test)]
 mod tests {
-    use frikan_trainer::physics::EffectId;
-
     use super::*;
+    use crate::physics::EffectId;
 
     #[test]
     fn every_effect_of_the_catalogue_is_explained_under_its_code() {

@@ -110,7 +110,9 @@ fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
     let sign = state.map(|i| (prepared.narrow_velocity[i] / state.sign_velocity).tanh() - state.sign[i]);
     let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
-    vec![prepared.filtered(&sign), prepared.filtered(&acceleration)]
+    // The smoothed sign stands for a jump: its width is a nuisance too.
+    let width = state.map(|i| (state.velocity[i] / (3.0 * state.sign_velocity)).tanh() - state.sign[i]);
+    vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }
 
 fn predict(

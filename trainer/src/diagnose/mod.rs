@@ -23,6 +23,7 @@ mod refine;
 mod run;
 mod search;
 mod signals;
+mod strength;
 
 pub use advise::Advice;
 pub use base::{Base, BaseKind};
@@ -36,3 +37,4 @@ pub use prove::Proof;
 pub use run::{Options, Refusal, diagnose};
 pub use search::{Accepted, Scored, Search, SearchOutcome, Settings};
 pub use signals::Signals;
+pub use strength::{Strength, strength};

@@ -137,7 +137,7 @@ impl Prepared {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),
         };
-        let (rows, blocks) = rows_and_blocks(&state, &filter, lock);
+        let (rows, blocks) = rows_and_blocks(&state, &standstill(signals), &filter, lock);
         Self {
             state,
             filter,
@@ -221,7 +221,7 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
     coefficients[2].abs() * grain < ENCODER_SHARE * deviation
 }
 
-fn rows_and_blocks(state: &JointState, filter: &ZeroPhase, lock: Lock) -> (Vec<usize>, Vec<Block>) {
+fn rows_and_blocks(state: &JointState, stuck: &[bool], filter: &ZeroPhase, lock: Lock) -> (Vec<usize>, Vec<Block>) {
     let step = ((1.0 / (ROWS_PER_CUT_OFF * filter.cut_off_hz * state.period)).round() as usize).max(1);
     let reach = filter.reach();
     let pieces = pieces(state, reach, step);
@@ -234,8 +234,8 @@ fn rows_and_blocks(state: &JointState, filter: &ZeroPhase, lock: Lock) -> (Vec<u
         let mut begin = rows.len();
         let span = piece.len();
         for i in piece.step_by(step) {
-            // A row that sees rest sees a torque that no law of motion can predict.
-            let near_rest = (i - reach / 2..=i + reach / 2).any(|j| state.memory.at_rest[j]);
+            // A row that sees standstill sees a torque that no law of motion can predict.
+            let near_rest = (i - reach / 2..=i + reach / 2).any(|j| stuck[j] || state.memory.at_rest[j]);
             if near_rest {
                 if rows.len() > begin {
                     runs.push(begin..rows.len());
@@ -257,6 +257,20 @@ fn rows_and_blocks(state: &JointState, filter: &ZeroPhase, lock: Lock) -> (Vec<u
         blocks.push(Block { runs, locked });
     }
     (rows, blocks)
+}
+
+/// Samples at which the encoder shows no motion over four milliseconds: the joint sticks, if only for a moment.
+fn standstill(signals: &Signals) -> Vec<bool> {
+    const WINDOW_S: f64 = 0.004;
+    let mut stuck = vec![false; signals.position.len()];
+    let reach = ((0.5 * WINDOW_S / signals.period).round() as usize).max(1);
+    for segment in &signals.segments {
+        for i in segment.start + reach..segment.end.saturating_sub(reach) {
+            let moved = (signals.position[i + reach] - signals.position[i - reach]).abs();
+            stuck[i] = moved <= 1.5 * signals.position_resolution;
+        }
+    }
+    stuck
 }
 
 /// Sample ranges of the blocks: the segments where there are enough of them, else segments cut into pieces. What the

@@ -55,9 +55,11 @@ impl Signals {
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
         let even = EvenClock::of(recording)?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
-        let actuator = [Quantity::Torque, Quantity::Force, Quantity::Current, Quantity::FrictionTorque]
-            .into_iter()
-            .find_map(owned);
+        let actuator = recording
+            .actuator()
+            .or_else(|| recording.separated_friction())
+            .and_then(|channel| even.named(&channel.name))
+            .map(<[f64]>::to_vec);
         let torque = match actuator {
             Some(torque) => torque,
             None => {
@@ -73,12 +75,11 @@ impl Signals {
             }
         };
         let rotary = recording.axis == Axis::Rotary;
-        let rigid_body = owned(Quantity::RigidBodyTorque)
-            .or_else(|| given_rigid_body(joint, &position, &even.segments, even.period_s));
-        Ok(Self {
+        let body = &joint.rigid_body;
+        let mut signals = Self {
             period: even.period_s,
             time: even.time.clone(),
-            rigid_body,
+            rigid_body: owned(Quantity::RigidBodyTorque),
             load: owned(Quantity::LoadTorque),
             temperature: owned(Quantity::Temperature),
             link_position: owned(Quantity::LinkPosition),
@@ -90,18 +91,23 @@ impl Signals {
             torque,
             position,
             ..Self::default()
-        })
+        };
+        if signals.rigid_body.is_none() && (body.inertia_kgm2.is_some() || body.gravity_torque_nm.is_some()) {
+            let phase = body.gravity_phase_rad.unwrap_or(0.0);
+            // Beside a given inertia, a recorded load torque stands for the gravity that is not given.
+            let gravity = match body.gravity_torque_nm {
+                Some(gravity) => Some(signals.position.iter().map(|q| gravity * (q + phase).sin()).collect()),
+                None => signals.load.clone(),
+            };
+            signals.give_rigid_body(body.inertia_kgm2.unwrap_or(0.0), gravity.as_deref());
+        }
+        Ok(signals)
     }
-}
 
-/// Torque of the inertia and gravity given for a joint; `None` when neither is.
-fn given_rigid_body(joint: &Joint, position: &[f64], segments: &[Range<usize>], period: f64) -> Option<Vec<f64>> {
-    let body = &joint.rigid_body;
-    if body.inertia_kgm2.is_none() && body.gravity_torque_nm.is_none() {
-        return None;
+    /// Gives the nominal rigid body as an inertia (kg m2, or kg on a linear axis) and a gravity torque a sample.
+    pub fn give_rigid_body(&mut self, inertia: f64, gravity: Option<&[f64]>) {
+        let acceleration = second_derivative(&self.position, &self.segments, self.period);
+        self.rigid_body =
+            Some(acceleration.iter().enumerate().map(|(i, a)| inertia * a + gravity.map_or(0.0, |g| g[i])).collect());
     }
-    let acceleration = second_derivative(position, segments, period);
-    let (inertia, gravity) = (body.inertia_kgm2.unwrap_or(0.0), body.gravity_torque_nm.unwrap_or(0.0));
-    let phase = body.gravity_phase_rad.unwrap_or(0.0);
-    Some(position.iter().zip(&acceleration).map(|(q, a)| inertia * a + gravity * (q + phase).sin()).collect())
 }

@@ -147,6 +147,26 @@ registry! {
         "The path names a folder.",
         "A pattern that matched a folder, or a forgotten file name.",
         "Name the file inside the folder.";
+    EMULATOR_MISSING = "FRK-I004" InputOutput "emulator not installed",
+        "The program that emulates the target cannot be started.",
+        "QEMU for this processor family is not installed.",
+        "Install the package that the message names, or run tests/setup.sh of a checkout.";
+    CROSS_TARGET_MISSING = "FRK-I005" InputOutput "cross target not installed",
+        "The Rust compiler cannot build for the target's processor.",
+        "The target's library was never added to the toolchain.",
+        "`rustup target add` with the triple that the message names, or run tests/setup.sh of a checkout.";
+    FIRMWARE_NOT_FOUND = "FRK-I006" InputOutput "firmware not found",
+        "The firmware that runs an image on an emulated target is built from a checkout, and there is none around.",
+        "The trainer was started outside a checkout.",
+        "Change into a checkout, or name its `tests/firmware` in the environment variable FRIKAN_FIRMWARE.";
+    FIRMWARE_BUILD = "FRK-I007" InputOutput "firmware cannot be built",
+        "The compiler or the linker refused the firmware. A panic that has become reachable is refused by the linker.",
+        "A change in the runtime, or a toolchain that is older than the workspace asks for.",
+        "The message holds the compiler's own words.";
+    EMULATION_FAILED = "FRK-I008" InputOutput "emulation failed",
+        "The emulated drive did not answer, faulted, or refused the image.",
+        "An image of another format version, or one larger than the target's room for cells.",
+        "`trainer verify` without `--target` tells whether the image itself is sound.";
     USAGE = "FRK-U001" Usage "usage",
         "An argument is missing, unknown or contradicts another.",
         "A misspelt option, or options that exclude each other.",
@@ -159,6 +179,10 @@ registry! {
         "`trainer explain` was given neither a code nor the name of an effect.",
         "A misspelt name.",
         "`trainer explain` without argument lists both.";
+    UNKNOWN_TARGET = "FRK-U004" Usage "unknown target",
+        "`--target` names a processor for which there is no firmware.",
+        "A misspelt name.",
+        "Use one of the names that the message lists.";
 }
 
 #[cfg(test)]

@@ -4,6 +4,11 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 
 pub(super) struct Stribeck;
 
+/// Narrower than this it could not be told from the width of the smoothed sign.
+fn narrowest(state: &JointState) -> f64 {
+    (4.0 * state.sign_velocity).max(0.01 * state.top_speed())
+}
+
 impl Hypothesis for Stribeck {
     fn id(&self) -> EffectId {
         EffectId::Stribeck
@@ -15,7 +20,7 @@ impl Hypothesis for Stribeck {
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let top = state.top_speed();
-        let low = (2.0 * state.sign_velocity).max(0.01 * top);
+        let low = narrowest(state);
         geometric_grid(low, (0.5 * top).max(low), 7).into_iter().flat_map(|v| [vec![v, 1.0], vec![v, 2.0]]).collect()
     }
 
@@ -41,6 +46,6 @@ impl Hypothesis for Stribeck {
     }
 
     fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
-        Some(if index == 0 { (state.sign_velocity, 2.0 * state.top_speed()) } else { (0.5, 2.5) })
+        Some(if index == 0 { (narrowest(state), 2.0 * state.top_speed()) } else { (0.5, 2.5) })
     }
 }

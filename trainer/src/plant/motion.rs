@@ -1,5 +1,4 @@
 //! Reference motions: position, velocity and acceleration at the sample instants, from rest at zero to rest at zero.
-#![allow(non_snake_case, reason = "keys carry their unit, spelled as in the columns of a recording")]
 
 use super::random::Draws;
 use serde::{Deserialize, Serialize};
@@ -14,9 +13,11 @@ pub enum Motion {
         /// Largest excursion, rad.
         amplitude_rad: f64,
         /// Lowest frequency, Hz.
-        lowest_Hz: f64,
+        #[serde(rename = "lowest_Hz")]
+        lowest_hz: f64,
         /// Highest frequency, Hz.
-        highest_Hz: f64,
+        #[serde(rename = "highest_Hz")]
+        highest_hz: f64,
         /// Largest speed, rad/s; the excursion shrinks where it would be exceeded.
         speed_rad_s: f64,
         /// Number of sinusoids (>= 1).
@@ -54,16 +55,19 @@ pub enum Motion {
         /// Largest amplitude, rad.
         largest_rad: f64,
         /// Rate of the reversals, Hz.
-        frequency_Hz: f64,
+        #[serde(rename = "frequency_Hz")]
+        frequency_hz: f64,
     },
     /// Logarithmic sine sweep with constant speed amplitude.
     Sweep {
         /// Amplitude at the lowest frequency, rad.
         amplitude_rad: f64,
         /// First frequency, Hz.
-        lowest_Hz: f64,
+        #[serde(rename = "lowest_Hz")]
+        lowest_hz: f64,
         /// Last frequency, Hz.
-        highest_Hz: f64,
+        #[serde(rename = "highest_Hz")]
+        highest_hz: f64,
     },
     /// Constant-velocity plateaus, each forth and back over the same positions.
     Plateaus {
@@ -79,7 +83,8 @@ pub enum Motion {
         /// Swing over the mean, [0, 1).
         swing: f64,
         /// Frequency of the swing, Hz.
-        frequency_Hz: f64,
+        #[serde(rename = "frequency_Hz")]
+        frequency_hz: f64,
     },
     /// No motion.
     Rest,
@@ -108,19 +113,19 @@ impl Motion {
     pub(crate) fn reference(&self, duration_s: f64, rate_hz: f64, draws: &mut Draws) -> Reference {
         let samples = (duration_s * rate_hz).round() as usize;
         match self {
-            Self::Multisine { amplitude_rad, lowest_Hz, highest_Hz, speed_rad_s, lines } => {
-                let tones = tones(*lowest_Hz, *highest_Hz, *lines, draws);
+            Self::Multisine { amplitude_rad, lowest_hz, highest_hz, speed_rad_s, lines } => {
+                let tones = tones(*lowest_hz, *highest_hz, *lines, draws);
                 multisine(&tones, *amplitude_rad, *speed_rad_s, duration_s, rate_hz)
             }
-            Self::Sweep { amplitude_rad, lowest_Hz, highest_Hz } => {
-                sweep(*amplitude_rad, *lowest_Hz, *highest_Hz, duration_s, rate_hz)
+            Self::Sweep { amplitude_rad, lowest_hz, highest_hz } => {
+                sweep(*amplitude_rad, *lowest_hz, *highest_hz, duration_s, rate_hz)
             }
-            Self::SmallReversals { smallest_rad, largest_rad, frequency_Hz } => {
-                let moves = small_reversals(*smallest_rad, *largest_rad, *frequency_Hz, duration_s, draws);
+            Self::SmallReversals { smallest_rad, largest_rad, frequency_hz } => {
+                let moves = small_reversals(*smallest_rad, *largest_rad, *frequency_hz, duration_s, draws);
                 follow(&moves, samples, rate_hz)
             }
-            Self::UnidirectionalSwing { speed_rad_s, swing, frequency_Hz } => {
-                unidirectional_swing(*speed_rad_s, *swing, *frequency_Hz, duration_s, rate_hz)
+            Self::UnidirectionalSwing { speed_rad_s, swing, frequency_hz } => {
+                unidirectional_swing(*speed_rad_s, *swing, *frequency_hz, duration_s, rate_hz)
             }
             Self::Triangles { amplitude_rad, speed_rad_s } => {
                 let moves = triangles(*amplitude_rad, *speed_rad_s, duration_s);
@@ -155,6 +160,8 @@ type Jet = (f64, f64, f64);
 
 /// A smooth window, three times differentiable at its ends: rest, fade in, one, fade out, rest.
 fn window(time: f64, duration: f64) -> Jet {
+    // Trajectories of less than about a second have less of both.
+    let (fade, still) = (FADE_S.min(0.3 * duration), REST_S.min(0.1 * duration));
     let rise = |x: f64| -> Jet {
         if x <= 0.0 {
             (0.0, 0.0, 0.0)
@@ -165,13 +172,13 @@ fn window(time: f64, duration: f64) -> Jet {
             let value = x2 * x2 * (35.0 - 84.0 * x + 70.0 * x2 - 20.0 * x2 * x);
             let slope = 140.0 * x2 * x * (1.0 - x).powi(3);
             let curvature = 420.0 * x2 * (1.0 - x).powi(2) * (1.0 - 2.0 * x);
-            (value, slope / FADE_S, curvature / (FADE_S * FADE_S))
+            (value, slope / fade, curvature / (fade * fade))
         }
     };
     if time < duration / 2.0 {
-        rise((time - REST_S) / FADE_S)
+        rise((time - still) / fade)
     } else {
-        let (value, slope, curvature) = rise((duration - REST_S - time) / FADE_S);
+        let (value, slope, curvature) = rise((duration - still - time) / fade);
         (value, -slope, curvature)
     }
 }

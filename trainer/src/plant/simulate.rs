@@ -62,10 +62,10 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
     let positive = [
         ("inertia_kgm2", joint.inertia_kgm2),
         ("friction.stribeck_velocity_rad_s", joint.friction.stribeck_velocity_rad_s),
-        ("control.bandwidth_Hz", joint.control.bandwidth_Hz),
+        ("control.bandwidth_Hz", joint.control.bandwidth_hz),
         ("control.damping_ratio", joint.control.damping_ratio),
-        ("control.velocity_corner_Hz", joint.control.velocity_corner_Hz),
-        ("drive.rate_Hz", joint.drive.rate_Hz),
+        ("control.velocity_corner_Hz", joint.control.velocity_corner_hz),
+        ("drive.rate_Hz", joint.drive.rate_hz),
         ("drive.steps_per_sample", joint.drive.steps_per_sample as f64),
         ("drive.counts_per_turn", joint.drive.counts_per_turn),
         ("drive.gear_ratio", joint.drive.gear_ratio),
@@ -79,12 +79,12 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
         }
     }
     let not_negative = [
-        ("friction.coulomb_torque_Nm", joint.friction.coulomb_torque_Nm),
-        ("friction.viscous_Nm_s_rad", joint.friction.viscous_Nm_s_rad),
-        ("drive.torque_resolution_Nm", joint.drive.torque_resolution_Nm),
-        ("drive.torque_limit_Nm", joint.drive.torque_limit_Nm),
-        ("noise.white_torque_Nm", joint.noise.white_torque_Nm),
-        ("noise.coloured_torque_Nm", joint.noise.coloured_torque_Nm),
+        ("friction.coulomb_torque_Nm", joint.friction.coulomb_torque_nm),
+        ("friction.viscous_Nm_s_rad", joint.friction.viscous_nm_s_rad),
+        ("drive.torque_resolution_Nm", joint.drive.torque_resolution_nm),
+        ("drive.torque_limit_Nm", joint.drive.torque_limit_nm),
+        ("noise.white_torque_Nm", joint.noise.white_torque_nm),
+        ("noise.coloured_torque_Nm", joint.noise.coloured_torque_nm),
     ];
     for (key, value) in not_negative {
         if !(value.is_finite() && value >= 0.0) {
@@ -107,10 +107,10 @@ fn references(joint: &Joint, seed: u64) -> Vec<(Reference, f64)> {
         .map(|(index, trajectory)| {
             let mut draws = Draws::new(seed, Purpose::Motion, 1000 * (index as u64 + 1));
             let duration = trajectory.duration_s.unwrap_or(campaign.trajectory_s);
-            let reference = trajectory.motion.reference(duration, joint.drive.rate_Hz, &mut draws);
-            let payloads = &joint.gravity_torque_Nm;
+            let reference = trajectory.motion.reference(duration, joint.drive.rate_hz, &mut draws);
+            let payloads = &joint.gravity_torque_nm;
             let in_turn = if payloads.is_empty() { 0.0 } else { payloads[index % payloads.len()] };
-            (reference, trajectory.gravity_torque_Nm.unwrap_or(in_turn))
+            (reference, trajectory.gravity_torque_nm.unwrap_or(in_turn))
         })
         .collect()
 }
@@ -201,7 +201,7 @@ fn run(
     hidden: &mut Concealed,
     seed: u64,
 ) -> Result<History, PlantError> {
-    let sample_s = 1.0 / joint.drive.rate_Hz;
+    let sample_s = 1.0 / joint.drive.rate_hz;
     let mut bench = Bench {
         joint,
         motor: Motion1D::default(),
@@ -223,10 +223,10 @@ fn run(
             gravity_torque: *gravity_torque,
             gravity_phase: joint.gravity_phase_rad,
         };
-        bench.rest(trajectory.pause_before_s, row as f64 / joint.drive.rate_Hz + paused, &load, hidden);
+        bench.rest(trajectory.pause_before_s, row as f64 / joint.drive.rate_hz + paused, &load, hidden);
         paused += trajectory.pause_before_s;
         for k in 0..reference.position.len() {
-            let time = row as f64 / joint.drive.rate_Hz + paused;
+            let time = row as f64 / joint.drive.rate_hz + paused;
             let reading = round_to(bench.motor.position, resolution);
             let target = Target {
                 position: reference.position[k],
@@ -282,7 +282,7 @@ impl Bench<'_> {
     /// One sample under held torque; returns the mean torque of the hidden effects at the joint, N m.
     fn sample(&mut self, torque: f64, time: f64, load: &Load, hidden: &mut Concealed) -> f64 {
         let steps = self.joint.drive.steps_per_sample;
-        let step_s = 1.0 / (self.joint.drive.rate_Hz * steps as f64);
+        let step_s = 1.0 / (self.joint.drive.rate_hz * steps as f64);
         let true_load = Load { motor_inertia: load.motor_inertia + hidden.extra_inertia, ..*load };
         let memory = (-step_s / ACCELERATION_MEMORY_S).exp();
         let friction = &self.joint.friction;
@@ -295,7 +295,7 @@ impl Bench<'_> {
                 forward: (base + effect.dry.forward).max(0.0),
                 backward: (base + effect.dry.backward).max(0.0),
             };
-            let push = Push { torque: torque - effect.smooth, dry, viscous: friction.viscous_Nm_s_rad };
+            let push = Push { torque: torque - effect.smooth, dry, viscous: friction.viscous_nm_s_rad };
             let before = self.motor;
             let stepped = hidden.transmission.step(&mut self.motor, &push, &true_load, step_s);
             let acceleration = (self.motor.velocity - before.velocity) / step_s;
@@ -309,7 +309,7 @@ impl Bench<'_> {
             };
             sum += effect.smooth + dry_effect + stepped.excess + hidden.extra_inertia * acceleration;
             let moved = self.motor.position - before.position;
-            let drag = friction.viscous_Nm_s_rad * self.motor.velocity;
+            let drag = friction.viscous_nm_s_rad * self.motor.velocity;
             self.power = ((stepped.dry_friction + drag) * moved / step_s).abs();
             self.housing.advance(self.power, step_s);
         }

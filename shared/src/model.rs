@@ -1,0 +1,106 @@
+//! A friction model: inputs with their trained ranges, the law, the correction terms, and the pool of coefficients.
+
+use serde::{Deserialize, Serialize};
+
+use crate::effect::{Effect, MAX_EFFECTS};
+use crate::expression::Program;
+use crate::integer_table::IntegerTable;
+use crate::network::Network;
+use crate::table::{Cell, Table};
+use crate::units::{Quantity, Unit};
+
+/// Most inputs of a model; a power of two, so that an input index is a mask.
+pub const MAX_INPUTS: usize = 4;
+
+/// Longest joint name, in bytes.
+pub const JOINT_NAME_BYTES: usize = 32;
+
+/// Longest trainer version, in bytes.
+pub const VERSION_BYTES: usize = 24;
+
+/// An input channel. Outside `[low, high]` the model holds the value that it has at the nearer end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Its unit.
+    pub unit: Unit,
+    /// Smallest trained value, finite.
+    pub low: f32,
+    /// Largest trained value, finite, above `low`.
+    pub high: f32,
+}
+
+/// The rigid-body part of the actuator torque, as it stood when the model was made:
+/// `inertia a + gravity_sin sin q + gravity_cos cos q + offset + given_scale * given`, where `given` is a rigid-body torque
+/// that the recording or the controller brings along. In the unit of the model's output.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigidBody {
+    /// Inertia, kg m^2 (mass in kg of a linear axis; in output units per acceleration otherwise).
+    pub inertia: f32,
+    /// Gravity torque with the sine of the position.
+    pub gravity_sin: f32,
+    /// Gravity torque with the cosine of the position.
+    pub gravity_cos: f32,
+    /// Constant torque.
+    pub offset: f32,
+    /// Factor on a given rigid-body torque.
+    pub given_scale: f32,
+}
+
+impl Default for RigidBody {
+    /// Nothing but a given rigid-body torque, as it is.
+    fn default() -> Self {
+        Self { inertia: 0.0, gravity_sin: 0.0, gravity_cos: 0.0, offset: 0.0, given_scale: 1.0 }
+    }
+}
+
+/// The static friction law.
+///
+/// The variants differ in size on purpose: a drive has no heap to box the large ones in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(clippy::large_enum_variant)]
+pub enum Law {
+    /// A function of the only input.
+    Table(Table),
+    /// Several inputs through layers of tables.
+    Network(Network),
+    /// A formula.
+    Expression(Program),
+    /// A function of the only input, in integers, for targets without a floating-point unit.
+    IntegerTable(IntegerTable),
+}
+
+/// Where a model comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the joint.
+    pub joint: heapless::String<JOINT_NAME_BYTES>,
+    /// Version of the trainer.
+    pub trainer_version: heapless::String<VERSION_BYTES>,
+    /// Hash of the recordings, as the trainer defines it.
+    pub recordings_hash: u64,
+    /// Seed of the training.
+    pub seed: u64,
+}
+
+/// A friction model with room for `CELLS` cells.
+///
+/// [`crate::validate`] says what a model has to satisfy; every decoded model does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Model<const CELLS: usize> {
+    /// Input channels in the order in which the law counts them.
+    pub inputs: heapless::Vec<Input, MAX_INPUTS>,
+    /// Unit of the output.
+    pub output_unit: Unit,
+    /// Largest magnitude that the model ever puts out, positive and finite, in the unit of the output.
+    pub output_limit: f32,
+    /// Rigid-body parameters in force.
+    pub rigid_body: RigidBody,
+    /// The static law.
+    pub law: Law,
+    /// Correction terms, added in their order.
+    pub effects: heapless::Vec<Effect, MAX_EFFECTS>,
+    /// Coefficients into which all tables index.
+    pub cells: heapless::Vec<Cell, CELLS>,
+}

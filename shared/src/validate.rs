@@ -1,0 +1,233 @@
+//! What a model has to satisfy before it may be evaluated. A model that passes cannot fail: no index leaves its pool, no
+//! program runs out of operands, no coefficient is infinite, NaN or subnormal (so that flush-to-zero changes nothing).
+
+use crate::effect::{Effect, Kind};
+use crate::expression::ProgramFault;
+use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_INPUT, MAX_SHIFT};
+use crate::model::{Input, Law, Model, RigidBody};
+use crate::network::{MAX_WIDTH, Network, Outer};
+use crate::table::{Cell, Table};
+use crate::units::Quantity;
+
+/// Why a model is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum InvalidModel {
+    /// The model has no input.
+    NoInput,
+    /// A standard quantity occurs twice among the inputs.
+    DuplicateInput,
+    /// The trained range of an input is empty, inverted, not finite, or beyond 1e9.
+    InputRange,
+    /// The output limit is not a positive finite number.
+    OutputLimit,
+    /// A rigid-body parameter is not finite.
+    RigidBody,
+    /// The law needs another number of inputs.
+    LawInputs,
+    /// The layout of a table is out of its documented range.
+    TableShape,
+    /// A table reaches beyond the pool of coefficients.
+    CellOutOfPool,
+    /// A coefficient of a cell is infinite, NaN, subnormal, or too large.
+    Coefficient,
+    /// Layers and sources of a network do not fit each other.
+    NetworkShape,
+    /// The program of an expression cannot be evaluated.
+    Program(ProgramFault),
+    /// A coefficient of an effect is not finite, or a scale of it is not above zero.
+    EffectCoefficient,
+    /// An effect needs an input that the model does not have.
+    EffectInput,
+    /// Two effects of a kind that a model may have once only.
+    DuplicateEffect,
+}
+
+/// Largest magnitude of a trained range and of a coefficient: keeps every sum of a table and of a state finite.
+const LARGEST: f32 = 1.0e9;
+
+fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
+    if holds { Ok(()) } else { Err(otherwise) }
+}
+
+fn bounded(x: f32) -> bool {
+    x.abs() <= LARGEST
+}
+
+/// A scale by which something is divided.
+fn scale(x: f32) -> bool {
+    (1.0 / LARGEST..=LARGEST).contains(&x)
+}
+
+impl<const CELLS: usize> Model<CELLS> {
+    /// Checks everything that evaluation relies on.
+    ///
+    /// # Errors
+    /// The first fault found, in the order of the model's fields.
+    pub fn validate(&self) -> Result<(), InvalidModel> {
+        check_inputs(&self.inputs)?;
+        ensure(scale(self.output_limit), InvalidModel::OutputLimit)?;
+        let RigidBody { inertia, gravity_sin, gravity_cos, offset, given_scale } = self.rigid_body;
+        ensure(
+            [inertia, gravity_sin, gravity_cos, offset, given_scale].into_iter().all(bounded),
+            InvalidModel::RigidBody,
+        )?;
+        match &self.law {
+            Law::Table(table) => {
+                ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
+                check_table(table, table.first_cell() as usize, 1, &self.cells)?;
+            }
+            Law::Network(network) => check_network(network, self.inputs.len(), &self.cells)?,
+            Law::Expression(program) => program.check(self.inputs.len()).map_err(InvalidModel::Program)?,
+            Law::IntegerTable(table) => {
+                ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
+                check_integer_table(table, &self.cells)?;
+            }
+        }
+        self.check_effects()
+    }
+
+    fn check_effects(&self) -> Result<(), InvalidModel> {
+        let has = |quantity: Quantity| self.inputs.iter().any(|input| input.quantity == quantity);
+        for effect in &self.effects {
+            ensure(!needs_velocity(effect) || has(Quantity::Velocity), InvalidModel::EffectInput)?;
+            let (holds, channel) = check_coefficients(effect);
+            ensure(holds, InvalidModel::EffectCoefficient)?;
+            if let Some(channel) = channel {
+                ensure(has(channel), InvalidModel::EffectInput)?;
+            }
+            if let Effect::PositionTable { table, .. } = effect {
+                check_table(table, table.first_cell() as usize, 1, &self.cells)?;
+            }
+        }
+        let lags = self.effects.iter().filter(|effect| matches!(effect, Effect::FrictionalLag { .. })).count();
+        ensure(lags <= 1, InvalidModel::DuplicateEffect)
+    }
+}
+
+fn check_inputs(inputs: &[Input]) -> Result<(), InvalidModel> {
+    ensure(!inputs.is_empty(), InvalidModel::NoInput)?;
+    for (index, input) in inputs.iter().enumerate() {
+        let ordered = bounded(input.low) && bounded(input.high) && input.low < input.high;
+        ensure(ordered, InvalidModel::InputRange)?;
+        let repeated = inputs.iter().skip(index + 1).any(|other| other.quantity == input.quantity);
+        ensure(!repeated, InvalidModel::DuplicateInput)?;
+    }
+    Ok(())
+}
+
+fn check_table(table: &Table, first: usize, columns: usize, cells: &[Cell]) -> Result<(), InvalidModel> {
+    let shape_holds = match table {
+        Table::Geometric(layout) => {
+            let shape = layout.shape();
+            (-60..=60).contains(&shape.offset_exponent)
+                && shape.octave_cells_log2 <= 8
+                && scale(shape.reach)
+                && scale(shape.reach_negative)
+        }
+        Table::Uniform(layout) => {
+            let shape = layout.shape();
+            shape.cells >= 1 && bounded(shape.low) && bounded(shape.high) && scale(shape.high - shape.low)
+        }
+    };
+    ensure(shape_holds, InvalidModel::TableShape)?;
+    let end = first.saturating_add(table.cells() as usize * columns);
+    let cells = cells.get(first..end).ok_or(InvalidModel::CellOutOfPool)?;
+    let usable = |coefficient: f32| coefficient == 0.0 || (coefficient.is_normal() && bounded(coefficient));
+    ensure(cells.iter().all(|cell| cell.floats().into_iter().all(usable)), InvalidModel::Coefficient)
+}
+
+fn check_network(network: &Network, inputs: usize, cells: &[Cell]) -> Result<(), InvalidModel> {
+    let mut sources = network.sources.iter();
+    let mut width = inputs;
+    ensure(!network.layers.is_empty(), InvalidModel::NetworkShape)?;
+    for layer in &network.layers {
+        ensure((1..=MAX_WIDTH).contains(&layer.targets()), InvalidModel::NetworkShape)?;
+        for _ in 0..width {
+            let source = sources.next().ok_or(InvalidModel::NetworkShape)?;
+            ensure(source.table.first_cell() == 0, InvalidModel::NetworkShape)?;
+            check_table(&source.table, usize::from(source.first_cell), layer.targets(), cells)?;
+        }
+        width = layer.outputs();
+    }
+    ensure(width == 1 && sources.next().is_none(), InvalidModel::NetworkShape)?;
+    match network.outer {
+        Outer::Linear => Ok(()),
+        Outer::Tanh { scale, offset } => ensure(bounded(scale) && bounded(offset), InvalidModel::NetworkShape),
+    }
+}
+
+fn check_integer_table(table: &IntegerTable, cells: &[Cell]) -> Result<(), InvalidModel> {
+    let shape = table.shape();
+    let shape_holds = shape.inner_shift <= shape.outer_shift
+        && shape.outer_shift <= MAX_SHIFT
+        && shape.outer_shift <= shape.split_shift
+        && shape.split_shift <= 23
+        && shape.reach >= 1 << shape.split_shift
+        && shape.reach <= MAX_INPUT
+        && scale(shape.input_step)
+        && scale(shape.output_step);
+    ensure(shape_holds, InvalidModel::TableShape)?;
+    let first = usize::from(shape.first_cell);
+    let cells = cells.get(first..first.saturating_add(table.cells() as usize)).ok_or(InvalidModel::CellOutOfPool)?;
+    let usable = |cell: &Cell| {
+        let [c0, c1, c2, c3] = cell.integers().map(|coefficient| i64::from(coefficient).abs());
+        let limit = i64::from(MAX_COEFFICIENT);
+        // Each partial sum of the evaluation is at most the sum of the magnitudes behind it.
+        c0 <= limit * limit / 2 && c1 + c2 + c3 + 3 <= 2 * limit
+    };
+    ensure(cells.iter().all(usable), InvalidModel::Coefficient)
+}
+
+/// Whether the effect reads the velocity.
+fn needs_velocity(effect: &Effect) -> bool {
+    match effect {
+        Effect::Ripple { kind, .. } | Effect::PositionTable { kind, .. } => *kind == Kind::Friction,
+        Effect::Play { .. } | Effect::Spring { .. } => false,
+        _ => true,
+    }
+}
+
+/// Whether the coefficients of an effect are usable, and the channel that it reads beside the velocity.
+fn check_coefficients(effect: &Effect) -> (bool, Option<Quantity>) {
+    let all = |coefficients: &[f32]| coefficients.iter().copied().all(bounded);
+    let scales = |coefficients: &[f32]| coefficients.iter().copied().all(scale);
+    match *effect {
+        Effect::Coulomb { coulomb, viscous, smoothing_velocity }
+        | Effect::Asymmetry { coulomb, viscous, smoothing_velocity } => {
+            (all(&[coulomb, viscous]) && scale(smoothing_velocity), None)
+        }
+        Effect::Stribeck { amplitude, velocity, exponent, smoothing_velocity } => {
+            (bounded(amplitude) && scales(&[velocity, exponent, smoothing_velocity]), None)
+        }
+        Effect::PowerViscous { coefficient, exponent, smoothing_velocity } => {
+            (bounded(coefficient) && scales(&[exponent, smoothing_velocity]), None)
+        }
+        Effect::Temperature { reference, coulomb, viscous, smoothing_velocity } => {
+            (all(&[reference, coulomb, viscous]) && scale(smoothing_velocity), Some(Quantity::Temperature))
+        }
+        Effect::WarmUp { time_constant, coulomb, viscous, power_limit, smoothing_velocity } => {
+            (all(&[coulomb, viscous]) && scales(&[time_constant, power_limit, smoothing_velocity]), None)
+        }
+        Effect::Load { mean, difference, quadratic, stribeck, velocity, smoothing_velocity } => (
+            all(&[mean, difference, quadratic, stribeck]) && scales(&[velocity, smoothing_velocity]),
+            Some(Quantity::Load),
+        ),
+        Effect::FrictionalLag { time_constant } => (scale(time_constant), None),
+        Effect::Presliding { coulomb, breakaway, velocity, stiffness, smoothing_velocity } => {
+            (scales(&[coulomb, breakaway, velocity, stiffness, smoothing_velocity]), None)
+        }
+        Effect::DwellBreakaway { gain, time, distance, rest_velocity, dwell_limit, smoothing_velocity } => {
+            (bounded(gain) && scales(&[time, distance, rest_velocity, dwell_limit, smoothing_velocity]), None)
+        }
+        Effect::Ripple { ref harmonics, smoothing_velocity, .. } => {
+            let usable =
+                scale(smoothing_velocity) && harmonics.iter().all(|line| all(&[line.order, line.cosine, line.sine]));
+            (usable, Some(Quantity::Position))
+        }
+        Effect::PositionTable { smoothing_velocity, .. } => (scale(smoothing_velocity), Some(Quantity::Position)),
+        Effect::Play { half_width, torque } => (scale(half_width) && bounded(torque), Some(Quantity::Position)),
+        Effect::WindupHysteresis { torque, distance } => (bounded(torque) && scale(distance), None),
+        Effect::Spring { stiffness, rest } => (all(&[stiffness, rest]), Some(Quantity::Position)),
+    }
+}
