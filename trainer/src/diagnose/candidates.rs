@@ -23,6 +23,14 @@ pub struct Generic {
     pub channel: Channel,
 }
 
+impl Generic {
+    /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
+    /// position-dependent friction.
+    fn has_a_name(self, order: usize) -> bool {
+        self.factor == Factor::Sign && self.channel == Channel::Position && order == GENERIC_ORDERS[0]
+    }
+}
+
 /// Factor of velocity in a generic rival.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
@@ -192,6 +200,7 @@ impl Design {
             self.columns.extend(columns);
             let variants = GENERIC_ORDERS
                 .into_iter()
+                .filter(|order| !rival.has_a_name(*order))
                 .map(|order| Variant { shape: vec![order as f64], columns: begin..begin + order })
                 .collect();
             self.groups.push(Group { label: Label::Generic(rival), variants });

@@ -177,6 +177,7 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
             _ => format!("{actuator} s2/{position}"),
         },
         Dimension::TorquePerSecond => format!("{actuator}/s"),
+        Dimension::TorquePerSecondSquared => format!("{actuator}/s2"),
         Dimension::TorquePerWatt => format!("{actuator}/W"),
         Dimension::TorquePerWattVelocity => format!("{actuator} s/({position} W)"),
         Dimension::PerTorque => format!("1/({actuator})"),

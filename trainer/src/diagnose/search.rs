@@ -135,6 +135,15 @@ impl<'a> Search<'a> {
         self.raw_columns(label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
     }
 
+    /// The outcome of a search that was not made: no findings, noise of the base alone.
+    pub fn nothing(&self) -> SearchOutcome {
+        SearchOutcome {
+            accepted: Vec::new(),
+            last_round: Vec::new(),
+            noise: self.noise_after(&self.base.columns, None),
+        }
+    }
+
     /// Runs the search.
     pub fn run(&self) -> SearchOutcome {
         let mut accepted: Vec<Accepted> = Vec::new();
@@ -291,6 +300,8 @@ fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
 pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
     match label {
         Label::Named(EffectId::TransientEvent) => evidence.criterion - 0.5 * grid_size.ln(),
+        // A function of position is judged as the generic functions are that stand against it.
+        Label::Named(EffectId::PositionFriction) => evidence.held_out,
         Label::Named(_) => 0.5 * (evidence.held_out + evidence.criterion),
         Label::Generic(_) => evidence.held_out,
     }

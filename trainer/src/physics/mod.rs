@@ -31,6 +31,7 @@ mod warm_up;
 mod windup;
 
 pub use identity::{Action, EffectId};
+pub(crate) use state::quantile;
 pub use state::{JointState, MemoryAxes, OtherJoint};
 
 /// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).
@@ -55,6 +56,8 @@ pub enum Dimension {
     Inertia,
     /// Torque per second.
     TorquePerSecond,
+    /// Torque per squared second.
+    TorquePerSecondSquared,
     /// Torque per watt of smoothed dissipated power.
     TorquePerWatt,
     /// Torque per watt and velocity.
