@@ -137,7 +137,7 @@ impl Search<'_> {
         effect: &Fitted,
     ) -> Vec<(usize, Vec<f64>)> {
         (0..effect.shape.len())
-            .filter(|&slot| hypothesis.bounds(state, slot).is_some())
+            .filter(|&slot| hypothesis.bounds(state, slot, &effect.shape).is_some())
             .map(|slot| {
                 let step = 0.05 * hypothesis.step(state, slot, &effect.shape);
                 let torque = |by: f64| {

@@ -105,7 +105,12 @@ pub trait Hypothesis: Sync {
     }
 
     /// Bounds of shape parameter `index` on this recording, for continuous refinement; `None` where it is discrete.
-    fn bounds(&self, _state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// How many shapes were looked at to propose [`Self::shapes`], where these were chosen by their residual.
+    fn scanned(&self, _state: &JointState) -> Option<f64> {
         None
     }
 

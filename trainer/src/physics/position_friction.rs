@@ -21,7 +21,7 @@ impl Hypothesis for PositionFriction {
             return Vec::new();
         }
         // Broad variation only: something narrow in position is a place to look at, not a law.
-        [3.0, 6.0].into_iter().map(|order| vec![order, low, high]).collect()
+        [3.0, 6.0, 9.0].into_iter().map(|order| vec![order, low, high]).collect()
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
@@ -31,7 +31,7 @@ impl Hypothesis for PositionFriction {
     }
 
     fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        const SYMBOLS: [&str; 6] = ["b_1", "b_2", "b_3", "b_4", "b_5", "b_6"];
+        const SYMBOLS: [&str; 9] = ["b_1", "b_2", "b_3", "b_4", "b_5", "b_6", "b_7", "b_8", "b_9"];
         let order = shape[0] as usize;
         SYMBOLS.iter().take(order).map(|symbol| ("position_friction_coefficient", *symbol, Dimension::Torque)).collect()
     }

@@ -67,7 +67,7 @@ impl Hypothesis for PositionRipple {
         ]
     }
 
-    fn bounds(&self, _state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         (index == 0).then_some((0.0, f64::INFINITY))
     }
 

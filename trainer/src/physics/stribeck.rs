@@ -48,7 +48,7 @@ impl Hypothesis for Stribeck {
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         Some(if index == 0 { (narrowest(state), WIDEST * state.top_speed()) } else { (0.5, 2.5) })
     }
 }
