@@ -118,6 +118,7 @@ impl Prepared {
                     OtherJoint {
                         velocity: first_derivative(&smooth, segments, period),
                         acceleration: second_derivative(&smooth, segments, period),
+                        position: smooth,
                     }
                 })
                 .collect(),
