@@ -1,3 +1,10 @@
-//! One file a subcommand: parse, call, print.
+//! One file a subcommand: parse, call, print. No arithmetic here.
 
+pub mod export;
+pub mod fit;
+pub mod output;
+pub mod predict;
+pub mod progress;
+pub mod show;
 pub mod simulate;
+pub mod verify;
