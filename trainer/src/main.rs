@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use frikan_trainer::commands::{export, fit, predict, show, simulate, verify};
+use frikan_trainer::commands::output::print;
+use frikan_trainer::commands::{explain, export, fit, predict, show, simulate, verify};
 use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
@@ -25,6 +26,7 @@ enum Command {
     Verify(verify::Verify),
     Export(export::Export),
     Simulate(simulate::Simulate),
+    Explain(explain::Explain),
 }
 
 fn run(command: &Command) -> Result<u8> {
@@ -35,6 +37,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Verify(arguments) => verify::run(arguments),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Simulate(arguments) => simulate::run(arguments).map(|()| 0),
+        Command::Explain(arguments) => arguments.run().and_then(|text| print(&text)).map(|()| 0),
     }
 }
 

@@ -48,7 +48,10 @@ impl Outputs {
 }
 
 /// Writes to standard output. A reader that has left early (`| head`) is no failure.
-pub(crate) fn print(text: &str) -> Result<()> {
+///
+/// # Errors
+/// `FRK-I001` when it cannot be written.
+pub fn print(text: &str) -> Result<()> {
     let mut console = std::io::stdout().lock();
     match console.write_all(text.as_bytes()).and_then(|()| console.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

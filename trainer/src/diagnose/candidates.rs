@@ -23,6 +23,22 @@ pub struct Generic {
     pub channel: Channel,
 }
 
+impl Generic {
+    /// Orders of its cosine series.
+    fn orders(self) -> [usize; 2] {
+        match (self.factor, self.channel) {
+            (Factor::Sign, Channel::Position) => [GENERIC_ORDERS[0], NARROW_ORDER],
+            _ => GENERIC_ORDERS,
+        }
+    }
+
+    /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
+    /// position-dependent friction.
+    fn has_a_name(self, order: usize) -> bool {
+        self.factor == Factor::Sign && self.channel == Channel::Position && order == GENERIC_ORDERS[0]
+    }
+}
+
 /// Factor of velocity in a generic rival.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
@@ -105,7 +121,9 @@ impl Channel {
 }
 
 /// Orders of the cosine series of a generic rival.
-pub(crate) const GENERIC_ORDERS: [usize; 2] = [3, 12];
+const GENERIC_ORDERS: [usize; 2] = [3, 12];
+/// Order for position, where a narrow place matters.
+const NARROW_ORDER: usize = 20;
 
 /// One shape of a group and the columns that it occupies.
 #[derive(Clone, Debug)]
@@ -183,15 +201,19 @@ impl Design {
         let built: Vec<Vec<Vec<f64>>> = rivals
             .par_iter()
             .map(|rival| {
-                let longest = GENERIC_ORDERS[GENERIC_ORDERS.len() - 1];
-                generic_columns(&prepared.state, *rival, longest).iter().map(|raw| prepared.filtered(raw)).collect()
+                generic_columns(&prepared.state, *rival, rival.orders()[1])
+                    .iter()
+                    .map(|raw| prepared.filtered(raw))
+                    .collect()
             })
             .collect();
         for (rival, columns) in rivals.into_iter().zip(built) {
             let begin = self.columns.len();
             self.columns.extend(columns);
-            let variants = GENERIC_ORDERS
+            let variants = rival
+                .orders()
                 .into_iter()
+                .filter(|order| !rival.has_a_name(*order))
                 .map(|order| Variant { shape: vec![order as f64], columns: begin..begin + order })
                 .collect();
             self.groups.push(Group { label: Label::Generic(rival), variants });

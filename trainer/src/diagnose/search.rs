@@ -51,10 +51,14 @@ pub struct Scored {
     pub shape: Shape,
     /// Score in nats.
     pub score: f64,
-    /// Family-wise probability under the null.
+    /// Family-wise probability under the null; 1 in a round in which nothing reached the least score.
     pub family_wise: f64,
     /// Evidence behind the score.
     pub evidence: GroupEvidence,
+    /// Place of the group in the design.
+    pub(crate) group: usize,
+    /// -log p of its best variant by chi-square.
+    pub(crate) surprise: f64,
 }
 
 /// An accepted finding.
@@ -106,9 +110,19 @@ impl<'a> Search<'a> {
         settings: Settings,
     ) -> Self {
         let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
-        let t0 = std::time::Instant::now(); let design = Design::new(prepared, hypotheses, left_out); if std::env::var("DBG").is_ok() { eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len()); }
+        let design = Design::new(prepared, hypotheses, left_out);
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
+    }
+
+    /// Shapes that a group was allowed to choose from.
+    fn grid_size(&self, group: usize) -> f64 {
+        let group = &self.design.groups[group];
+        let scanned = match group.label {
+            Label::Named(effect) => self.hypothesis(effect).and_then(|h| h.scanned(&self.prepared.state)),
+            Label::Generic(_) => None,
+        };
+        scanned.unwrap_or(group.variants.len() as f64)
     }
 
     /// The hypothesis of an effect.
@@ -131,14 +145,32 @@ impl<'a> Search<'a> {
         self.raw_columns(label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
     }
 
+    /// The outcome of a search that was not made: no findings, noise of the base alone.
+    pub fn nothing(&self) -> SearchOutcome {
+        SearchOutcome {
+            accepted: Vec::new(),
+            last_round: Vec::new(),
+            noise: self.noise_after(&self.base.columns, None),
+        }
+    }
+
     /// Runs the search.
     pub fn run(&self) -> SearchOutcome {
         let mut accepted: Vec<Accepted> = Vec::new();
+        let mut null = None;
+        let (low, high) = self.prepared.state.travel();
+        let travel = high - low;
         loop {
-            let base = self.base_with(&accepted, None);
-            let round = Round::new(self, base, self.settings.seed.wrapping_add(accepted.len() as u64));
-            let t0 = std::time::Instant::now(); let table = round.score_table(&accepted); if std::env::var("DBG").is_ok() { eprintln!("score {:?}", t0.elapsed()); }
-            let finding = choose(&table, &self.settings);
+            let round = Round::new(self, self.base_with(&accepted, None));
+            let mut table = round.score_table(&accepted);
+            if table.first().is_some_and(|best| best.score > self.settings.least_score) {
+                // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
+                let null = null.get_or_insert_with(|| round.draw_null());
+                table
+                    .iter_mut()
+                    .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
+            }
+            let finding = choose(&table, &self.settings, travel);
             match finding {
                 Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
                 _ => {
@@ -169,7 +201,7 @@ impl<'a> Search<'a> {
         let state = &self.prepared.state;
         let mut tangents = Vec::new();
         for index in 0..shape.len() {
-            if hypothesis.bounds(state, index).is_none() {
+            if hypothesis.bounds(state, index, shape).is_none() {
                 continue;
             }
             let step = 0.05 * hypothesis.step(state, index, shape);
@@ -291,29 +323,28 @@ struct Round<'s, 'a> {
     bench: Bench,
     alone: Option<VariantEvidence>,
     variants: Vec<Vec<Option<VariantEvidence>>>,
-    null: NullDraws,
+    white: Vec<Vec<f64>>,
 }
 
 impl<'s, 'a> Round<'s, 'a> {
-    fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>, seed: u64) -> Self {
+    fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
-        let t0 = std::time::Instant::now();
         let mut noise = Noise::white(search.prepared.rows.len());
         for _ in 0..2 {
-            let (_, bench, variants) = weigh_all(search, base.clone(), &noise);
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
             let mut generous = base.clone();
             generous.extend(best_two(search, &bench, &variants));
             noise = search.noise_after(&generous, Some(&noise));
         }
-        let (white, bench, variants) = weigh_all(search, base, &noise);
-        let t1 = t0.elapsed();
+        let (white, bench, variants) = weigh_all(search, base, &noise, true);
         let alone = bench.alone();
-        if std::env::var("DBG").is_ok() { eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms); }
-        let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
-        let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
-        if std::env::var("DBG").is_ok() { eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1); }
-        Self { search, noise, bench, alone, variants, null }
+        Self { search, noise, bench, alone, variants, white }
+    }
+
+    fn draw_null(&self) -> NullDraws {
+        let best = best_two(self.search, &self.bench, &self.variants);
+        draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
     }
 
     fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
@@ -327,7 +358,7 @@ impl<'s, 'a> Round<'s, 'a> {
             .enumerate()
             .filter(|(_, group)| accepted.iter().all(|found| found.label != group.label))
             .filter_map(|(index, group)| {
-                let grid = group.variants.len() as f64;
+                let grid = self.search.grid_size(index);
                 let evidence = GroupEvidence::weigh(alone, &self.variants[index], rows, grid)?;
                 let surprise = self.variants[index]
                     .iter()
@@ -338,8 +369,10 @@ impl<'s, 'a> Round<'s, 'a> {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
                     score: score_of(&group.label, &evidence, grid),
-                    family_wise: self.null.family_wise(index, surprise),
+                    family_wise: 1.0,
                     evidence,
+                    group: index,
+                    surprise,
                 };
                 Some((index, scored))
             })
@@ -373,7 +406,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 self.bench.evidence(&self.search.whitened(&columns, &self.noise))
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
-            let grid = self.search.design.groups[*index].variants.len() as f64;
+            let grid = self.search.grid_size(*index);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
                 let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
@@ -386,11 +419,12 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 }
 
-/// Whitens the design and weighs every variant.
+/// Whitens the design and weighs every variant, held-out folds only where asked for.
 fn weigh_all(
     search: &Search,
     base: Vec<Vec<f64>>,
     noise: &Noise,
+    folds: bool,
 ) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
     let bench = search.bench(base, noise);
     let runs = search.prepared.open_runs();
@@ -408,7 +442,7 @@ fn weigh_all(
         .design
         .groups
         .par_iter()
-        .map(|group| group.variants.iter().map(|variant| bench.evidence(&white[variant.columns.clone()])).collect())
+        .map(|group| group.variants.iter().map(|variant| bench.weigh(&white[variant.columns.clone()], folds)).collect())
         .collect();
     (white, bench, variants)
 }
@@ -443,7 +477,6 @@ fn draw_null(
     white: &[Vec<f64>],
     variants: &[Vec<Option<VariantEvidence>>],
     best: &[Vec<f64>],
-    seed: u64,
 ) -> NullDraws {
     let runs = bench.runs();
     let base_directions = orthonormal(&bench.base, &runs);
@@ -471,16 +504,19 @@ fn draw_null(
     let mut extended = base_directions.clone();
     extended.extend(best.to_vec());
     project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
-    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, seed)
+    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, search.settings.seed)
 }
 
 /// Decides a round: the best passing hypothesis with its ambiguity set, or nothing.
-fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
+fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted> {
     let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
-    let named = table.iter().filter(|s| matches!(s.label, Label::Named(_))).find(passes);
-    let generic = table.iter().filter(|s| matches!(s.label, Label::Generic(_))).find(passes);
+    let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
+    let named = table.iter().filter(is_named).find(passes);
+    let generic = table.iter().filter(|s| !is_named(s)).find(passes);
+    // An unnamed structure is measured against every name by the same held-out evidence.
+    let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
     let best = match (named, generic) {
-        (Some(named), Some(generic)) if generic.score > named.score + settings.ambiguity_margin => generic,
+        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => generic,
         (Some(named), _) => named,
         (None, Some(generic)) => generic,
         (None, None) => return None,
@@ -498,7 +534,7 @@ fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
         }
     }
     if let Label::Named(effect) = best.label
-        && let Some(twin) = algebraic_twin(effect)
+        && let Some(twin) = twin(effect, &best.shape, travel)
         && table.iter().any(|s| s.label == Label::Named(twin))
         && rivals.iter().all(|(rival, _)| *rival != twin)
     {
@@ -515,11 +551,15 @@ fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
     })
 }
 
-/// Effects whose equations coincide wherever the joint moves faster than the smoothing of its sign.
-fn algebraic_twin(effect: EffectId) -> Option<EffectId> {
+/// The effect whose equation coincides with another's: driving losses and torque scale wherever the joint moves faster
+/// than the smoothing of its sign; a friction ripple that shows fewer than three periods and any function of position.
+fn twin(effect: EffectId, shape: &[f64], travel: f64) -> Option<EffectId> {
     match effect {
         EffectId::DriveBackdrive => Some(EffectId::TorqueScale),
         EffectId::TorqueScale => Some(EffectId::DriveBackdrive),
+        EffectId::PositionRipple if shape[1] == 1.0 && shape[0] * travel < 3.0 * std::f64::consts::TAU => {
+            Some(EffectId::PositionFriction)
+        }
         _ => None,
     }
 }

@@ -5,14 +5,16 @@
 
 mod bending;
 pub mod blocks;
-pub mod filter;
 mod even;
+pub mod filter;
 mod grid;
 pub mod plan;
 mod prepare;
 pub mod regression;
 pub mod relevance;
 pub mod rigid_body;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 
