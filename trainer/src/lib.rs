@@ -1,10 +1,16 @@
 //! Frikan trainer: a recording walks through these rooms in one direction,
 //! `recording -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
 
+pub mod commands;
 pub mod compile;
 pub mod diagnose;
+pub mod emulator;
+pub mod error;
+pub mod files;
+pub mod joint;
 pub mod kan;
 pub mod law;
+pub mod parameter;
 pub mod physics;
 pub mod plant;
 pub mod recording;

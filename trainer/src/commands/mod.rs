@@ -1,1 +1,3 @@
 //! One file a subcommand: parse, call, print.
+
+pub mod simulate;

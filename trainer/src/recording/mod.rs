@@ -1,1 +1,184 @@
 //! Recordings in: formats, columns, units and checks. Knows no model.
+//!
+//! A recording is a text table whose columns are named `<quantity>_<unit>`. [`load`] reads a file and [`parse`] any
+//! stream of bytes; both give every channel in SI or one [`Error`](crate::error::Error) with the place in the file.
+
+mod columns;
+mod health;
+mod lines;
+mod quantity;
+mod table;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::path::Path;
+
+pub use health::Health;
+pub use lines::RECORD_LIMIT_BYTES;
+pub use quantity::{Axis, Quantity, Unit};
+pub use table::TextTable;
+pub use text::MINIMUM_ROWS;
+
+use crate::error::{Error, Result, codes};
+use crate::files;
+use crate::joint::Joint;
+
+/// A recording in SI units, joint side.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// File name without folder, or whatever [`parse`] was told.
+    pub label: String,
+    /// Rotary or linear.
+    pub axis: Axis,
+    /// Standard quantities and named channels, in the order of the file; all have [`Recording::len`] values.
+    pub channels: Vec<Channel>,
+    /// CRC-64/XZ of the bytes of the file: the same file gives the same number on any machine.
+    pub content_hash: u64,
+    /// Facts about clock, resolution and clipping, not yet judged.
+    pub health: Health,
+    /// The rows as text.
+    pub table: TextTable,
+    unusable: Vec<(Quantity, String)>,
+    file: String,
+}
+
+/// One channel of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The standard quantity; `None` for a channel that is known by its column's name only.
+    pub quantity: Option<Quantity>,
+    /// Name as an input of a model: the quantity's name, or that of the column.
+    pub name: String,
+    /// Name of the column in the file.
+    pub column: String,
+    /// SI unit of `values`; empty for a named channel, which keeps the unit of its column.
+    pub unit: &'static str,
+    /// Unit suffix of the column in the file, as in `mNm`.
+    pub column_unit: String,
+    /// SI value per column unit; divide by it to write a value in the column's own unit.
+    pub si_per_column_unit: f64,
+    /// One value per row.
+    pub values: Vec<f64>,
+}
+
+/// Reads a recording from a file.
+///
+/// # Errors
+/// `FRK-I...` when the file cannot be read, `FRK-D...` with row, column and value when its content cannot be used.
+pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
+    let file = path.display().to_string();
+    let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+    let source = files::open(path)?;
+    let mut recording = parse(&label, source, joint).map_err(|error| error.in_file(&file))?;
+    recording.file = file;
+    Ok(recording)
+}
+
+/// Reads a recording from any stream of bytes, with bounded memory for a record of any length.
+///
+/// # Errors
+/// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
+pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
+    let raw = text::read(source)?;
+    let assigned = columns::assign(&raw.table, joint)?;
+    let channels = columns::convert(&raw, &assigned.columns, joint)?;
+    if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
+        refuse_backward_time(time, &raw.table)?;
+    }
+    let health = Health::of(&channels, assigned.notes);
+    Ok(Recording {
+        label: label.to_owned(),
+        axis: assigned.axis,
+        channels,
+        content_hash: raw.fingerprint,
+        health,
+        table: raw.table,
+        unusable: assigned.unusable,
+        file: label.to_owned(),
+    })
+}
+
+fn refuse_backward_time(time: &Channel, table: &TextTable) -> Result<()> {
+    match time.values.windows(2).position(|pair| pair[1] <= pair[0]) {
+        None => Ok(()),
+        Some(before) => {
+            let column = table.header().iter().position(|name| *name == time.column).unwrap_or(0);
+            let error = Error::new(&codes::TIME_NOT_INCREASING, "time has to increase from row to row")
+                .at_row(table.line(before + 1))
+                .in_column(&time.column);
+            Err(error.with_value(table.row(before + 1).nth(column).unwrap_or("")))
+        }
+    }
+}
+
+impl Recording {
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.table.len()
+    }
+
+    /// Whether there is no row; [`parse`] never returns such a recording.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.table.is_empty()
+    }
+
+    /// Path as it was given, for messages.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The channel of a standard quantity, if recorded.
+    #[must_use]
+    pub fn channel(&self, quantity: Quantity) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.quantity == Some(quantity))
+    }
+
+    /// The channel of this name, standard or not.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    /// The values of a standard quantity, if recorded.
+    #[must_use]
+    pub fn values(&self, quantity: Quantity) -> Option<&[f64]> {
+        self.channel(quantity).map(|channel| channel.values.as_slice())
+    }
+
+    /// The actuator's channel: torque, else force, else current.
+    #[must_use]
+    pub fn actuator(&self) -> Option<&Channel> {
+        [Quantity::Torque, Quantity::Force, Quantity::Current].into_iter().find_map(|quantity| self.channel(quantity))
+    }
+
+    /// The channel of friction that somebody already separated.
+    #[must_use]
+    pub fn separated_friction(&self) -> Option<&Channel> {
+        [Quantity::FrictionTorque, Quantity::FrictionForce].into_iter().find_map(|quantity| self.channel(quantity))
+    }
+
+    /// The first of `wanted` that is recorded.
+    ///
+    /// # Errors
+    /// `FRK-D010` when a column has the name of one of them but not its unit, `FRK-D009` when there is none.
+    pub fn require(&self, wanted: &[Quantity], purpose: &str) -> Result<&Channel> {
+        if let Some(channel) = wanted.iter().find_map(|quantity| self.channel(*quantity)) {
+            return Ok(channel);
+        }
+        let misnamed = self.unusable.iter().find(|(quantity, _)| wanted.contains(quantity));
+        Err(match misnamed {
+            Some((quantity, column)) => columns::unknown_unit(*quantity, column),
+            None => {
+                let names: Vec<String> =
+                    wanted.iter().map(|q| format!("{}_{}", q.name(), q.units()[0].suffix)).collect();
+                let message = format!("{purpose} needs a column such as {}", names.join(" or "));
+                Error::new(&codes::MISSING_COLUMN, message).at_row(1).in_column(names[0].clone())
+            }
+        }
+        .in_file(&self.file))
+    }
+}

@@ -1,0 +1,30 @@
+//! Instructions and stack of one call.
+
+use core::hint::black_box;
+
+use crate::hardware::{clock, stack_depth};
+use crate::protocol::Row;
+
+/// An evaluation as the harness calls it.
+pub(crate) type Call<E> = extern "C" fn(&mut E, &Row) -> f32;
+
+/// Calls through a pointer that the compiler cannot see through, so that every call costs the same around it, and
+/// returns the output with the ticks between the two readings of the clock.
+#[inline(never)]
+pub(crate) fn ticks<E>(call: Call<E>, evaluator: &mut E, row: &Row) -> (f32, u32) {
+    let (call, evaluator, row) = (black_box(call), black_box(evaluator), black_box(row));
+    let start = clock::now();
+    let output = black_box(call(evaluator, row));
+    let end = clock::now();
+    (output, clock::elapsed(start, end))
+}
+
+/// The result of `work`, its ticks and the stack bytes that it used.
+#[inline(never)]
+pub(crate) fn ticks_and_stack<R>(work: impl Fn() -> R) -> (R, u32, u32) {
+    let start = clock::now();
+    black_box(black_box(&work)());
+    let ticks = clock::elapsed(start, clock::now());
+    let (result, stack) = stack_depth(&work);
+    (result, ticks, stack)
+}

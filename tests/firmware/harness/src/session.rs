@@ -1,0 +1,130 @@
+//! One run: the request in, the image decoded, every row evaluated, the answer out.
+
+use crate::hardware::{calibration_call, clock, empty_call, flash, set_floating_point_control, stack_depth};
+use crate::measure::{Call, ticks, ticks_and_stack};
+use crate::protocol::{ANSWER_WORDS, BAD_REQUEST, COUNT, EVALUATE, MAGIC, MAX_INPUTS, REQUEST_WORDS, Row};
+use crate::semihosting::{File, Mode, exit};
+
+/// Rows that are read, evaluated and written at a time.
+const CHUNK_ROWS: usize = 64;
+
+/// What the harness runs.
+pub trait Evaluator: Sized {
+    /// The evaluator of the image that stands in flash, or the number of the reason why there is none (not 0).
+    fn decode(image: &'static [u8]) -> Result<Self, u32>;
+
+    /// Inputs a row.
+    fn inputs(&self) -> usize;
+
+    /// The output of one row.
+    fn evaluate(&mut self, row: &Row) -> f32;
+}
+
+/// Serves the request beside the emulator and ends the emulation: exit status 0, or 1 where a file failed.
+pub fn serve<E: Evaluator>() -> ! {
+    clock::start();
+    exit(if session::<E>().is_some() { 0 } else { 1 })
+}
+
+/// What a request asks for.
+struct Request {
+    mode: u32,
+    floating_point_control: u32,
+    image_bytes: usize,
+    rows: usize,
+    inputs: usize,
+}
+
+extern "C" fn evaluate<E: Evaluator>(evaluator: &mut E, row: &Row) -> f32 {
+    evaluator.evaluate(row)
+}
+
+fn session<E: Evaluator>() -> Option<()> {
+    let mut requests = File::open(c"request.bin", Mode::Read)?;
+    let mut answers = File::open(c"answer.bin", Mode::Write)?;
+    let request = read_request(&mut requests)?;
+    let Some(image) = flash().get(..request.image_bytes) else { return refuse(&mut answers, BAD_REQUEST) };
+    if !set_floating_point_control(request.floating_point_control) {
+        return refuse(&mut answers, BAD_REQUEST);
+    }
+    let (decoded, decode_ticks, decode_stack) = ticks_and_stack(|| E::decode(image));
+    let mut evaluator = match decoded {
+        Ok(evaluator) if evaluator.inputs() == request.inputs => evaluator,
+        Ok(_) => return refuse(&mut answers, BAD_REQUEST),
+        Err(reason) => return refuse(&mut answers, reason),
+    };
+    let (_, empty_ticks) = ticks(empty_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
+    let (_, calibration_ticks) = ticks(calibration_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
+    let call: Call<E> = core::hint::black_box(evaluate::<E>);
+    let (_, evaluate_stack) = stack_depth(|| call(&mut evaluator, &[0.5; MAX_INPUTS]));
+    let header: [u32; ANSWER_WORDS] =
+        [MAGIC, 0, empty_ticks, calibration_ticks, decode_ticks, decode_stack, evaluate_stack, size_of::<E>() as u32];
+    write_words(&mut answers, &header)?;
+    // State is part of an evaluation: the rows start from a fresh evaluator.
+    let mut evaluator = E::decode(image).ok()?;
+    evaluate_rows(&request, &mut evaluator, call, &mut requests, &mut answers)
+}
+
+fn evaluate_rows<E: Evaluator>(
+    request: &Request,
+    evaluator: &mut E,
+    call: Call<E>,
+    requests: &mut File,
+    answers: &mut File,
+) -> Option<()> {
+    // The compiler then knows that the chunks below are not empty.
+    let inputs_a_row = request.inputs.max(1);
+    let mut left = request.rows;
+    while left > 0 {
+        let rows = left.min(CHUNK_ROWS);
+        let mut inputs = [[0_u8; 4]; CHUNK_ROWS * MAX_INPUTS];
+        requests.read(inputs.as_flattened_mut().get_mut(..4 * rows * inputs_a_row)?)?;
+        let mut outputs = [0_u32; 2 * CHUNK_ROWS];
+        let mut written = 0;
+        for bits in inputs.chunks_exact(inputs_a_row).take(rows) {
+            let mut row = [0.0; MAX_INPUTS];
+            for (value, bits) in row.iter_mut().zip(bits) {
+                *value = f32::from_le_bytes(*bits);
+            }
+            let (output, ticks) = ticks(call, evaluator, &row);
+            *outputs.get_mut(written)? = output.to_bits();
+            written += 1;
+            if request.mode == COUNT {
+                *outputs.get_mut(written)? = ticks;
+                written += 1;
+            }
+        }
+        write_words(answers, outputs.get(..written)?)?;
+        left -= rows;
+    }
+    Some(())
+}
+
+fn read_request(file: &mut File) -> Option<Request> {
+    let mut words = [[0_u8; 4]; REQUEST_WORDS];
+    file.read(words.as_flattened_mut())?;
+    let [magic, mode, floating_point_control, image_bytes, rows, inputs] = words.map(u32::from_le_bytes);
+    let known = magic == MAGIC && (mode == EVALUATE || mode == COUNT);
+    let inputs = inputs as usize;
+    (known && (1..=MAX_INPUTS).contains(&inputs)).then_some(Request {
+        mode,
+        floating_point_control,
+        image_bytes: image_bytes as usize,
+        rows: rows as usize,
+        inputs,
+    })
+}
+
+/// Answers with a status and no rows.
+fn refuse(answers: &mut File, status: u32) -> Option<()> {
+    write_words(answers, &[MAGIC, status, 0, 0, 0, 0, 0, 0])
+}
+
+/// Writes at most `2 * CHUNK_ROWS` words.
+fn write_words(file: &mut File, words: &[u32]) -> Option<()> {
+    let mut buffer = [[0_u8; 4]; 2 * CHUNK_ROWS];
+    for (bytes, word) in buffer.iter_mut().zip(words) {
+        *bytes = word.to_le_bytes();
+    }
+    file.write(buffer.as_flattened().get(..4 * words.len())?)
+}

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing and runs every test of the workspace.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tests/setup.sh
+cargo nextest run --workspace "$@"
+cargo test --workspace --doc

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Installs what the tests need and is missing: Rust's cross targets, the emulators, a C compiler for the target,
+# cargo-nextest. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
+set -euo pipefail
+
+readonly targets=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf
+    riscv32imac-unknown-none-elf riscv32imc-unknown-none-elf)
+
+say() { printf 'setup: %s\n' "$*"; }
+fail() { printf 'setup: error: %s\n' "$*" >&2; exit 1; }
+
+# Runs a command as root.
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        fail "'$*' needs root, and there is no sudo"
+    fi
+}
+
+lists_are_fresh=no
+
+# Installs packages of the distribution. Recommended packages are left out: QEMU's pull in disk and display tools that
+# nobody needs here and that conflict with a qemu-utils from backports.
+install_packages() {
+    command -v apt-get >/dev/null || fail "install $* with this system's package manager, then run this again"
+    if [ "$lists_are_fresh" = no ]; then
+        as_root apt-get update -qq || say "the package lists could not be renewed; trying with those at hand"
+        lists_are_fresh=yes
+    fi
+    say "installing $*"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+# Installs packages, or where their version clashes with the rest of the system, the version that goes with qemu-utils.
+install_emulator() {
+    install_packages "$1" && return
+    local version
+    version=$(dpkg-query -W -f '${Version}' qemu-utils 2>/dev/null) || fail "$1 cannot be installed"
+    say "trying the version of qemu-utils, $version"
+    install_packages "$1=$version" "qemu-system-common=$version" "qemu-system-data=$version" ||
+        fail "$1 cannot be installed"
+}
+
+emulators() {
+    command -v qemu-system-arm >/dev/null || install_emulator qemu-system-arm
+    command -v qemu-system-riscv32 >/dev/null || install_emulator qemu-system-misc
+    say "$(qemu-system-arm --version | head -n 1)"
+}
+
+c_compiler() {
+    command -v arm-none-eabi-gcc >/dev/null && [ -e "$(arm-none-eabi-gcc -print-file-name=libm.a)" ] ||
+        install_packages gcc-arm-none-eabi libnewlib-arm-none-eabi || fail "arm-none-eabi-gcc cannot be installed"
+    say "$(arm-none-eabi-gcc --version | head -n 1)"
+}
+
+has_target() {
+    local folder
+    folder=$(rustc --print target-libdir --target "$1" 2>/dev/null) && [ -d "$folder" ]
+}
+
+# Rust's library for the targets: by rustup, or, where it cannot download, Debian's compiler with the library's sources,
+# which the firmware's build then uses by itself.
+cross_targets() {
+    command -v rustc >/dev/null || fail "there is no Rust compiler: see https://rustup.rs"
+    local target missing=()
+    for target in "${targets[@]}"; do
+        has_target "$target" || missing+=("$target")
+    done
+    if [ "${#missing[@]}" -eq 0 ]; then
+        say "every cross target is there"
+        return
+    fi
+    if command -v rustup >/dev/null; then
+        say "rustup target add ${missing[*]}"
+        if rustup target add "${missing[@]}"; then
+            return
+        fi
+        say "rustup cannot download; taking Debian's compiler with the sources of the library"
+    fi
+    install_packages rustc-web cargo-web rust-web-src gcc-arm-none-eabi gcc-riscv64-unknown-elf ||
+        fail "no compiler for ${missing[*]}: install the targets with rustup"
+}
+
+test_runner() {
+    if ! cargo nextest --version >/dev/null 2>&1; then
+        say "cargo install cargo-nextest"
+        cargo install --locked cargo-nextest || fail "cargo-nextest cannot be installed"
+    fi
+    say "$(cargo nextest --version | head -n 1)"
+}
+
+cross_targets
+emulators
+c_compiler
+test_runner

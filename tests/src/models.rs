@@ -1,0 +1,247 @@
+//! Models of every kind, made of formulas and independent of the trainer, with which targets and runtimes are compared.
+
+use frikan_runtime::shared::expression::{Operation, Program};
+use frikan_runtime::shared::image::{Image, encode};
+use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
+use frikan_runtime::shared::network::{Layer, Network, Outer, Source};
+use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
+use frikan_runtime::shared::units::{Quantity, Unit};
+
+/// Cells of the firmware's models.
+pub const CELLS: usize = 128;
+
+/// A model of the firmware's size.
+pub type TestModel = Model<CELLS>;
+
+/// `(22 + 8 exp(-|v / 0.1|)) tanh(50 v) + 0.03 v`: Coulomb, Stribeck and viscous friction, N m at rad/s.
+#[must_use]
+pub fn stribeck_friction(velocity: f64) -> f64 {
+    (22.0 + 8.0 * (-(velocity / 0.1).abs()).exp()) * (50.0 * velocity).tanh() + 0.03 * velocity
+}
+
+/// A law whose two directions differ.
+#[must_use]
+pub fn asymmetric_friction(velocity: f64) -> f64 {
+    stribeck_friction(velocity) * if velocity > 0.0 { 1.0 } else { 0.85 } + 0.4 * velocity
+}
+
+/// Cubic coefficients that meet value and slope of `f` at both ends of `[low, high]`, in the local coordinate.
+fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
+    let width = high - low;
+    let step = 1e-4 * width;
+    let slope =
+        |end: f64, inward: f64| (-3.0 * f(end) + 4.0 * f(end + inward) - f(end + 2.0 * inward)) / (2.0 * inward);
+    let (start, end) = (f(low), f(high));
+    let (rise, fall) = (slope(low, step) * width, slope(high, -step) * width);
+    let c2 = 3.0 * (end - start) - 2.0 * rise - fall;
+    let c3 = 2.0 * (start - end) + rise + fall;
+    Cell::from_floats([start as f32, rise as f32, c2 as f32, c3 as f32])
+}
+
+/// The cells of one side of a geometric table.
+fn geometric_side(layout: &Geometric, count: u32, f: impl Fn(f64) -> f64) -> Vec<Cell> {
+    let magnitude =
+        |position: u32| f64::from(f32::from_bits(layout.offset.to_bits() + position)) - f64::from(layout.offset);
+    let cell = |index: u32| hermite(&f, magnitude(index << layout.shift), magnitude((index + 1) << layout.shift));
+    (0..count).map(cell).collect()
+}
+
+/// A geometric table of `f` with its cells, of four cells an octave of `|v| + 2^-6`.
+#[must_use]
+pub fn geometric_table(f: impl Fn(f64) -> f64, symmetry: Symmetry, reach: f32) -> (Table, Vec<Cell>) {
+    let layout = Geometric::new(GeometricShape {
+        first_cell: 0,
+        offset_exponent: -6,
+        octave_cells_log2: 2,
+        symmetry,
+        reach,
+        reach_negative: reach,
+    });
+    let [positive, negative] = layout.side_cells();
+    let mut cells = geometric_side(&layout, positive, &f);
+    if symmetry == Symmetry::Sided {
+        cells.extend(geometric_side(&layout, negative, |magnitude| f(-magnitude)));
+    }
+    (Table::Geometric(layout), cells)
+}
+
+/// A uniform table of `f` with its cells.
+#[must_use]
+pub fn uniform_table(f: impl Fn(f64) -> f64, cells: u16, low: f32, high: f32) -> (Table, Vec<Cell>) {
+    let layout = Uniform::new(UniformShape { first_cell: 0, cells, low, high });
+    let width = (f64::from(high) - f64::from(low)) / f64::from(cells);
+    let start = |index: u16| f64::from(low) + width * f64::from(index);
+    let pieces = (0..cells).map(|index| hermite(&f, start(index), start(index) + width)).collect();
+    (Table::Uniform(layout), pieces)
+}
+
+fn model(reaches: &[f32], law: Law, cells: &[Cell]) -> TestModel {
+    let quantities = [
+        (Quantity::Velocity, Unit::RadianPerSecond),
+        (Quantity::Load, Unit::NewtonMetre),
+        (Quantity::Temperature, Unit::Celsius),
+    ];
+    let inputs = quantities.into_iter().zip(reaches);
+    let inputs = inputs.map(|((quantity, unit), reach)| Input { quantity, unit, low: -reach, high: *reach });
+    Model {
+        inputs: inputs.collect(),
+        output_unit: Unit::NewtonMetre,
+        output_limit: 100.0,
+        rigid_body: RigidBody::default(),
+        law,
+        effects: heapless::Vec::new(),
+        cells: cells.iter().copied().collect(),
+    }
+}
+
+/// Symmetric friction in a geometric table.
+#[must_use]
+pub fn symmetric_table() -> TestModel {
+    let (table, cells) = geometric_table(stribeck_friction, Symmetry::Odd, 2.0);
+    model(&[2.0], Law::Table(table), &cells)
+}
+
+/// Asymmetric friction in a geometric table.
+#[must_use]
+pub fn sided_table() -> TestModel {
+    let (table, cells) = geometric_table(asymmetric_friction, Symmetry::Sided, 2.0);
+    model(&[2.0], Law::Table(table), &cells)
+}
+
+/// A smooth law in a uniform table.
+#[must_use]
+pub fn uniform() -> TestModel {
+    let (table, cells) = uniform_table(|velocity| 20.0 * (2.0 * velocity).tanh(), 64, -2.0, 2.0);
+    model(&[2.0], Law::Table(table), &cells)
+}
+
+/// The formula of [`stribeck_friction`].
+#[must_use]
+pub fn stribeck_expression() -> TestModel {
+    use Operation::{Absolute, Add, Exp, Multiply, Offset, Scale, ScaledInput, Tanh};
+    let operations = [
+        ScaledInput(0, 10.0),
+        Absolute,
+        Scale(-1.0),
+        Exp,
+        Scale(8.0),
+        Offset(22.0),
+        ScaledInput(0, 50.0),
+        Tanh,
+        Multiply,
+        ScaledInput(0, 0.03),
+        Add,
+    ];
+    model(&[2.0], Law::Expression(Program { operations: operations.into_iter().collect() }), &[])
+}
+
+/// A network [1,5,1] whose inner edges are shifted sigmoids.
+#[must_use]
+pub fn network_1_5_1() -> TestModel {
+    network(1, 5, 0, 0.0)
+}
+
+/// A network of two inputs, [2,[3,1],1]: three sums and a product.
+#[must_use]
+pub fn network_two_inputs() -> TestModel {
+    network(2, 3, 1, 0.1)
+}
+
+/// A network of three inputs, [3,4,1].
+#[must_use]
+pub fn network_three_inputs() -> TestModel {
+    network(3, 4, 0, 0.05)
+}
+
+/// A network of `inputs` inputs over a hidden layer of `additive` sums and `products` products, with an outer tanh where
+/// `outer` is not zero.
+fn network(inputs: usize, additive: u8, products: u8, outer: f32) -> TestModel {
+    let reaches = &[2.0, 30.0, 60.0][..inputs];
+    let hidden = Layer { additive, products };
+    let output = Layer { additive: 1, products: 0 };
+    let mut pool = Vec::new();
+    let mut sources = heapless::Vec::new();
+    for (input, reach) in reaches.iter().enumerate() {
+        let edge = |target: usize| {
+            let centre = 0.2 * target as f64 - 0.3;
+            move |value: f64| (3.0 * (value / f64::from(*reach)) - centre + 0.1 * input as f64).tanh()
+        };
+        push_source(&mut sources, &mut pool, 4, *reach, hidden.targets(), edge);
+    }
+    for node in 0..hidden.outputs() {
+        push_source(&mut sources, &mut pool, 4, 3.0, 1, |_| move |value: f64| 6.0 * (value + 0.3 * node as f64).sin());
+    }
+    let outer = if outer == 0.0 { Outer::Linear } else { Outer::Tanh { scale: 40.0 * outer, offset: 0.5 } };
+    let layers = [hidden, output].into_iter().collect();
+    model(reaches, Law::Network(Network { layers, sources, outer }), &pool)
+}
+
+/// Adds a source whose `targets` edges share a uniform layout of `rows` rows over `[-reach, reach]`.
+fn push_source<const N: usize, F: Fn(f64) -> f64>(
+    sources: &mut heapless::Vec<Source, N>,
+    pool: &mut Vec<Cell>,
+    rows: u16,
+    reach: f32,
+    targets: usize,
+    edge: impl Fn(usize) -> F,
+) {
+    let columns: Vec<_> = (0..targets).map(|target| uniform_table(edge(target), rows, -reach, reach)).collect();
+    let first_cell = pool.len() as u16;
+    for row in 0..usize::from(rows) {
+        pool.extend(columns.iter().map(|(_, cells)| cells[row]));
+    }
+    let source = Source { table: columns[0].0, first_cell };
+    sources.push(source).expect("the test's networks are small");
+}
+
+/// Every kind of model that is evaluated in floating point, by its name.
+#[must_use]
+pub fn every_kind() -> Vec<(&'static str, TestModel)> {
+    vec![
+        ("symmetric table", symmetric_table()),
+        ("sided table", sided_table()),
+        ("uniform table", uniform()),
+        ("Stribeck expression", stribeck_expression()),
+        ("network [1,5,1]", network_1_5_1()),
+        ("network of two inputs", network_two_inputs()),
+        ("network of three inputs", network_three_inputs()),
+    ]
+}
+
+/// The image file of a model.
+///
+/// # Panics
+/// Where the model is not valid.
+#[must_use]
+pub fn image(model: &TestModel) -> Vec<u8> {
+    let image = Image { provenance: Provenance::default(), model: model.clone() };
+    let mut buffer = vec![0; 16 << 10];
+    encode(&image, &mut buffer).expect("the tests' models are valid").to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use frikan_runtime::evaluate::evaluate;
+
+    #[test]
+    fn every_kind_makes_an_image() {
+        for (name, model) in every_kind() {
+            assert!(image(&model).len() > 50, "{name}");
+        }
+    }
+
+    #[test]
+    fn tables_and_expression_follow_the_formula() {
+        for index in -400..=400 {
+            let velocity = index as f32 / 200.0;
+            let truth = stribeck_friction(f64::from(velocity));
+            for (model, bound) in [(symmetric_table(), 0.01), (stribeck_expression(), 1e-4)] {
+                let value = f64::from(evaluate(&model, &[velocity, 0.0, 0.0, 0.0]));
+                assert!((value - truth).abs() < bound, "{velocity}: {value} instead of {truth}");
+            }
+            let asymmetric = f64::from(evaluate(&sided_table(), &[velocity, 0.0, 0.0, 0.0]));
+            assert!((asymmetric - asymmetric_friction(f64::from(velocity))).abs() < 0.01, "{velocity}");
+        }
+    }
+}

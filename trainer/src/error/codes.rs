@@ -1,0 +1,208 @@
+//! Registry of the stable codes: what each means, its usual cause, what to do. Read by `trainer explain`.
+//!
+//! A code is never reused or renamed. `U` usage, `D` data, `N` not identifiable, `I` input and output.
+
+use super::Class;
+
+/// One entry of the registry.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Code {
+    /// Stable identifier, such as `FRK-D005`.
+    pub id: &'static str,
+    /// Kind of failure; decides the exit status.
+    pub class: Class,
+    /// A few words that name the failure.
+    pub title: &'static str,
+    /// What has happened.
+    pub meaning: &'static str,
+    /// What is usually behind it.
+    pub cause: &'static str,
+    /// What to do about it.
+    pub remedy: &'static str,
+}
+
+/// Declares the codes and [`ALL`], so that none can be missing from the list.
+macro_rules! registry {
+    ($($name:ident = $id:literal $class:ident $title:literal, $meaning:literal, $cause:literal, $remedy:literal;)*) => {
+        $(
+            #[doc = concat!("`", $id, "`: ", $title, ".")]
+            pub static $name: Code = Code {
+                id: $id, class: Class::$class, title: $title, meaning: $meaning, cause: $cause, remedy: $remedy,
+            };
+        )*
+        /// Every code, in order of its identifier.
+        pub static ALL: &[&Code] = &[$(&$name),*];
+    };
+}
+
+/// The code with this identifier; capitals do not matter and `FRK-` may be left out.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static Code> {
+    let wanted = id.trim().to_ascii_uppercase();
+    ALL.iter().copied().find(|code| code.id == wanted || code.id.strip_prefix("FRK-") == Some(wanted.as_str()))
+}
+
+registry! {
+    EMPTY_FILE = "FRK-D001" Data "empty file",
+        "The file holds no bytes, or only blank lines and comments.",
+        "The recorder was stopped before it wrote, or the disk was full.",
+        "Record again, or check that the right file is named.";
+    TOO_FEW_ROWS = "FRK-D002" Data "too few rows",
+        "The recording has a header but too few rows of data to filter, split and fit.",
+        "A header without data, a recording cut short, or an extract made for a look at the columns.",
+        "Record at least a few seconds of motion: several hundred rows, both directions, several speeds.";
+    LINE_TOO_LONG = "FRK-D003" Data "line too long",
+        "A line, or a quoted field that never closes, is longer than one mebibyte; reading stopped there.",
+        "The file is not a text table (binary log, one line of JSON), or a quotation mark is left open.",
+        "Export the recording as CSV with one line a sample.";
+    NOT_UTF8 = "FRK-D004" Data "not UTF-8 text",
+        "A field holds bytes that are not UTF-8.",
+        "The file is binary, UTF-16 (some spreadsheets' `Unicode text`), or a header uses an old code page.",
+        "Save as CSV UTF-8; unit suffixes need ASCII letters only.";
+    NOT_A_NUMBER = "FRK-D005" Data "text in place of a number",
+        "A field of a numeric column cannot be read as a number. A decimal point is expected; a decimal comma only where columns are separated by semicolon or tab.",
+        "A missing-value mark such as `n/a`, a repeated header in the middle of joined files, or an empty field.",
+        "Remove or repair the row. Rows are not repaired silently, since a skipped row shifts every derivative.";
+    NOT_FINITE = "FRK-D006" Data "NaN or infinite value",
+        "A field reads as NaN or as an infinity.",
+        "An estimator that had not started, a division by a zero time step, or a joint that did not report.",
+        "Cut the recording to where every channel is valid, or remove the column if it is not needed.";
+    RAGGED_ROW = "FRK-D007" Data "wrong number of fields",
+        "A row does not have as many fields as the header.",
+        "The recording was cut off while writing, or a text field holds the separator without quotation marks.",
+        "Remove the broken row; the last one is the usual place.";
+    DUPLICATE_COLUMN = "FRK-D008" Data "column given twice",
+        "Two columns have the same name, or two columns give the same quantity (as `position_rad` and `position_deg`).",
+        "Tables joined side by side, or a log that repeats a channel in several units.",
+        "Remove one, or choose with `[columns]` in joint.toml.";
+    MISSING_COLUMN = "FRK-D009" Data "missing column",
+        "A quantity that the task needs is neither recorded nor derivable from what is recorded.",
+        "The column has another name, or lacks its unit: `velocity` instead of `velocity_rad_s`.",
+        "Rename the column to `<quantity>_<unit>`, or map it in joint.toml: `[columns] velocity = { name = \"dq\", unit = \"deg/s\" }`.";
+    UNKNOWN_UNIT = "FRK-D010" Data "unknown or unfitting unit",
+        "A column is named as a known quantity but its unit suffix is not one of that quantity.",
+        "A unit outside the list, a slash or power written differently, or a linear unit on a rotary quantity.",
+        "Use one of the units that the message lists, or map the column in joint.toml.";
+    TIME_NOT_INCREASING = "FRK-D011" Data "time does not increase",
+        "A time stamp is not later than the one before it.",
+        "Samples written twice or out of order, a counter that wrapped around, or two recordings joined in one file.",
+        "Sort or remove the repeated rows; pass joined recordings as separate files.";
+    MIXED_AXIS = "FRK-D012" Data "rotary and linear columns mixed",
+        "One column measures the joint in radians and another in metres.",
+        "Columns of two joints in one file, or a wrong unit suffix.",
+        "Keep one joint in a file; name other joints' channels freely (`joint2_position`).";
+    NO_KNOWN_COLUMN = "FRK-D013" Data "no recognised column",
+        "No column is named `<quantity>_<unit>` as this program reads it.",
+        "A file that is not a recording, a missing header line, or names of another tool.",
+        "Add a header such as `time_s,position_rad,torque_Nm`, or map the columns in joint.toml.";
+    MISSING_PARAMETER = "FRK-D014" Data "missing joint parameter",
+        "A column can only be used with a parameter of the drive, which joint.toml does not give.",
+        "`position_count` needs `[drive] counts_per_turn`; a rigid body in N m beside a current needs `[drive] torque_constant_Nm_A`.",
+        "Write the parameter into joint.toml and pass it with `--joint`.";
+    BAD_JOINT_FILE = "FRK-D015" Data "joint.toml cannot be used",
+        "joint.toml is not valid TOML, or a key or value is outside what is understood.",
+        "A misspelt key, a number without its unit's magnitude (zero, negative, infinite), or a missing bracket.",
+        "Correct the line that the message names.";
+    NO_MOTION = "FRK-D016" Data "too little motion",
+        "The velocity hardly changes over the recording, so friction cannot be told from an offset.",
+        "The joint stood still or ran at one constant speed, or the wrong column is mapped.",
+        "Record both directions and several speeds, slow ones included.";
+    SEGMENTS_TOO_SHORT = "FRK-D017" Data "no stretch long enough",
+        "After removing clock gaps and the edges of the filter nothing is left.",
+        "Many gaps in the clock, or a recording shorter than a few filter lengths.",
+        "Record longer without gaps, or at a higher rate.";
+    RECORDINGS_DISAGREE = "FRK-D018" Data "recordings do not match",
+        "Recordings that are to be used together have different axes, actuator quantities or channels.",
+        "Files of different joints or with different columns.",
+        "Fit each joint by itself; give every file the same columns.";
+    FILE_TOO_LARGE = "FRK-D019" Data "file too large",
+        "A file that is small by nature, such as joint.toml or a model image, is far larger than it can be.",
+        "The wrong file is named.",
+        "Check the path.";
+    BAD_IMAGE = "FRK-D020" Data "model image refused",
+        "The `.frk` file is truncated, corrupted, of another version, too large or inconsistent.",
+        "An interrupted copy, a text-mode transfer, or a newer trainer.",
+        "Copy or fit the image again; `trainer show` prints the header of a good one.";
+    NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
+        "Two or more parameters change the prediction in the same way on this recording.",
+        "One speed, one acceleration, a small range of positions, or a single frequency.",
+        "Excite more: several speeds, both directions, two frequencies, a range beyond +-60 degrees.";
+    NOT_CONVERGED = "FRK-N002" NotIdentifiable "not converged",
+        "The optimiser stopped before the gradient became small.",
+        "A target that is almost all noise, or inputs that are collinear.",
+        "Look at the report's residuals; fewer inputs or a cleaner recording usually help.";
+    INPUT_OUTPUT = "FRK-I001" InputOutput "file cannot be read or written",
+        "The operating system refused to read or write a file.",
+        "Missing rights, a full disk, or a device that went away.",
+        "The message is that of the operating system. Nothing was left half written.";
+    FILE_NOT_FOUND = "FRK-I002" InputOutput "no such file",
+        "The file or the folder it should go into does not exist.",
+        "A misspelt path, or a relative path from another folder.",
+        "Check the path.";
+    IS_A_DIRECTORY = "FRK-I003" InputOutput "a folder where a file is needed",
+        "The path names a folder.",
+        "A pattern that matched a folder, or a forgotten file name.",
+        "Name the file inside the folder.";
+    EMULATOR_MISSING = "FRK-I004" InputOutput "emulator not installed",
+        "The program that emulates the target cannot be started.",
+        "QEMU for this processor family is not installed.",
+        "Install the package that the message names, or run tests/setup.sh of a checkout.";
+    CROSS_TARGET_MISSING = "FRK-I005" InputOutput "cross target not installed",
+        "The Rust compiler cannot build for the target's processor.",
+        "The target's library was never added to the toolchain.",
+        "`rustup target add` with the triple that the message names, or run tests/setup.sh of a checkout.";
+    FIRMWARE_NOT_FOUND = "FRK-I006" InputOutput "firmware not found",
+        "The firmware that runs an image on an emulated target is built from a checkout, and there is none around.",
+        "The trainer was started outside a checkout.",
+        "Change into a checkout, or name its `tests/firmware` in the environment variable FRIKAN_FIRMWARE.";
+    FIRMWARE_BUILD = "FRK-I007" InputOutput "firmware cannot be built",
+        "The compiler or the linker refused the firmware. A panic that has become reachable is refused by the linker.",
+        "A change in the runtime, or a toolchain that is older than the workspace asks for.",
+        "The message holds the compiler's own words.";
+    EMULATION_FAILED = "FRK-I008" InputOutput "emulation failed",
+        "The emulated drive did not answer, faulted, or refused the image.",
+        "An image of another format version, or one larger than the target's room for cells.",
+        "`trainer verify` without `--target` tells whether the image itself is sound.";
+    USAGE = "FRK-U001" Usage "usage",
+        "An argument is missing, unknown or contradicts another.",
+        "A misspelt option, or options that exclude each other.",
+        "`trainer <command> --help` lists what is understood.";
+    UNKNOWN_INPUT = "FRK-U002" Usage "unknown input",
+        "`--inputs` names a channel that no recording has.",
+        "A misspelt name; channels that are not standard keep the name of their column.",
+        "Use one of the names that the message lists.";
+    UNKNOWN_TOPIC = "FRK-U003" Usage "nothing to explain",
+        "`trainer explain` was given neither a code nor the name of an effect.",
+        "A misspelt name.",
+        "`trainer explain` without argument lists both.";
+    UNKNOWN_TARGET = "FRK-U004" Usage "unknown target",
+        "`--target` names a processor for which there is no firmware.",
+        "A misspelt name.",
+        "Use one of the names that the message lists.";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identifiers_are_unique_and_say_their_class() {
+        for (index, code) in ALL.iter().enumerate() {
+            let letter = match code.class {
+                Class::Usage => "U",
+                Class::Data => "D",
+                Class::NotIdentifiable => "N",
+                Class::InputOutput => "I",
+            };
+            assert!(code.id.starts_with(&format!("FRK-{letter}")), "{}", code.id);
+            assert!(ALL[..index].iter().all(|earlier| earlier.id != code.id), "{} twice", code.id);
+        }
+    }
+
+    #[test]
+    fn a_code_is_found_with_and_without_prefix() {
+        assert_eq!(find("frk-d005"), Some(&NOT_A_NUMBER));
+        assert_eq!(find("D005"), Some(&NOT_A_NUMBER));
+        assert_eq!(find("D999"), None);
+    }
+}

@@ -1,0 +1,228 @@
+//! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::error::{Error, Result, codes};
+use crate::files;
+
+/// Largest `joint.toml` that is read, in bytes.
+const SIZE_LIMIT_BYTES: u64 = 1 << 20;
+
+/// What is known of a joint before a recording is read.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Joint {
+    /// Name of the joint; carried into the image.
+    pub name: Option<String>,
+    /// Columns that are not named `<quantity>_<unit>`, by quantity.
+    #[serde(default)]
+    pub columns: BTreeMap<String, ColumnMapping>,
+    /// Known rigid-body parameters; what is absent is identified together with friction.
+    #[serde(default)]
+    pub rigid_body: RigidBody,
+    /// Parameters of the drive.
+    #[serde(default)]
+    pub drive: Drive,
+    /// Tables that other commands read (the simulated plant, for one), untouched.
+    #[serde(flatten)]
+    pub other: toml::Table,
+}
+
+/// One entry of `[columns]`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnMapping {
+    /// Name of the column in the file.
+    pub name: String,
+    /// Unit of the column; SI when absent. `deg/s` and `deg_s` mean the same.
+    pub unit: Option<String>,
+    /// Side of the gear on which it is measured; joint side when absent.
+    #[serde(default)]
+    pub side: Side,
+    /// `-1` for a column whose sign is opposite; any other factor is allowed.
+    #[serde(default = "one")]
+    pub scale: f64,
+}
+
+/// Side of the gear on which a quantity is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// After the gear.
+    #[default]
+    Joint,
+    /// Before the gear: angles are divided and torques multiplied by `[drive] gear_ratio`.
+    Motor,
+}
+
+/// Known rigid-body parameters: torque = inertia * acceleration + gravity_torque * sin(position + phase).
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigidBody {
+    /// Inertia seen by the joint, kg m2 (kg on a linear axis); above zero.
+    pub inertia_kgm2: Option<f64>,
+    /// Amplitude of the gravity torque, N m.
+    #[serde(rename = "gravity_torque_Nm")]
+    pub gravity_torque_nm: Option<f64>,
+    /// Phase of the gravity torque, rad; zero when absent.
+    pub gravity_phase_rad: Option<f64>,
+    /// URDF file with the rigid body, relative to `joint.toml`.
+    pub urdf: Option<String>,
+    /// Name of this joint in the URDF file.
+    pub joint: Option<String>,
+}
+
+/// Parameters of the drive.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// Motor torque per ampere, N m/A; above zero.
+    #[serde(rename = "torque_constant_Nm_A")]
+    pub torque_constant_nm_a: Option<f64>,
+    /// Motor turns per joint turn; not zero.
+    pub gear_ratio: Option<f64>,
+    /// Encoder counts per turn of the shaft that carries the encoder; above zero.
+    pub counts_per_turn: Option<f64>,
+    /// Largest torque of the drive at the joint, N m; above zero.
+    #[serde(rename = "torque_limit_Nm")]
+    pub torque_limit_nm: Option<f64>,
+    /// Rate of the control loop, Hz; above zero.
+    #[serde(rename = "rate_Hz")]
+    pub rate_hz: Option<f64>,
+}
+
+impl Drive {
+    /// Joint torque per ampere of motor current, N m/A, when known.
+    #[must_use]
+    pub fn joint_torque_per_ampere(&self) -> Option<f64> {
+        self.torque_constant_nm_a.map(|constant| constant * self.gear_ratio.unwrap_or(1.0))
+    }
+}
+
+impl Joint {
+    /// Reads `joint.toml`.
+    ///
+    /// # Errors
+    /// `FRK-I...` when it cannot be read, `FRK-D015` with its row when a key or value is not understood.
+    pub fn load(path: &Path) -> Result<Self> {
+        let label = path.display().to_string();
+        let bytes = files::read_whole(path, SIZE_LIMIT_BYTES)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Error::new(&codes::NOT_UTF8, "joint.toml has to be UTF-8 text").in_file(&label))?;
+        Self::parse(&text).map_err(|error| error.in_file(label))
+    }
+
+    /// Parses the text of a `joint.toml`.
+    ///
+    /// # Errors
+    /// `FRK-D015` with its row when a key or value is not understood.
+    pub fn parse(text: &str) -> Result<Self> {
+        let joint: Self = toml::from_str(text).map_err(|error| {
+            let report = Error::new(&codes::BAD_JOINT_FILE, error.message().replace('\n', "; "));
+            match error.span() {
+                Some(span) => report.at_row(row_of(text, span.start)),
+                None => report,
+            }
+        })?;
+        joint.check()?;
+        Ok(joint)
+    }
+
+    /// Refuses numbers that no joint can have.
+    fn check(&self) -> Result<()> {
+        let drive = &self.drive;
+        let above_zero = [
+            ("rigid_body.inertia_kgm2", self.rigid_body.inertia_kgm2),
+            ("drive.torque_constant_Nm_A", drive.torque_constant_nm_a),
+            ("drive.counts_per_turn", drive.counts_per_turn),
+            ("drive.torque_limit_Nm", drive.torque_limit_nm),
+            ("drive.rate_Hz", drive.rate_hz),
+        ];
+        let finite = [
+            ("rigid_body.gravity_torque_Nm", self.rigid_body.gravity_torque_nm),
+            ("rigid_body.gravity_phase_rad", self.rigid_body.gravity_phase_rad),
+            ("drive.gear_ratio", drive.gear_ratio),
+        ];
+        for (key, value) in above_zero {
+            refuse(key, value, "this has to be a finite number above zero", |x| x.is_finite() && x > 0.0)?;
+        }
+        for (key, value) in finite {
+            refuse(key, value, "this has to be a finite number", f64::is_finite)?;
+        }
+        refuse("drive.gear_ratio", drive.gear_ratio, "a gear ratio cannot be zero", |x| x.abs() > 0.0)?;
+        for (quantity, mapping) in &self.columns {
+            let key = format!("columns.{quantity}.scale");
+            refuse(&key, Some(mapping.scale), "this has to be finite and not zero", |x| {
+                x.is_finite() && x.abs() > 0.0
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn refuse(key: &str, value: Option<f64>, rule: &str, accept: impl Fn(f64) -> bool) -> Result<()> {
+    match value {
+        Some(number) if !accept(number) => {
+            Err(Error::new(&codes::BAD_JOINT_FILE, rule).in_column(key).with_value(number.to_string()))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn row_of(text: &str, offset: usize) -> u64 {
+    1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count() as u64
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_documented_key_is_read() {
+        let joint = Joint::parse(
+            r#"
+            name = "elbow"
+            [columns]
+            velocity = { name = "dq", unit = "deg/s", side = "motor", scale = -1 }
+            [rigid_body]
+            inertia_kgm2 = 0.5
+            gravity_torque_Nm = 4.0
+            gravity_phase_rad = 0.1
+            [drive]
+            torque_constant_Nm_A = 0.1
+            gear_ratio = 100
+            counts_per_turn = 8192
+            torque_limit_Nm = 50
+            rate_Hz = 1000
+            [plant]
+            anything = 1
+            "#,
+        )
+        .unwrap();
+        assert_eq!(joint.name.as_deref(), Some("elbow"));
+        assert_eq!(joint.columns["velocity"].side, Side::Motor);
+        assert!((joint.drive.joint_torque_per_ampere().unwrap() - 10.0).abs() < 1e-12);
+        assert!(joint.other.contains_key("plant"));
+    }
+
+    #[test]
+    fn a_misspelt_key_is_refused_with_its_row() {
+        let error = Joint::parse("[drive]\nrate_Hz = 1000\ngear_ration = 3\n").unwrap_err();
+        assert_eq!((error.code(), error.row()), (&codes::BAD_JOINT_FILE, Some(3)));
+    }
+
+    #[test]
+    fn impossible_numbers_are_refused_by_key() {
+        for text in ["[drive]\ncounts_per_turn = 0", "[drive]\ngear_ratio = nan", "[rigid_body]\ninertia_kgm2 = -1"] {
+            let error = Joint::parse(text).unwrap_err();
+            assert_eq!(error.code(), &codes::BAD_JOINT_FILE);
+            assert!(error.column().is_some() && error.value().is_some());
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! The one filter: a Gaussian and its derivatives, zero phase, applied alike to every channel.
+//!
+//! Velocity is the convolution of the position with the derivative of the kernel and acceleration that with its second
+//! derivative, so that F, F D and F D2 have the same gain at every frequency and terms that are linear in the motion
+//! match the filtered torque exactly (rule P1).
+
+use std::f64::consts::PI;
+
+/// The kernel is cut off at this many standard deviations.
+const HALF_WIDTH_SIGMAS: f64 = 4.0;
+
+/// Frequency at which a Gaussian of standard deviation s passes half the power is this over s: sqrt(ln 2) / 2 pi.
+const HALF_POWER: f64 = 0.132_505_182;
+
+/// A sampled Gaussian low-pass and its first two derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaussianFilter {
+    /// Standard deviation of the kernel, s.
+    pub sigma_s: f64,
+    /// Sample period, s.
+    pub period_s: f64,
+    smooth: Vec<f64>,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+/// Which kernel to convolve with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The low-pass itself.
+    Smooth,
+    /// Low-pass and first derivative.
+    First,
+    /// Low-pass and second derivative.
+    Second,
+}
+
+impl GaussianFilter {
+    /// A filter of standard deviation `sigma_s` for signals sampled every `period_s` (both in s, above zero). Below one
+    /// period the kernel would no longer be a sampled Gaussian; one period is then taken.
+    #[must_use]
+    pub fn new(sigma_s: f64, period_s: f64) -> Self {
+        let sigma_s = sigma_s.max(period_s);
+        let sigma = sigma_s / period_s;
+        let half = (HALF_WIDTH_SIGMAS * sigma).ceil() as i64;
+        let offsets = || (-half..=half).map(|k| k as f64);
+        let gauss: Vec<f64> = offsets().map(|k| (-0.5 * (k / sigma).powi(2)).exp()).collect();
+        // The moments are made exact, so that constants, ramps and parabolas pass without error.
+        let total: f64 = gauss.iter().sum();
+        let smooth: Vec<f64> = gauss.iter().map(|g| g / total).collect();
+        let slope: f64 = offsets().zip(&smooth).map(|(k, g)| k * k * g).sum();
+        let first = offsets().zip(&smooth).map(|(k, g)| k * g / (slope * period_s)).collect();
+        let centred: Vec<f64> = offsets().zip(&smooth).map(|(k, g)| (k * k - slope) * g).collect();
+        let curvature: f64 = offsets().zip(&centred).map(|(k, c)| 0.5 * k * k * c).sum();
+        let second = centred.iter().map(|c| c / (curvature * period_s * period_s)).collect();
+        Self { sigma_s, period_s, smooth, first, second }
+    }
+
+    /// Samples lost at each end of a segment.
+    #[must_use]
+    pub fn half_width(&self) -> usize {
+        self.smooth.len() / 2
+    }
+
+    /// Frequency at which the power is halved, Hz.
+    #[must_use]
+    pub fn cutoff_hz(&self) -> f64 {
+        HALF_POWER / self.sigma_s
+    }
+
+    /// Standard deviation of the output for white noise of unit standard deviation at the input.
+    #[must_use]
+    pub fn noise_gain(&self, order: Order) -> f64 {
+        self.kernel(order).iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+    }
+
+    /// Convolution at every `stride`-th sample whose window lies inside the signal, from index
+    /// [`half_width`](Self::half_width) on. A signal shorter than the window gives nothing.
+    #[must_use]
+    pub fn apply(&self, signal: &[f64], order: Order, stride: usize) -> Vec<f64> {
+        let kernel = self.kernel(order);
+        // A correlation: the kernel of the first derivative is odd and already has the sign for it.
+        signal.windows(kernel.len()).step_by(stride.max(1)).map(|window| dot(window, kernel)).collect()
+    }
+
+    /// Convolution at every sample: beyond its ends the signal is continued by point reflection, which keeps level and
+    /// slope. Values within a half width of an end are less certain.
+    #[must_use]
+    pub fn apply_everywhere(&self, signal: &[f64], order: Order) -> Vec<f64> {
+        let (Some(&head), Some(&tail)) = (signal.first(), signal.last()) else { return Vec::new() };
+        let last = signal.len() - 1;
+        let half = self.half_width();
+        let reach = |distance: usize| distance.min(last);
+        let before = (1..=half).rev().map(|k| 2.0 * head - signal[reach(k)]);
+        let after = (1..=half).map(|k| 2.0 * tail - signal[last - reach(k)]);
+        let padded: Vec<f64> = before.chain(signal.iter().copied()).chain(after).collect();
+        self.apply(&padded, order, 1)
+    }
+
+    fn kernel(&self, order: Order) -> &[f64] {
+        match order {
+            Order::Smooth => &self.smooth,
+            Order::First => &self.first,
+            Order::Second => &self.second,
+        }
+    }
+}
+
+/// Standard deviation, in s, of the shortest Gaussian that holds white position noise of `noise` (rad or m, at one
+/// sample every `period_s`) to an acceleration noise of `limit`: noise * ||D2 F|| = limit, with
+/// ||D2 F||^2 = 3 period / (8 sqrt(pi) sigma^5).
+#[must_use]
+pub fn sigma_for_acceleration_noise(noise: f64, period_s: f64, limit: f64) -> f64 {
+    (noise * noise * period_s * 3.0 / (8.0 * PI.sqrt() * limit * limit)).powf(0.2)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn parabolas_pass_with_exact_derivatives(
+            sigma in 1.0..40.0_f64, a in -3.0..3.0_f64, b in -3.0..3.0_f64, c in -3.0..3.0_f64,
+        ) {
+            let period = 0.004;
+            let filter = GaussianFilter::new(sigma * period, period);
+            let time: Vec<f64> = (0..2 * filter.half_width() + 7).map(|i| i as f64 * period).collect();
+            let signal: Vec<f64> = time.iter().map(|t| a + b * t + c * t * t).collect();
+            let first = filter.apply(&signal, Order::First, 1);
+            let second = filter.apply(&signal, Order::Second, 1);
+            for (i, (v, w)) in first.iter().zip(&second).enumerate() {
+                let t = time[i + filter.half_width()];
+                prop_assert!((v - (b + 2.0 * c * t)).abs() < 1e-8);
+                prop_assert!((w - 2.0 * c).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_first_and_second_have_one_gain() {
+        let period = 0.001;
+        let filter = GaussianFilter::new(0.005, period);
+        for frequency in [1.0, 10.0, 30.0] {
+            let w = 2.0 * PI * frequency;
+            let wave: Vec<f64> = (0..1000).map(|i| (w * i as f64 * period).sin()).collect();
+            let peak = |order| filter.apply(&wave, order, 1).iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let gain = peak(Order::Smooth);
+            assert!((gain - (-0.5 * (w * 0.005).powi(2)).exp()).abs() < 1e-3);
+            assert!((peak(Order::First) / w / gain - 1.0).abs() < 5e-3, "{frequency}");
+            assert!((peak(Order::Second) / (w * w) / gain - 1.0).abs() < 5e-3, "{frequency}");
+        }
+    }
+
+    #[test]
+    fn the_noise_rule_agrees_with_the_kernel() {
+        let (noise, period, limit) = (1e-5, 0.001, 0.5);
+        let sigma = sigma_for_acceleration_noise(noise, period, limit);
+        let filter = GaussianFilter::new(sigma, period);
+        assert!((noise * filter.noise_gain(Order::Second) / limit - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn half_power_is_at_the_stated_frequency() {
+        let filter = GaussianFilter::new(0.01, 0.001);
+        let w = 2.0 * PI * filter.cutoff_hz();
+        assert!(((-(w * 0.01).powi(2)).exp() - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn continued_ends_keep_a_ramp() {
+        let filter = GaussianFilter::new(0.01, 0.001);
+        let ramp: Vec<f64> = (0..200).map(|i| 3.0 * f64::from(i) * 0.001).collect();
+        assert!(filter.apply_everywhere(&ramp, Order::First).iter().all(|v| (v - 3.0).abs() < 1e-9));
+        assert_eq!(filter.apply_everywhere(&ramp, Order::Smooth).len(), ramp.len());
+    }
+}

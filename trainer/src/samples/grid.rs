@@ -1,0 +1,101 @@
+//! A uniform time grid under time stamps that jitter or have gaps.
+
+use std::ops::Range;
+
+use crate::recording::Recording;
+
+/// Steps that deviate by less than this share of the period count as uniform: the text's rounding, not jitter.
+const UNIFORM_JITTER: f64 = 0.02;
+
+/// The uniform grid of one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grid {
+    pub(super) period_s: f64,
+    /// Times of the grid, segment after segment.
+    pub(super) segments: Vec<Segment>,
+    /// Whether values have to be interpolated.
+    pub(super) resampled: bool,
+}
+
+/// An uninterrupted stretch of the recording.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Segment {
+    /// Rows of the recording.
+    pub(super) rows: Range<usize>,
+    /// Time of the first row, s.
+    pub(super) start_s: f64,
+    /// Number of grid points.
+    pub(super) points: usize,
+}
+
+impl Grid {
+    /// The grid of the median period; a gap of the clock begins a new segment.
+    pub(super) fn of(recording: &Recording, time: &[f64]) -> Self {
+        let health = &recording.health;
+        let resampled = health.jitter > UNIFORM_JITTER;
+        let bounds: Vec<usize> =
+            std::iter::once(0).chain(health.gaps.iter().copied()).chain(std::iter::once(time.len())).collect();
+        // The median of rounded time stamps is itself rounded; the mean over the uninterrupted stretches is not.
+        let (mut span, mut steps) = (0.0, 0usize);
+        for pair in bounds.windows(2) {
+            span += time[pair[1] - 1] - time[pair[0]];
+            steps += pair[1] - pair[0] - 1;
+        }
+        let period_s = if steps > 0 { span / steps as f64 } else { 1.0 };
+        let segments = bounds
+            .windows(2)
+            .map(|pair| {
+                let rows = pair[0]..pair[1];
+                let points = if resampled {
+                    ((time[pair[1] - 1] - time[pair[0]]) / period_s + 1e-6).floor() as usize + 1
+                } else {
+                    rows.len()
+                };
+                Segment { start_s: time[pair[0]], rows, points }
+            })
+            .collect();
+        Self { period_s, segments, resampled }
+    }
+
+    /// Values of one channel on the grid of `segment`, linearly interpolated between rows where the clock jitters.
+    pub(super) fn values(&self, segment: &Segment, time: &[f64], channel: &[f64]) -> Vec<f64> {
+        let (time, channel) = (&time[segment.rows.clone()], &channel[segment.rows.clone()]);
+        if !self.resampled {
+            return channel.to_vec();
+        }
+        let grid: Vec<f64> = (0..segment.points).map(|i| segment.start_s + i as f64 * self.period_s).collect();
+        interpolate(time, channel, &grid)
+    }
+}
+
+/// Linear interpolation of `values` at increasing `time` onto increasing `at`; beyond the ends the last value holds.
+pub(super) fn interpolate(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+    let last = time.len() - 1;
+    let mut left = 0;
+    at.iter()
+        .map(|&t| {
+            while left + 1 < last && time[left + 1] <= t {
+                left += 1;
+            }
+            let right = (left + 1).min(last);
+            let span = time[right] - time[left];
+            let share = if span > 0.0 { ((t - time[left]) / span).clamp(0.0, 1.0) } else { 0.0 };
+            values[left] + share * (values[right] - values[left])
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interpolation_is_exact_on_a_line_and_holds_beyond_the_ends() {
+        let time = [0.0, 0.9, 2.1, 3.0];
+        let line: Vec<f64> = time.iter().map(|t| 1.0 + 2.0 * t).collect();
+        let out = interpolate(&time, &line, &[-1.0, 0.0, 1.0, 2.5, 3.0, 9.0]);
+        for (found, wanted) in out.iter().zip([1.0, 1.0, 3.0, 6.0, 7.0, 7.0]) {
+            assert!((found - wanted).abs() < 1e-12, "{out:?}");
+        }
+    }
+}

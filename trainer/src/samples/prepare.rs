@@ -1,0 +1,190 @@
+//! Applies the planned filter to a recording: samples for a fit, or one value for every row for a prediction.
+
+use std::ops::Range;
+
+use super::Samples;
+use super::filter::{GaussianFilter, Order};
+use super::grid::{Grid, Segment, interpolate};
+use super::plan::{Preparation, VelocitySource};
+use crate::error::{Error, Result, codes};
+use crate::recording::{Quantity, Recording};
+
+/// Temperatures are smoothed over this standard deviation, s: their sensor's noise would otherwise hand what
+/// temperature explains to its rivals (rule P5).
+const TEMPERATURE_SIGMA_S: f64 = 2.0;
+
+/// Samples for a fit: filter edges dropped, decimated to the useful band.
+///
+/// # Errors
+/// `FRK-D009` when the task lacks a column, `FRK-D017` when no stretch is long enough for the filter.
+pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Samples> {
+    let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording)) };
+    let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
+    let grid = Grid::of(recording, time);
+    let filter = GaussianFilter::new(sigma_s, grid.period_s);
+    let stride = preparation.stride(grid.period_s);
+    let window = 2 * filter.half_width() + 1;
+    let usable: Vec<&Segment> = grid.segments.iter().filter(|segment| segment.points >= window).collect();
+    if usable.is_empty() {
+        let message = format!("no uninterrupted stretch has the {window} samples that the filter needs");
+        return Err(Error::new(&codes::SEGMENTS_TOO_SHORT, message).in_file(recording.file()));
+    }
+
+    let mut samples = empty(recording, preparation, Some(1.0 / (grid.period_s * stride as f64)));
+    for segment in usable {
+        let start = samples.time.len();
+        let on_grid = |channel: &[f64]| grid.values(segment, time, channel);
+        let count = (segment.points - window) / stride + 1;
+        let first = filter.half_width();
+        samples.time.extend((0..count).map(|i| segment.start_s + (first + i * stride) as f64 * grid.period_s));
+        extend(&mut samples, recording, preparation, |channel, order| filter.apply(&on_grid(channel), order, stride));
+        samples.segments.push(start..start + count);
+    }
+    smooth_temperatures(&mut samples);
+    samples.recordings = vec![(recording.label.clone(), 0..samples.time.len())];
+    Ok(samples)
+}
+
+/// One sample for every row of the recording, at the row's own time: for predictions beside the recorded rows. The
+/// actuator, recorded rigid body and named channels are filtered like the motion; near ends and gaps the motion is continued by point reflection.
+///
+/// # Errors
+/// `FRK-D009` when the task lacks a column.
+pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Result<Samples> {
+    let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording)) };
+    let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
+    let grid = Grid::of(recording, time);
+    let filter = GaussianFilter::new(sigma_s, grid.period_s);
+    let mut samples = empty(recording, preparation, Some(1.0 / grid.period_s));
+    for segment in &grid.segments {
+        let rows = segment.rows.clone();
+        let nodes: Vec<f64> = (0..segment.points).map(|i| segment.start_s + i as f64 * grid.period_s).collect();
+        let at_rows = |channel: &[f64], order| {
+            let filtered = filter.apply_everywhere(&grid.values(segment, time, channel), order);
+            if grid.resampled { interpolate(&nodes, &filtered, &time[rows.clone()]) } else { filtered }
+        };
+        samples.time.extend(&time[rows.clone()]);
+        extend(&mut samples, recording, preparation, at_rows);
+        samples.segments.push(rows);
+    }
+    smooth_temperatures(&mut samples);
+    samples.recordings = vec![(recording.label.clone(), 0..samples.time.len())];
+    Ok(samples)
+}
+
+/// Appends one segment of every channel, filtered by `apply`.
+fn extend(
+    samples: &mut Samples,
+    recording: &Recording,
+    preparation: &Preparation,
+    apply: impl Fn(&[f64], Order) -> Vec<f64>,
+) {
+    let grow = |list: &mut Option<Vec<f64>>, source: Option<&[f64]>, order| {
+        if let Some(channel) = source {
+            list.get_or_insert_default().extend(apply(channel, order));
+        }
+    };
+    let position = recording.values(Quantity::Position);
+    let recorded_velocity = recording.values(Quantity::Velocity);
+    grow(&mut samples.position, position, Order::Smooth);
+    match preparation.velocity {
+        VelocitySource::Derived => {
+            grow(&mut samples.velocity, position, Order::First);
+            grow(&mut samples.acceleration, position, Order::Second);
+        }
+        VelocitySource::Recorded => {
+            grow(&mut samples.velocity, recorded_velocity, Order::Smooth);
+            grow(&mut samples.acceleration, recorded_velocity, Order::First);
+        }
+    }
+    grow(&mut samples.actuator, recording.actuator().map(|c| c.values.as_slice()), Order::Smooth);
+    grow(&mut samples.rigid_body, recording.values(Quantity::RigidBodyTorque), Order::Smooth);
+    grow(&mut samples.friction, recording.separated_friction().map(|c| c.values.as_slice()), Order::Smooth);
+    for (name, values) in named_channels(recording) {
+        let filtered = apply(values, Order::Smooth);
+        match samples.channels.iter_mut().find(|(own, _)| own == name) {
+            Some((_, list)) => list.extend(filtered),
+            None => samples.channels.push((name.to_owned(), filtered)),
+        }
+    }
+}
+
+/// Every channel that is neither motion, actuator, rigid body nor separated friction.
+fn named_channels(recording: &Recording) -> impl Iterator<Item = (&str, &[f64])> {
+    let actuator = recording.actuator().and_then(|channel| channel.quantity);
+    let friction = recording.separated_friction().and_then(|channel| channel.quantity);
+    recording
+        .channels
+        .iter()
+        .filter(move |channel| match channel.quantity {
+            None => true,
+            Some(
+                Quantity::Time
+                | Quantity::Position
+                | Quantity::Velocity
+                | Quantity::Acceleration
+                | Quantity::RigidBodyTorque,
+            ) => false,
+            other => other != actuator && other != friction,
+        })
+        .map(|channel| (channel.name.as_str(), channel.values.as_slice()))
+}
+
+fn smooth_temperatures(samples: &mut Samples) {
+    let Some(rate_hz) = samples.rate_hz else { return };
+    let filter = GaussianFilter::new(TEMPERATURE_SIGMA_S, 1.0 / rate_hz);
+    let segments: Vec<Range<usize>> = samples.segments.clone();
+    for (_, values) in samples.channels.iter_mut().filter(|(name, _)| name == "temperature") {
+        for segment in &segments {
+            let smooth = filter.apply_everywhere(&values[segment.clone()], Order::Smooth);
+            values[segment.clone()].copy_from_slice(&smooth);
+        }
+    }
+}
+
+/// A separated recording as it is: nothing to differentiate, so nothing to filter.
+fn unfiltered(recording: &Recording) -> Samples {
+    let own = |quantity| recording.values(quantity).map(<[f64]>::to_vec);
+    let rows = recording.len();
+    let mut samples = Samples {
+        axis: recording.axis,
+        time: own(Quantity::Time).unwrap_or_default(),
+        position: own(Quantity::Position),
+        velocity: own(Quantity::Velocity),
+        acceleration: own(Quantity::Acceleration),
+        actuator: recording.actuator().map(|channel| channel.values.clone()),
+        actuator_unit: unit_of(recording),
+        rigid_body: own(Quantity::RigidBodyTorque),
+        friction: recording.separated_friction().map(|channel| channel.values.clone()),
+        channels: Vec::new(),
+        segments: std::iter::once(0..rows).collect(),
+        recordings: vec![(recording.label.clone(), 0..rows)],
+        rate_hz: None,
+        filter: "friction recorded already separated; not filtered".to_owned(),
+    };
+    samples.channels = named_channels(recording).map(|(name, values)| (name.to_owned(), values.to_vec())).collect();
+    samples
+}
+
+fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>) -> Samples {
+    Samples {
+        axis: recording.axis,
+        time: Vec::new(),
+        position: None,
+        velocity: None,
+        acceleration: None,
+        actuator: None,
+        actuator_unit: unit_of(recording),
+        rigid_body: None,
+        friction: None,
+        channels: Vec::new(),
+        segments: Vec::new(),
+        recordings: Vec::new(),
+        rate_hz,
+        filter: preparation.to_string(),
+    }
+}
+
+fn unit_of(recording: &Recording) -> &'static str {
+    recording.separated_friction().or_else(|| recording.actuator()).map_or("", |channel| channel.unit)
+}
