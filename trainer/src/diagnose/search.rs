@@ -106,7 +106,11 @@ impl<'a> Search<'a> {
         settings: Settings,
     ) -> Self {
         let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
-        let t0 = std::time::Instant::now(); let design = Design::new(prepared, hypotheses, left_out); if std::env::var("DBG").is_ok() { eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len()); }
+        let t0 = std::time::Instant::now();
+        let design = Design::new(prepared, hypotheses, left_out);
+        if std::env::var("DBG").is_ok() {
+            eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len());
+        }
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
     }
@@ -137,7 +141,11 @@ impl<'a> Search<'a> {
         loop {
             let base = self.base_with(&accepted, None);
             let round = Round::new(self, base, self.settings.seed.wrapping_add(accepted.len() as u64));
-            let t0 = std::time::Instant::now(); let table = round.score_table(&accepted); if std::env::var("DBG").is_ok() { eprintln!("score {:?}", t0.elapsed()); }
+            let t0 = std::time::Instant::now();
+            let table = round.score_table(&accepted);
+            if std::env::var("DBG").is_ok() {
+                eprintln!("score {:?}", t0.elapsed());
+            }
             let finding = choose(&table, &self.settings);
             match finding {
                 Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
@@ -309,10 +317,14 @@ impl<'s, 'a> Round<'s, 'a> {
         let (white, bench, variants) = weigh_all(search, base, &noise);
         let t1 = t0.elapsed();
         let alone = bench.alone();
-        if std::env::var("DBG").is_ok() { eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms);
+        }
         let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
         let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
-        if std::env::var("DBG").is_ok() { eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1);
+        }
         Self { search, noise, bench, alone, variants, null }
     }
 
