@@ -48,7 +48,7 @@ pub fn signals(recording: &SimulatedRecording, joint: &plant::Joint) -> Signals 
     let owned = |name: &str| recording.column(name).map(<[f64]>::to_vec);
     let time = owned("time_s").unwrap_or_default();
     let position = owned("position_rad").unwrap_or_default();
-    let period = 1.0 / joint.drive.rate_Hz;
+    let period = 1.0 / joint.drive.rate_hz;
     let trajectory = owned("trajectory").unwrap_or_default();
     let mut segments = Vec::new();
     let mut begin = 0;
