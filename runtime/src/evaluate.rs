@@ -3,6 +3,7 @@
 use frikan_shared::model::{Input, Law, MAX_INPUTS, Model};
 
 use crate::expression::run;
+use crate::integer_table::evaluate_steps;
 use crate::network::evaluate_network;
 use crate::table::evaluate_table;
 
@@ -48,7 +49,10 @@ pub fn evaluate<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INP
             let value = run(program, &held(&model.inputs, inputs));
             limited(if any_nan(&model.inputs, inputs) { 0.0 } else { value }, model.output_limit)
         }
-        Law::IntegerTable(_) => 0.0,
+        Law::IntegerTable(table) => {
+            let value = if first.is_nan() { 0.0 } else { evaluate_steps(table, &model.cells, first) };
+            limited(value, model.output_limit)
+        }
     }
 }
 

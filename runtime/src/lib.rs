@@ -9,9 +9,18 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod compensator;
+pub mod effects;
 pub mod evaluate;
 pub mod expression;
+pub mod friction;
+pub mod integer_table;
+pub mod joints;
 pub mod network;
+pub mod slots;
 pub mod table;
+
+#[cfg(test)]
+mod test_models;
 
 pub use frikan_shared as shared;

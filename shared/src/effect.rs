@@ -163,6 +163,8 @@ pub enum Effect {
     Ripple {
         /// What the sum adds to.
         kind: Kind,
+        /// Of `s(v)` where the ripple is one of friction, rad/s.
+        smoothing_velocity: f32,
         /// The lines.
         harmonics: heapless::Vec<Harmonic, MAX_HARMONICS>,
     },
@@ -170,6 +172,8 @@ pub enum Effect {
     PositionTable {
         /// What the table adds to.
         kind: Kind,
+        /// Of `s(v)` where the table is one of friction, rad/s.
+        smoothing_velocity: f32,
         /// `b`.
         table: Table,
     },

@@ -195,3 +195,6 @@ pub fn encode<'a, const CELLS: usize>(image: &Image<CELLS>, buffer: &'a mut [u8]
     crc32.copy_from_slice(&checksum(&[covered, payload]).to_le_bytes());
     buffer.get(..HEADER_BYTES + payload_bytes).ok_or(ImageError::BufferTooSmall)
 }
+
+#[cfg(test)]
+mod tests;

@@ -56,7 +56,7 @@ fn bounded(x: f32) -> bool {
 
 /// A scale by which something is divided.
 fn scale(x: f32) -> bool {
-    x >= 1.0 / LARGEST && x <= LARGEST
+    (1.0 / LARGEST..=LARGEST).contains(&x)
 }
 
 impl<const CELLS: usize> Model<CELLS> {
@@ -220,11 +220,12 @@ fn check_coefficients(effect: &Effect) -> (bool, Option<Quantity>) {
         Effect::DwellBreakaway { gain, time, distance, rest_velocity, dwell_limit, smoothing_velocity } => {
             (bounded(gain) && scales(&[time, distance, rest_velocity, dwell_limit, smoothing_velocity]), None)
         }
-        Effect::Ripple { ref harmonics, .. } => {
-            let usable = harmonics.iter().all(|line| all(&[line.order, line.cosine, line.sine]));
+        Effect::Ripple { ref harmonics, smoothing_velocity, .. } => {
+            let usable =
+                scale(smoothing_velocity) && harmonics.iter().all(|line| all(&[line.order, line.cosine, line.sine]));
             (usable, Some(Quantity::Position))
         }
-        Effect::PositionTable { .. } => (true, Some(Quantity::Position)),
+        Effect::PositionTable { smoothing_velocity, .. } => (scale(smoothing_velocity), Some(Quantity::Position)),
         Effect::Play { half_width, torque } => (scale(half_width) && bounded(torque), Some(Quantity::Position)),
         Effect::WindupHysteresis { torque, distance } => (bounded(torque) && scale(distance), None),
         Effect::Spring { stiffness, rest } => (all(&[stiffness, rest]), Some(Quantity::Position)),

@@ -1,4 +1,5 @@
 //! What the cross-crate tests share.
 
+pub mod concealed;
 pub mod models;
 pub mod vectors;

@@ -9,6 +9,7 @@ pub mod files;
 pub mod joint;
 pub mod kan;
 pub mod law;
+pub mod parameter;
 pub mod physics;
 pub mod plant;
 pub mod recording;

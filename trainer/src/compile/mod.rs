@@ -1,1 +1,13 @@
 //! From a network or a law to the model that a drive evaluates, with a certified error.
+//!
+//! A law arrives as a [`formula::Formula`], leaves as cells, programs and tables of a [`frikan_shared::model::Model`], and is
+//! proved against the runtime by [`verify`], with an evaluator of its own in [`reference`].
+
+pub mod cells;
+pub mod formula;
+pub mod interval;
+pub mod program;
+pub mod reference;
+pub mod series;
+pub mod tables;
+pub mod verify;

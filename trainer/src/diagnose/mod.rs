@@ -1,1 +1,40 @@
 //! Which physics is missing: noise, evidence, calibration, naming, localising, proving, advising.
+//!
+//! Data flow: [`Signals`] -> [`Prepared`] (one filter for all) -> [`Base`] (what is already fitted) -> [`Search`]
+//! (evidence for every hypothesis of [`crate::physics`], calibrated against null draws) -> findings.
+
+mod advise;
+mod base;
+mod candidates;
+mod conclude;
+mod confidence;
+mod evidence;
+mod filter;
+mod health;
+mod linear;
+mod localise;
+mod noise;
+mod null;
+mod outcome;
+mod prepare;
+mod prove;
+mod random;
+mod refine;
+mod run;
+mod search;
+mod signals;
+mod strength;
+
+pub use base::{Base, BaseKind};
+pub use candidates::{Channel, Factor, Generic, Label};
+pub use prepare::{Lock, Prepared};
+pub use advise::Advice;
+pub use conclude::{Fitted, Refit, unit_text};
+pub use health::{HealthNote, examine};
+pub use localise::{Location, Region};
+pub use outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
+pub use prove::Proof;
+pub use run::{Options, Refusal, diagnose};
+pub use search::{Accepted, Scored, Search, SearchOutcome, Settings};
+pub use signals::Signals;
+pub use strength::{Strength, strength};

@@ -1,1 +1,27 @@
 //! Symbolic laws: known forms, function library, search, simplification, names, rendering. Knows no files.
+//!
+//! A law is looked for in samples alone: [`discover()`] searches the structures that [`structure`] can say, fits each with
+//! all its constants at once ([`mod@fit`]), prices it ([`price`]) and names what it finds ([`naming`]).
+
+pub mod canonical;
+pub mod data;
+pub mod discover;
+pub mod expression;
+pub mod fit;
+pub mod known_forms;
+pub mod library;
+pub mod naming;
+pub mod price;
+pub mod projection;
+pub mod ranges;
+pub mod render;
+pub mod search;
+pub mod structure;
+pub mod tape;
+pub mod uncertainty;
+
+pub use data::{Channel, ChannelRole, LawData, LawError, Nuisance};
+pub use discover::{Discovery, FrontEntry, Law, NuisanceCoefficient, Parameter, SearchOptions, discover};
+pub use expression::{Expr, Step, Unary};
+pub use known_forms::{FormFit, KnownForm, fit_form};
+pub use render::{Language, render};

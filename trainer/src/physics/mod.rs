@@ -1,1 +1,173 @@
-//! The catalogue of effects: one file an effect, with its equation, regressors and states.
+//! The catalogue of effects: one file an effect, with its equation, its regressors and its shape parameters.
+//!
+//! A hypothesis is linear in its coefficients and non-linear in its *shape* (a Stribeck velocity, a time constant, an
+//! order): for a given shape it turns the recorded states into columns of torque per unit coefficient.
+//! This room knows nothing of noise, evidence or choice (that is `diagnose`) and nothing of the simulator (`plant`).
+
+mod asymmetry;
+mod backlash;
+mod contact;
+mod coupling;
+mod drift;
+mod dwell_breakaway;
+mod elasticity;
+mod identity;
+mod kinematic_error;
+mod lag;
+mod load;
+mod misalignment;
+mod position_friction;
+mod presliding;
+mod recurrent_fault;
+mod rigid_body;
+mod ripple;
+mod saturation;
+mod state;
+mod stribeck;
+mod temperature;
+mod transient;
+mod viscous;
+mod warm_up;
+mod windup;
+
+pub use identity::{Action, EffectId};
+pub use state::{JointState, MemoryAxes, OtherJoint};
+
+/// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).
+pub type Shape = Vec<f64>;
+
+/// The dimension of a parameter, from which its unit follows for rotary and linear axes and each actuator unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A torque, force or current: N m, N or A.
+    Torque,
+    /// Torque per velocity.
+    TorquePerVelocity,
+    /// Torque per velocity to a power that is itself a parameter.
+    TorquePerVelocityPower,
+    /// Torque per kelvin.
+    TorquePerKelvin,
+    /// Torque per velocity and kelvin.
+    TorquePerVelocityKelvin,
+    /// Torque per unit of position.
+    TorquePerPosition,
+    /// Torque per acceleration: an inertia or a mass.
+    Inertia,
+    /// Torque per second.
+    TorquePerSecond,
+    /// Torque per watt of smoothed dissipated power.
+    TorquePerWatt,
+    /// Torque per watt and velocity.
+    TorquePerWattVelocity,
+    /// Inverse of a torque.
+    PerTorque,
+    /// A velocity.
+    Velocity,
+    /// A position.
+    Position,
+    /// A time in seconds.
+    Second,
+    /// A time squared, s2.
+    SecondSquared,
+    /// Torque per squared velocity.
+    TorquePerVelocitySquared,
+    /// Periods per joint revolution (rotary) or radians per metre (linear).
+    Order,
+    /// Dimensionless.
+    One,
+}
+
+/// One left-out effect, as the diagnosis tests it.
+pub trait Hypothesis: Sync {
+    /// Which effect of the catalogue this is.
+    fn id(&self) -> EffectId;
+
+    /// The equation that it adds to the torque.
+    fn equation(&self) -> &'static str;
+
+    /// Grid of shapes worth testing on this recording; empty when the recording cannot show the effect.
+    /// A hypothesis without shape parameters returns one empty shape.
+    fn shapes(&self, state: &JointState) -> Vec<Shape>;
+
+    /// Torque per unit coefficient at the recorded states: one column a coefficient, each as long as `state.time`.
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>>;
+
+    /// Name, symbol and dimension of each linear coefficient for a shape.
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)>;
+
+    /// Name, symbol, dimension and bounds of each shape parameter that may be refined continuously
+    /// (a discrete variant has `low == high`).
+    fn shape_names(&self) -> Vec<ShapeName> {
+        Vec::new()
+    }
+
+    /// Bounds of shape parameter `index` on this recording, for continuous refinement; `None` where it is discrete.
+    fn bounds(&self, _state: &JointState, _index: usize) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// First step of a continuous refinement of shape parameter `index`.
+    fn step(&self, _state: &JointState, index: usize, shape: &[f64]) -> f64 {
+        0.25 * shape[index].abs().max(1e-9)
+    }
+}
+
+/// Name, symbol and dimension of a shape parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeName {
+    /// The field's name, e.g. `stribeck_velocity`.
+    pub name: &'static str,
+    /// Symbol used in the equation.
+    pub symbol: &'static str,
+    /// Dimension, from which the unit follows.
+    pub dimension: Dimension,
+}
+
+impl ShapeName {
+    const fn new(name: &'static str, symbol: &'static str, dimension: Dimension) -> Self {
+        Self { name, symbol, dimension }
+    }
+}
+
+/// Every hypothesis of the catalogue, in the catalogue's order.
+pub fn catalogue() -> Vec<Box<dyn Hypothesis + Send>> {
+    vec![
+        Box::new(stribeck::Stribeck),
+        Box::new(viscous::ViscousNonlinearity),
+        Box::new(asymmetry::DirectionAsymmetry),
+        Box::new(temperature::Temperature),
+        Box::new(warm_up::WarmUp),
+        Box::new(load::LoadFriction),
+        Box::new(load::DriveBackdrive),
+        Box::new(drift::SlowDrift),
+        Box::new(presliding::Presliding),
+        Box::new(lag::FrictionalLag),
+        Box::new(dwell_breakaway::DwellBreakaway),
+        Box::new(ripple::PositionRipple),
+        Box::new(kinematic_error::KinematicError),
+        Box::new(position_friction::PositionFriction),
+        Box::new(rigid_body::GravityError),
+        Box::new(rigid_body::InertiaError),
+        Box::new(rigid_body::TorqueScale),
+        Box::new(rigid_body::TorqueOffset),
+        Box::new(rigid_body::Spring),
+        Box::new(coupling::Coupling),
+        Box::new(saturation::Saturation),
+        Box::new(contact::Contact),
+        Box::new(transient::TransientEvent),
+        Box::new(recurrent_fault::RecurrentFault),
+        Box::new(backlash::Backlash),
+        Box::new(elasticity::Elasticity),
+        Box::new(windup::WindupHysteresis),
+        Box::new(misalignment::TimeMisalignment),
+    ]
+}
+
+/// `count` values from `low` to `high`, evenly spaced in the logarithm.
+pub(crate) fn geometric_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+    if count < 2 || high <= low {
+        return vec![low];
+    }
+    let ratio = (high / low).ln() / (count - 1) as f64;
+    (0..count).map(|i| low * (ratio * i as f64).exp()).collect()
+}

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const HALF_WIDTH_SIGMAS: f64 = 4.0;
 
 /// Frequency at which a Gaussian of standard deviation s passes half the power is this over s: sqrt(ln 2) / 2 pi.
-const HALF_POWER: f64 = 0.132_505_7;
+const HALF_POWER: f64 = 0.132_505_182;
 
 /// A sampled Gaussian low-pass and its first two derivatives.
 #[derive(Clone, Debug, PartialEq)]

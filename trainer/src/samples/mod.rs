@@ -3,15 +3,20 @@
 //! [`Preparation::plan`] chooses one filter for all recordings, [`prepare`] applies it alike to every channel, and
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
+mod bending;
+pub mod blocks;
 pub mod filter;
+mod even;
 mod grid;
 pub mod plan;
 mod prepare;
 pub mod regression;
+pub mod relevance;
 pub mod rigid_body;
 
 use std::ops::Range;
 
+pub use even::EvenClock;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 

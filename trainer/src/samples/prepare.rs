@@ -157,7 +157,7 @@ fn unfiltered(recording: &Recording) -> Samples {
         rigid_body: own(Quantity::RigidBodyTorque),
         friction: recording.separated_friction().map(|channel| channel.values.clone()),
         channels: Vec::new(),
-        segments: vec![0..rows],
+        segments: std::iter::once(0..rows).collect(),
         recordings: vec![(recording.label.clone(), 0..rows)],
         rate_hz: None,
         filter: "friction recorded already separated; not filtered".to_owned(),

@@ -28,6 +28,14 @@ impl LinearFit {
     pub fn standard_error(&self, index: usize) -> f64 {
         self.covariance[(index, index)].max(0.0).sqrt()
     }
+
+    /// Value and standard error of a weighted sum of the coefficients.
+    #[must_use]
+    pub fn combination(&self, weights: &[f64]) -> (f64, f64) {
+        let weights = DVector::from_column_slice(weights);
+        let variance = (weights.transpose() * &self.covariance * &weights)[(0, 0)];
+        (dot(weights.as_slice(), &self.coefficients), variance.max(0.0).sqrt())
+    }
 }
 
 /// Least squares of `target` on `columns` (all of one length n >= 1), over all samples.

@@ -4,7 +4,8 @@
 use std::ops::Range;
 
 use super::Samples;
-use super::regression::{LinearFit, least_squares};
+use super::bending::BendingLaw;
+use super::regression::least_squares;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::Axis;
@@ -12,11 +13,7 @@ use crate::recording::Axis;
 /// Gravity is asked for where the position covers at least this, rad; below, it cannot be told from an offset.
 const GRAVITY_RANGE_RAD: f64 = 0.5;
 /// Below this share of the top speed friction is no function of velocity; such samples do not enter the fit.
-const REST_SHARE: f64 = 0.005;
-/// Velocity knots on each side of zero, at squared spacing: denser at zero.
-const KNOTS: usize = 12;
-/// Fewest samples between two knots.
-const SAMPLES_PER_KNOT: usize = 8;
+const REST_SHARE: f64 = 0.001;
 /// Samples of one direction needed to tell an offset from friction, as a share.
 const DIRECTION_SHARE: f64 = 0.05;
 /// Blocks over which residuals may be correlated, for the standard errors.
@@ -190,8 +187,9 @@ pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
 /// Identifies the rigid-body terms together with a friction law that is piecewise linear in velocity, and takes them
 /// off the actuator's torque.
 ///
-/// Friction is odd at zero speed and may differ between directions elsewhere, so the offset is the middle of the two
-/// branches at zero speed.
+/// Both directions have a law of their own, so the offset is what they have in common: the mean of the two, averaged
+/// over the speeds that were driven. An asymmetry of friction that is the same at all speeds is therefore counted as
+/// offset, from which only samples at rest could tell it.
 ///
 /// # Errors
 /// `FRK-D009` when actuator or velocity is missing, `FRK-D014` as [`given_torque`], `FRK-D016` without motion.
@@ -205,32 +203,27 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
     let terms = terms(samples, joint);
 
     let moving = moving_samples(velocity);
-    let law = BendingLaw::over(&moving.iter().map(|&i| velocity[i]).collect::<Vec<_>>())?;
     let pick = |column: &[f64]| moving.iter().map(|&i| column[i]).collect::<Vec<f64>>();
-    let mut columns: Vec<Vec<f64>> = terms.iter().map(|term| pick(&term.column)).collect();
-    columns.extend(law.columns(&pick(velocity)));
+    let moving_velocity = pick(velocity);
+    let law = BendingLaw::over(&moving_velocity)?;
+    // The offset is no column of its own: the law holds it, and it is read off afterwards.
+    let own_column: Vec<&Term> = terms.iter().filter(|term| term.kind != TermKind::TorqueOffset).collect();
+    let mut columns: Vec<Vec<f64>> = own_column.iter().map(|term| pick(&term.column)).collect();
+    columns.extend(law.columns(&moving_velocity));
     let target: Vec<f64> = moving.iter().map(|&i| actuator[i] - given[i]).collect();
     let fit = least_squares(&columns, &target, &even_blocks(target.len(), BLOCKS));
-    Ok(take_apart(actuator, given, terms, &fit, joint, samples))
-}
 
-fn take_apart(
-    actuator: &[f64],
-    given: Vec<f64>,
-    terms: Vec<Term>,
-    fit: &LinearFit,
-    joint: &Joint,
-    samples: &Samples,
-) -> Separation {
-    let parameters: Vec<Parameter> = terms
-        .iter()
-        .enumerate()
-        .map(|(index, term)| Parameter {
-            kind: term.kind,
-            value: fit.coefficients[index],
-            standard_error: fit.standard_error(index),
-        })
-        .collect();
+    let mut parameters = Vec::with_capacity(terms.len());
+    for (index, term) in own_column.iter().enumerate() {
+        let (value, standard_error) = (fit.coefficients[index], fit.standard_error(index));
+        parameters.push(Parameter { kind: term.kind, value, standard_error });
+    }
+    if own_column.len() < terms.len() {
+        let mut weights = vec![0.0; own_column.len()];
+        weights.extend(law.even_part(&moving_velocity));
+        let (value, standard_error) = fit.combination(&weights);
+        parameters.push(Parameter { kind: TermKind::TorqueOffset, value, standard_error });
+    }
     let mut rigid_body = given.clone();
     for (term, parameter) in terms.iter().zip(&parameters) {
         for (sum, x) in rigid_body.iter_mut().zip(&term.column) {
@@ -240,7 +233,7 @@ fn take_apart(
     let friction = actuator.iter().zip(&rigid_body).map(|(total, body)| total - body).collect();
     let given_inertia =
         joint.rigid_body.inertia_kgm2.zip(actuator_per_torque(samples, joint).ok()).map_or(0.0, |(j, k)| j * k);
-    Separation {
+    Ok(Separation {
         terms,
         parameters,
         given,
@@ -249,78 +242,7 @@ fn take_apart(
         rmse: fit.rmse,
         rank_deficiency: fit.rank_deficiency,
         given_inertia,
-    }
-}
-
-/// Friction as straight pieces between knots of speed, a set for each direction that shares the value at zero.
-struct BendingLaw {
-    forward: Vec<f64>,
-    backward: Vec<f64>,
-}
-
-impl BendingLaw {
-    fn over(velocity: &[f64]) -> Result<Self> {
-        let forward = knots(velocity.iter().copied().filter(|v| *v > 0.0).collect());
-        let backward = knots(velocity.iter().map(|v| -v).filter(|v| *v > 0.0).collect());
-        if forward.len() + backward.len() < 4 {
-            let message = "the velocity hardly changes, so friction cannot be told from an offset";
-            let shown = velocity.first().copied().unwrap_or(0.0);
-            return Err(Error::new(&codes::NO_MOTION, message).in_column("velocity").with_value(shown.to_string()));
-        }
-        Ok(Self { forward, backward })
-    }
-
-    /// One column for the shared value at zero, then the knots forward, then those backward.
-    fn columns(&self, velocity: &[f64]) -> Vec<Vec<f64>> {
-        let mut columns = vec![velocity.iter().map(|&v| v.signum() * hat(self.side(v), 0, v.abs())).collect()];
-        for knot in 1..self.forward.len() {
-            columns.push(velocity.iter().map(|&v| if v > 0.0 { hat(&self.forward, knot, v) } else { 0.0 }).collect());
-        }
-        for knot in 1..self.backward.len() {
-            columns
-                .push(velocity.iter().map(|&v| if v < 0.0 { -hat(&self.backward, knot, -v) } else { 0.0 }).collect());
-        }
-        columns
-    }
-
-    fn side(&self, velocity: f64) -> &[f64] {
-        if velocity > 0.0 { &self.forward } else { &self.backward }
-    }
-}
-
-/// Speeds of the knots: zero, then squared spacing up to the top speed, wherever enough samples lie between.
-fn knots(mut speeds: Vec<f64>) -> Vec<f64> {
-    speeds.sort_by(f64::total_cmp);
-    let Some(&top) = speeds.last() else { return vec![0.0] };
-    let mut knots = vec![0.0];
-    let mut used = 0;
-    for k in 1..=KNOTS {
-        let speed = top * (k as f64 / KNOTS as f64).powi(2);
-        let below = speeds.partition_point(|v| *v <= speed);
-        let left = speeds.len() - below;
-        if below - used >= SAMPLES_PER_KNOT && (left >= SAMPLES_PER_KNOT || k == KNOTS) {
-            knots.push(speed);
-            used = below;
-        }
-    }
-    knots
-}
-
-/// Hat function number `index` over increasing `knots`; constant beyond the last.
-fn hat(knots: &[f64], index: usize, speed: f64) -> f64 {
-    let here = knots[index];
-    if speed < here {
-        match index.checked_sub(1).map(|left| knots[left]) {
-            Some(left) if speed > left => (speed - left) / (here - left),
-            _ => 0.0,
-        }
-    } else {
-        match knots.get(index + 1) {
-            Some(right) if speed < *right => (right - speed) / (right - here),
-            Some(_) => 0.0,
-            None => 1.0,
-        }
-    }
+    })
 }
 
 fn moving_samples(velocity: &[f64]) -> Vec<usize> {

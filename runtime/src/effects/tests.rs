@@ -1,0 +1,167 @@
+use crate::friction::{FrictionState, Measurement};
+use crate::test_models::coulomb_model;
+use frikan_shared::effect::{Effect, Harmonic, Kind};
+
+const DT: f32 = 1.0e-3;
+const SMOOTHING: f32 = 0.02;
+
+/// Torque that `effect` adds to the law at every sample of a motion.
+fn added(effect: Effect, motion: impl Iterator<Item = Measurement>) -> std::vec::Vec<f32> {
+    let model = coulomb_model(10.0, &[effect]);
+    let bare = coulomb_model(10.0, &[]);
+    let mut state = FrictionState::new(&model.effects);
+    motion
+        .map(|measurement| {
+            state.step(&model, &measurement, DT).torque - FrictionState::new(&[]).step(&bare, &measurement, DT).torque
+        })
+        .collect()
+}
+
+fn at(velocity: f32) -> Measurement {
+    Measurement { velocity, ..Measurement::default() }
+}
+
+#[test]
+fn presliding_follows_the_exact_solution_and_settles_on_the_law() {
+    let (coulomb, stiffness) = (10.0, 1.0e4);
+    let effect =
+        Effect::Presliding { coulomb, breakaway: coulomb, velocity: 0.1, stiffness, smoothing_velocity: SMOOTHING };
+    let velocity = 0.5f32;
+    let torques = added(effect, (0..200).map(|_| at(velocity)));
+    for (step, torque) in torques.iter().enumerate() {
+        let distance = velocity * DT * (step + 1) as f32;
+        let expected =
+            coulomb * (1.0 - (-distance * stiffness / coulomb).exp()) - coulomb * (velocity / SMOOTHING).tanh();
+        assert!((torque - expected).abs() < 1.0e-3, "{step}: {torque} {expected}");
+    }
+    assert!(torques[199].abs() < 1.0e-3);
+}
+
+#[test]
+fn presliding_does_not_depend_on_the_sample_period() {
+    let effect = Effect::Presliding {
+        coulomb: 4.0,
+        breakaway: 4.0,
+        velocity: 0.1,
+        stiffness: 500.0,
+        smoothing_velocity: SMOOTHING,
+    };
+    let model = coulomb_model(10.0, &[effect]);
+    let mut fine = FrictionState::new(&model.effects);
+    let mut coarse = fine.clone();
+    let mut last = 0.0;
+    for _ in 0..100 {
+        last = fine.step(&model, &at(0.3), 1.0e-4).torque;
+    }
+    assert!((coarse.step(&model, &at(0.3), 1.0e-2).torque - last).abs() < 1.0e-3);
+}
+
+#[test]
+fn lag_delays_the_law() {
+    let effect = Effect::FrictionalLag { time_constant: 0.02 };
+    let velocities = (0..200).map(|step| at(if step < 1 { -0.01 } else { 0.01 }));
+    let model = coulomb_model(10.0, &[effect]);
+    let mut state = FrictionState::new(&model.effects);
+    let torques: std::vec::Vec<f32> = velocities.map(|m| state.step(&model, &m, DT).torque).collect();
+    // v_L(t) = 0.01 (1 - 2 exp(-t / 20 ms)) crosses zero after 13.9 ms.
+    assert!(torques[13] < 0.0 && torques[14] > 0.0, "{torques:?}");
+    assert!((torques[199] - 10.0 * (0.5f32).tanh()).abs() < 1.0e-2);
+}
+
+#[test]
+fn dwell_raises_the_breakaway_and_travel_takes_it_away() {
+    let dwell = |rest: usize| {
+        let effect = Effect::DwellBreakaway {
+            gain: 1.5,
+            time: 0.1,
+            distance: 5.0e-3,
+            rest_velocity: 1.0e-3,
+            dwell_limit: 100.0,
+            smoothing_velocity: SMOOTHING,
+        };
+        added(effect, (0..rest + 100).map(|step| at(if step < rest { 0.0 } else { 0.2 })))
+    };
+    for rest in [100, 1000, 3000] {
+        let torques = dwell(rest);
+        let latched = 1.5 * (1.0 + rest as f32 * DT / 0.1).ln();
+        let expected = latched * (-0.2 * DT / 5.0e-3f32).exp();
+        assert!((torques[rest] - expected).abs() < 2.0e-2, "{} {expected}", torques[rest]);
+        assert!(torques[rest + 99] < 0.05 * latched);
+    }
+}
+
+#[test]
+fn warm_up_reaches_its_power_however_small_the_step() {
+    // tau / dt = 1e6: increments are far below what the state resolves.
+    let effect = Effect::WarmUp {
+        time_constant: 1000.0,
+        coulomb: 0.1,
+        viscous: 0.0,
+        power_limit: 50.0,
+        smoothing_velocity: SMOOTHING,
+    };
+    let model = coulomb_model(10.0, &[effect]);
+    let mut state = FrictionState::new(&model.effects);
+    let mut torque = 0.0;
+    let samples = 2_000_000;
+    for _ in 0..samples {
+        torque = state.step(&model, &at(1.0), DT).torque;
+    }
+    let heat = 10.0 * (1.0 - (-(samples as f64) * 1.0e-3 / 1000.0).exp());
+    assert!((f64::from(torque) - 10.0 - 0.1 * heat).abs() < 1.0e-3, "{torque} {heat}");
+}
+
+#[test]
+fn play_lags_by_half_its_width() {
+    let effect = Effect::Play { half_width: 0.1, torque: 2.0 };
+    let model = coulomb_model(10.0, &[effect]);
+    let mut state = FrictionState::new(&model.effects);
+    let mut step = |position: f32| state.step(&model, &Measurement { position, ..Measurement::default() }, DT);
+    assert_eq!(step(0.5).position, 0.0);
+    assert!((step(0.7).position + 0.1).abs() < 1.0e-6);
+    assert!((step(0.6).position).abs() < 1.0e-6);
+    assert!((step(0.4).torque + 2.0).abs() < 1.0e-4);
+}
+
+#[test]
+fn static_terms_are_their_equations() {
+    let (v, q, load, temperature) = (0.7f32, 1.2f32, -1.5f32, 1.8f32);
+    let measurement = Measurement { velocity: v, position: q, load, temperature, ..Measurement::default() };
+    let s = (v / SMOOTHING).tanh();
+    let smoothing_velocity = SMOOTHING;
+    let line = Harmonic { order: 3.0, cosine: 0.4, sine: -0.3 };
+    let ripple = 0.4 * (3.0 * q).cos() - 0.3 * (3.0 * q).sin();
+    let harmonics = heapless::Vec::from_slice(&[line]).unwrap();
+    let terms = [
+        (Effect::Coulomb { coulomb: 2.0, viscous: 0.5, smoothing_velocity }, 2.0 * s + 0.5 * v),
+        (Effect::Asymmetry { coulomb: 2.0, viscous: 0.5, smoothing_velocity }, 2.0 * s + 0.5 * v),
+        (
+            Effect::Stribeck { amplitude: 3.0, velocity: 0.5, exponent: 1.5, smoothing_velocity },
+            3.0 * (-(v / 0.5).powf(1.5)).exp() * s,
+        ),
+        (Effect::PowerViscous { coefficient: 3.0, exponent: 0.7, smoothing_velocity }, 3.0 * v.powf(0.7) * s),
+        (
+            Effect::Temperature { reference: 1.0, coulomb: 0.2, viscous: 0.1, smoothing_velocity },
+            (0.2 * s + 0.1 * v) * 0.8,
+        ),
+        (
+            // Driving 0.3, backdriving 0.1; load and velocity have different signs here.
+            Effect::Load {
+                mean: 0.2,
+                difference: 0.1,
+                quadratic: 0.05,
+                stribeck: 0.0,
+                velocity: 0.1,
+                smoothing_velocity,
+            },
+            0.1 * 1.5 * s + 0.05 * 1.5 * 1.5 * s,
+        ),
+        (Effect::Ripple { kind: Kind::Torque, smoothing_velocity, harmonics: harmonics.clone() }, ripple),
+        (Effect::Ripple { kind: Kind::Friction, smoothing_velocity, harmonics }, ripple * s),
+        (Effect::Spring { stiffness: 2.0, rest: 0.2 }, 2.0),
+    ];
+    for (effect, expected) in terms {
+        let torque = added(effect.clone(), std::iter::once(measurement))[0];
+        assert!((torque - expected).abs() < 2.0e-5, "{effect:?}: {torque} {expected}");
+    }
+}

@@ -1,0 +1,210 @@
+use super::*;
+use crate::effect::{Effect, Harmonic, Kind};
+use crate::expression::{Operation, Program, ProgramFault};
+use crate::model::{Input, Law, RigidBody};
+use crate::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
+use crate::units::{Quantity, Unit};
+use proptest::prelude::*;
+use std::vec::Vec;
+
+type Pool = Model<64>;
+
+fn input(quantity: Quantity) -> Input {
+    Input { quantity, unit: Unit::RadianPerSecond, low: -2.0, high: 2.0 }
+}
+
+fn table_image(symmetry: Symmetry) -> Image<64> {
+    let layout = Geometric::new(GeometricShape {
+        first_cell: 0,
+        offset_exponent: -6,
+        octave_cells_log2: 2,
+        symmetry,
+        reach: 2.0,
+        reach_negative: 2.0,
+    });
+    let cells = (0..layout.cells()).map(|cell| Cell::from_floats([cell as f32, 0.5, -0.25, 1.0e-3]));
+    let model = Pool {
+        inputs: heapless::Vec::from_slice(&[input(Quantity::Velocity)]).unwrap(),
+        output_unit: Unit::NewtonMetre,
+        output_limit: 100.0,
+        rigid_body: RigidBody::default(),
+        law: Law::Table(Table::Geometric(layout)),
+        effects: heapless::Vec::new(),
+        cells: cells.collect(),
+    };
+    let provenance = Provenance {
+        joint: "axis 1".try_into().unwrap(),
+        trainer_version: "0.1.0".try_into().unwrap(),
+        recordings_hash: u64::MAX,
+        seed: 7,
+    };
+    Image { provenance, model }
+}
+
+fn encoded<const CELLS: usize>(image: &Image<CELLS>) -> Vec<u8> {
+    let mut buffer = [0; 8192];
+    encode(image, &mut buffer).unwrap().to_vec()
+}
+
+/// The bytes of a model that validation would refuse, with a right checksum.
+fn forged(model: &Pool) -> Vec<u8> {
+    let mut payload = [0; 8192];
+    let provenance = postcard::to_slice(&Provenance::default(), &mut payload).unwrap().to_vec();
+    let mut bytes = Vec::new();
+    let model_bytes = postcard::to_slice(model, &mut payload).unwrap();
+    bytes.extend(MAGIC);
+    bytes.extend(FORMAT_VERSION.to_le_bytes());
+    bytes.extend((model.cells.len() as u16).to_le_bytes());
+    bytes.extend(((provenance.len() + model_bytes.len()) as u32).to_le_bytes());
+    let crc32 = checksum(&[&bytes, &provenance, model_bytes]);
+    bytes.extend(crc32.to_le_bytes());
+    bytes.extend(provenance);
+    bytes.extend(&*model_bytes);
+    bytes
+}
+
+#[test]
+fn what_is_written_is_read() {
+    for symmetry in [Symmetry::Odd, Symmetry::Even, Symmetry::Sided] {
+        let image = table_image(symmetry);
+        assert_eq!(decode(&encoded(&image)).as_ref(), Ok(&image));
+    }
+}
+
+#[test]
+fn images_are_small() {
+    let symmetric = encoded(&table_image(Symmetry::Odd)).len();
+    let sided = encoded(&table_image(Symmetry::Sided)).len();
+    std::println!("{symmetric} bytes symmetric, {sided} bytes sided");
+    assert!(symmetric <= 700 && sided <= 1200);
+}
+
+#[test]
+fn every_flipped_bit_is_found() {
+    let bytes = encoded(&table_image(Symmetry::Sided));
+    for bit in 0..8 * bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        assert!(decode::<64>(&damaged).is_err(), "bit {bit}");
+    }
+}
+
+#[test]
+fn every_failure_has_its_error() {
+    let image = table_image(Symmetry::Odd);
+    let bytes = encoded(&image);
+    let changed = |at: usize, value: u8| {
+        let mut changed = bytes.clone();
+        changed[at] = value;
+        decode::<64>(&changed).unwrap_err()
+    };
+    for length in 0..bytes.len() {
+        assert_eq!(decode::<64>(&bytes[..length]), Err(ImageError::Truncated), "{length}");
+    }
+    assert_eq!(changed(0, 0), ImageError::BadMagic);
+    assert_eq!(changed(4, 9), ImageError::UnsupportedVersion(9));
+    assert_eq!(changed(11, 1), ImageError::TooLarge);
+    assert_eq!(changed(40, 0x55), ImageError::CrcMismatch);
+    assert_eq!(decode::<8>(&bytes), Err(ImageError::TooLarge));
+    let trailing = [&bytes[..], &[0]].concat();
+    assert_eq!(decode::<64>(&trailing), Err(ImageError::TrailingBytes));
+    assert_eq!(encode(&image, &mut [0; 100]), Err(ImageError::BufferTooSmall));
+
+    let mut malformed = bytes[..HEADER_BYTES].to_vec();
+    malformed.extend([0xFF; 40]);
+    malformed[8..12].copy_from_slice(&40u32.to_le_bytes());
+    let crc32 = checksum(&[&malformed[..12], &malformed[16..]]);
+    malformed[12..16].copy_from_slice(&crc32.to_le_bytes());
+    assert_eq!(decode::<64>(&malformed), Err(ImageError::Malformed));
+}
+
+#[test]
+fn models_that_cannot_be_evaluated_are_refused() {
+    let good = table_image(Symmetry::Odd).model;
+    assert!(decode::<64>(&forged(&good)).is_ok());
+    let refused = |change: &dyn Fn(&mut Pool), fault: InvalidModel| {
+        let mut model = good.clone();
+        change(&mut model);
+        assert_eq!(decode::<64>(&forged(&model)).unwrap_err(), ImageError::InvalidModel(fault));
+    };
+    refused(&|model| model.inputs.clear(), InvalidModel::NoInput);
+    refused(&|model| model.inputs[0].low = 3.0, InvalidModel::InputRange);
+    refused(&|model| model.inputs[0].high = f32::INFINITY, InvalidModel::InputRange);
+    refused(&|model| model.inputs.push(input(Quantity::Velocity)).unwrap(), InvalidModel::DuplicateInput);
+    refused(&|model| model.inputs.push(input(Quantity::Load)).unwrap(), InvalidModel::LawInputs);
+    refused(&|model| model.output_limit = f32::NAN, InvalidModel::OutputLimit);
+    refused(&|model| model.output_limit = 0.0, InvalidModel::OutputLimit);
+    refused(&|model| model.rigid_body.inertia = f32::NAN, InvalidModel::RigidBody);
+    refused(&|model| model.cells.truncate(20), InvalidModel::CellOutOfPool);
+    for coefficient in [f32::NAN, f32::INFINITY, f32::from_bits(3)] {
+        refused(&|model| model.cells[3] = Cell::from_floats([coefficient; 4]), InvalidModel::Coefficient);
+    }
+    refused(
+        &|model| {
+            model.law = Law::Expression(Program { operations: heapless::Vec::from_slice(&[Operation::Add]).unwrap() })
+        },
+        InvalidModel::Program(ProgramFault::MissingOperand),
+    );
+    let spring = |stiffness| Effect::Spring { stiffness, rest: 0.0 };
+    refused(&|model| model.effects.push(spring(1.0)).unwrap(), InvalidModel::EffectInput);
+    refused(&|model| model.effects.push(spring(f32::NAN)).unwrap(), InvalidModel::EffectCoefficient);
+    refused(
+        &|model| {
+            let lag = Effect::FrictionalLag { time_constant: 0.01 };
+            model.effects.extend([lag.clone(), lag]);
+        },
+        InvalidModel::DuplicateEffect,
+    );
+}
+
+#[test]
+fn effects_are_written_and_read() {
+    let mut image = table_image(Symmetry::Odd);
+    image.model.law = Law::Expression(Program {
+        operations: heapless::Vec::from_slice(&[Operation::ScaledInput(0, 3.0), Operation::Tanh]).unwrap(),
+    });
+    image.model.inputs.push(input(Quantity::Position)).unwrap();
+    let harmonics = [Harmonic { order: 12.5, cosine: 0.1, sine: -0.2 }; 3];
+    image.model.effects.extend([
+        Effect::Ripple {
+            kind: Kind::Friction,
+            smoothing_velocity: 0.01,
+            harmonics: heapless::Vec::from_slice(&harmonics).unwrap(),
+        },
+        Effect::Play { half_width: 1.0e-3, torque: 0.5 },
+    ]);
+    assert_eq!(decode(&encoded(&image)).as_ref(), Ok(&image));
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+        prop_assert!(decode::<16>(&bytes).is_err());
+    }
+
+    /// Arbitrary payloads behind a right header and checksum reach postcard and validation.
+    #[test]
+    fn arbitrary_payloads_never_panic(payload in proptest::collection::vec(any::<u8>(), 0..600), cells in 0u16..20) {
+        let mut bytes = Vec::from(MAGIC);
+        bytes.extend(FORMAT_VERSION.to_le_bytes());
+        bytes.extend(cells.to_le_bytes());
+        bytes.extend((payload.len() as u32).to_le_bytes());
+        let crc32 = checksum(&[&bytes, &payload]);
+        bytes.extend(crc32.to_le_bytes());
+        bytes.extend(payload);
+        let _ = decode::<16>(&bytes);
+    }
+
+    /// One changed byte of a good payload, with the checksum made right again, gives an error or a usable model.
+    #[test]
+    fn changed_payloads_are_refused_or_usable(at in 16usize..500, value in any::<u8>()) {
+        let mut bytes = encoded(&table_image(Symmetry::Odd));
+        let at = at.min(bytes.len() - 1);
+        bytes[at] = value;
+        let crc32 = checksum(&[&bytes[..12], &bytes[16..]]);
+        bytes[12..16].copy_from_slice(&crc32.to_le_bytes());
+        if let Ok(image) = decode::<64>(&bytes) {
+            prop_assert!(image.model.validate().is_ok());
+        }
+    }
+}

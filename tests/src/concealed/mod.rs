@@ -1,0 +1,160 @@
+//! Effects concealed in simulated recordings, and what the diagnosis makes of them.
+//!
+//! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
+
+use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};
+use frikan_trainer::physics::EffectId;
+use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
+
+/// What is hidden in one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Hidden {
+    /// Nothing: a control.
+    Nothing,
+    /// One effect at a wanted non-centrality.
+    Effect(&'static str, f64),
+    /// Two effects, each at a wanted non-centrality.
+    Pair(&'static str, &'static str, f64),
+}
+
+/// One case of the suite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// What is hidden.
+    pub hidden: Hidden,
+    /// Noise of the recording.
+    pub noise: NoiseKind,
+    /// Base model that the diagnosis starts from.
+    pub base: BaseKind,
+    /// Seed of everything.
+    pub seed: u64,
+}
+
+/// What came of a case.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The case.
+    pub case: Case,
+    /// Reached non-centrality; 0 for a control.
+    pub lambda: f64,
+    /// Effect-to-noise ratio behind the filter.
+    pub effect_to_noise: f64,
+    /// The diagnosis.
+    pub diagnosis: Diagnosis,
+}
+
+/// Signals of a simulated recording as a user's joint file would describe them: nominal inertia and load torque given.
+pub fn signals(recording: &SimulatedRecording, joint: &plant::Joint) -> Signals {
+    let owned = |name: &str| recording.column(name).map(<[f64]>::to_vec);
+    let time = owned("time_s").unwrap_or_default();
+    let position = owned("position_rad").unwrap_or_default();
+    let period = 1.0 / joint.drive.rate_Hz;
+    let trajectory = owned("trajectory").unwrap_or_default();
+    let mut segments = Vec::new();
+    let mut begin = 0;
+    for i in 1..=time.len() {
+        let gap = i < time.len() && time[i] - time[i - 1] > 1.5 * period;
+        if i == time.len() || gap || trajectory[i] != trajectory[i - 1] {
+            segments.push(begin..i);
+            begin = i;
+        }
+    }
+    let load = owned("load_torque_Nm");
+    let mut signals = Signals {
+        period,
+        torque: owned("torque_Nm").unwrap_or_default(),
+        temperature: owned("temperature_C"),
+        link_position: owned("link_position_rad"),
+        other_positions: owned("other_position_rad").into_iter().collect(),
+        segments,
+        gear_ratio: Some(joint.drive.gear_ratio),
+        rotary: true,
+        position_resolution: smallest_step(&position),
+        time,
+        position,
+        ..Signals::default()
+    };
+    signals.give_rigid_body(joint.inertia_kgm2, load.as_deref());
+    signals.load = load;
+    signals
+}
+
+fn smallest_step(position: &[f64]) -> f64 {
+    position.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 1e-12).fold(f64::INFINITY, f64::min)
+}
+
+/// The joint of a case before anything is hidden in it.
+pub fn joint_of(case: &Case) -> plant::Joint {
+    let mut joint = plant::Joint::default();
+    joint.noise.kind = case.noise;
+    joint
+}
+
+/// Largest number of passes in which the amplitude is brought to the wanted strength.
+const PASSES: usize = 3;
+
+/// Hides the effects of a case at the wanted strength and returns recording, joint, non-centrality and effect-to-noise.
+pub fn conceal(case: &Case) -> Result<(SimulatedRecording, plant::Joint, f64, f64), plant::PlantError> {
+    let mut joint = joint_of(case);
+    let (names, wanted): (Vec<&'static str>, f64) = match &case.hidden {
+        Hidden::Nothing => {
+            let recording = plant::simulate(&joint, case.seed)?;
+            return Ok((recording, joint, 0.0, 0.0));
+        }
+        Hidden::Effect(name, lambda) => (vec![name], *lambda),
+        Hidden::Pair(first, second, lambda) => (vec![first, second], *lambda),
+    };
+    let mut amplitudes = Vec::new();
+    for name in &names {
+        amplitudes.push(amplitude_for(&joint, name, wanted, case)?);
+    }
+    for (name, amplitude) in names.iter().zip(&amplitudes) {
+        joint.effects.push(plant::Hidden { name: (*name).to_string(), amplitude: *amplitude });
+    }
+    let recording = plant::simulate(&joint, case.seed)?;
+    let reached = reach(&recording, &joint, case);
+    Ok((recording, joint, reached.0, reached.1))
+}
+
+fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (f64, f64) {
+    strength(&signals(recording, joint), &recording.truth.effect_torque, &recording.truth.noise_torque, case.base, Lock::Spread)
+        .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
+}
+
+fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {
+    let mut amplitude = 0.3;
+    for _ in 0..PASSES {
+        let recording = plant::conceal(joint, name, amplitude, case.seed)?;
+        let (lambda, _) = reach(&recording, joint, case);
+        let off = (wanted / lambda.max(1e-3)).sqrt();
+        if (off - 1.0).abs() < 0.05 {
+            break;
+        }
+        amplitude *= off.clamp(0.05, 8.0);
+    }
+    Ok(amplitude)
+}
+
+/// Runs a case.
+pub fn run(case: &Case) -> Result<Outcome, String> {
+    let (recording, joint, lambda, effect_to_noise) = conceal(case).map_err(|e| e.to_string())?;
+    let options = Options { base: case.base, settings: Settings { seed: case.seed, ..Settings::default() }, ..Options::default() };
+    let diagnosis = diagnose(&signals(&recording, &joint), "N m", &options).map_err(|e| e.to_string())?;
+    Ok(Outcome { case: case.clone(), lambda, effect_to_noise, diagnosis })
+}
+
+impl Outcome {
+    /// Names of the findings in the order in which they were accepted.
+    pub fn named(&self) -> Vec<EffectId> {
+        self.diagnosis.findings.iter().map(|finding| finding.effect).collect()
+    }
+
+    /// The first finding with its ambiguity set.
+    pub fn first_set(&self) -> Vec<EffectId> {
+        self.diagnosis
+            .findings
+            .first()
+            .map(|f| std::iter::once(f.effect).chain(f.alternatives.iter().map(|(e, _)| *e)).collect())
+            .unwrap_or_default()
+    }
+}

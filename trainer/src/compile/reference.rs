@@ -1,0 +1,185 @@
+//! The trainer's own evaluator of a decoded model, over whole batches, in `f32`.
+//!
+//! It is written apart from the runtime: it finds cells by counting exponents and mantissas instead of masking patterns, runs
+//! programs on a growing stack, and walks networks edge by edge. It shares with the runtime only what *defines* a model: the order
+//! of every rounding, and the elementary functions of [`frikan_shared::elementary`].
+
+use frikan_shared::elementary;
+use frikan_shared::expression::{Operation, Program};
+use frikan_shared::model::{Law, MAX_INPUTS, Model};
+use frikan_shared::network::{Network, Outer};
+use frikan_shared::table::{Cell, Geometric, Symmetry, Table, Uniform};
+
+/// The static law of `model` at each of `inputs`, as the drive must compute it to the bit.
+#[must_use]
+pub fn evaluate_batch<const CELLS: usize>(model: &Model<CELLS>, inputs: &[[f32; MAX_INPUTS]]) -> Vec<f32> {
+    inputs.iter().map(|inputs| evaluate_one(model, inputs)).collect()
+}
+
+/// The static law of `model` at one point.
+#[must_use]
+pub fn evaluate_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
+    let count = model.inputs.len();
+    if inputs[..count].iter().any(|input| input.is_nan()) {
+        return 0.0;
+    }
+    let value = match &model.law {
+        Law::Table(table) => single_table(table, &model.cells, inputs[0]),
+        Law::Network(network) => network_value(network, &model.cells, &inputs[..count]),
+        Law::Expression(program) => {
+            let held: Vec<f32> =
+                inputs.iter().zip(&model.inputs).map(|(x, channel)| x.clamp(channel.low, channel.high)).collect();
+            program_value(program, &held)
+        }
+        Law::IntegerTable(_) => 0.0,
+    };
+    if value.is_nan() { 0.0 } else { value.clamp(-model.output_limit, model.output_limit) }
+}
+
+/// Row, local coordinate and sign of the output.
+type Found = (usize, f32, bool);
+
+fn find(table: &Table, input: f32) -> Found {
+    match table {
+        Table::Geometric(layout) => find_geometric(layout, input),
+        Table::Uniform(layout) => find_uniform(layout, input),
+    }
+}
+
+fn find_geometric(layout: &Geometric, input: f32) -> Found {
+    let shape = layout.shape();
+    let negative = input.is_sign_negative();
+    let per_octave = 2u64.pow(u32::from(shape.octave_cells_log2));
+    let steps_per_cell = 2u64.pow(23) / per_octave;
+    let c = 2.0f64.powi(i32::from(shape.offset_exponent)) as f32;
+    // Steps of equal ratio from c to |v| + c: 2^23 for each octave, linear within it.
+    let steps = |magnitude: f32| -> u64 {
+        let w = magnitude + c;
+        if w.is_infinite() {
+            return u64::MAX;
+        }
+        let exponent = f64::from(w).log2().floor() as i32;
+        let exponent = if f64::from(w) < 2.0f64.powi(exponent) { exponent - 1 } else { exponent };
+        let octaves = (exponent - i32::from(shape.offset_exponent)) as u64;
+        let within = (f64::from(w) / 2.0f64.powi(exponent) - 1.0) * 2.0f64.powi(23);
+        octaves * 2u64.pow(23) + within as u64
+    };
+    let reach = if negative && shape.symmetry == Symmetry::Sided { shape.reach_negative } else { shape.reach };
+    let last = steps(reach).max(1) - 1;
+    let position = steps(input.abs()).min(last);
+    let mut row = u64::from(shape.first_cell) + position / steps_per_cell;
+    if negative && shape.symmetry == Symmetry::Sided {
+        row += (steps(shape.reach).max(1) - 1) / steps_per_cell + 1;
+    }
+    let x = ((position % steps_per_cell) as f64 / steps_per_cell as f64) as f32;
+    (row as usize, x, negative && shape.symmetry == Symmetry::Odd)
+}
+
+fn find_uniform(layout: &Uniform, input: f32) -> Found {
+    let shape = layout.shape();
+    let scale = 2.0f32.powi(32) / (shape.high - shape.low);
+    let scaled = (input - shape.low) * scale;
+    let fraction = f64::from(scaled).clamp(0.0, f64::from(u32::MAX)).floor() as u128;
+    let product = fraction * u128::from(shape.cells);
+    let cell = product / 2u128.pow(32);
+    let x = ((product % 2u128.pow(32)) / 256) as f32 / 2.0f32.powi(24);
+    (usize::from(shape.first_cell) + cell as usize, x, false)
+}
+
+fn cubic(cell: Cell, (_, x, turned): Found) -> f32 {
+    let [c0, c1, c2, c3] = cell.floats();
+    let mut value = c3;
+    for coefficient in [c2, c1, c0] {
+        value = value * x + coefficient;
+    }
+    if turned { -value } else { value }
+}
+
+fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
+    let found = find(table, input);
+    cubic(cells[found.0], found)
+}
+
+fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
+    let mut nodes = inputs.to_vec();
+    let mut sources = network.sources.iter();
+    for layer in &network.layers {
+        let targets = layer.targets();
+        let mut sums = vec![0.0f32; targets];
+        for node in nodes {
+            let source = sources.next().expect("a validated network has a source for every node");
+            let found = find(&source.table, node);
+            for (target, sum) in sums.iter_mut().enumerate() {
+                let cell = cells[usize::from(source.first_cell) + found.0 * targets + target];
+                *sum += cubic(cell, found);
+            }
+        }
+        let (additive, factors) = sums.split_at(usize::from(layer.additive));
+        nodes = additive.to_vec();
+        nodes.extend(factors.chunks(2).map(|pair| pair[0] * pair[1]));
+    }
+    match network.outer {
+        Outer::Linear => nodes[0],
+        Outer::Tanh { scale, offset } => offset + scale * elementary::tanh(nodes[0]),
+    }
+}
+
+fn program_value(program: &Program, inputs: &[f32]) -> f32 {
+    let mut stack: Vec<f32> = Vec::new();
+    for operation in &program.operations {
+        let mut pop = || stack.pop().expect("a validated program has its operands");
+        let value = match *operation {
+            Operation::Input(index) => inputs[usize::from(index)],
+            Operation::ScaledInput(index, factor) => inputs[usize::from(index)] * factor,
+            Operation::Constant(constant) => constant,
+            Operation::Scale(factor) => pop() * factor,
+            Operation::Offset(summand) => pop() + summand,
+            Operation::Add => {
+                let a = pop();
+                pop() + a
+            }
+            Operation::Subtract => {
+                let a = pop();
+                pop() - a
+            }
+            Operation::Multiply => {
+                let a = pop();
+                pop() * a
+            }
+            Operation::Divide => {
+                let a = pop();
+                pop() / a
+            }
+            Operation::Minimum => {
+                let (a, b) = (pop(), pop());
+                if b < a { b } else { a }
+            }
+            Operation::Maximum => {
+                let (a, b) = (pop(), pop());
+                if b > a { b } else { a }
+            }
+            Operation::Power => {
+                let a = pop();
+                elementary::power(pop(), a)
+            }
+            Operation::PowerOf(exponent) => elementary::power(pop(), exponent),
+            Operation::Negate => -pop(),
+            Operation::Absolute => pop().abs(),
+            Operation::Square => {
+                let a = pop();
+                a * a
+            }
+            Operation::Reciprocal => 1.0 / pop(),
+            Operation::Exp => elementary::exp(pop()),
+            Operation::Log => elementary::log(pop()),
+            Operation::Tanh => elementary::tanh(pop()),
+            Operation::Sin => elementary::sin(pop()),
+            Operation::Cos => elementary::cos(pop()),
+            Operation::Atan => elementary::atan(pop()),
+            Operation::SquareRoot => elementary::square_root(pop()),
+            Operation::Sign => elementary::sign(pop()),
+        };
+        stack.push(value);
+    }
+    stack.pop().expect("a validated program leaves a value")
+}

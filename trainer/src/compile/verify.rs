@@ -1,0 +1,285 @@
+//! Bit-for-bit comparison of the drive's runtime with the trainer's reference.
+
+use frikan_runtime::evaluate::evaluate;
+use frikan_shared::model::{MAX_INPUTS, Model};
+use rayon::prelude::*;
+
+use super::reference::evaluate_one;
+
+/// Patterns of an exhaustive comparison that one task takes.
+const CHUNK: u64 = 1 << 20;
+
+/// An input at which runtime and reference differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// The input.
+    pub inputs: [f32; MAX_INPUTS],
+    /// What the runtime gives.
+    pub runtime: f32,
+    /// What the reference gives.
+    pub reference: f32,
+}
+
+/// The outcome of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Inputs compared.
+    pub compared: u64,
+    /// Inputs at which all bits agree.
+    pub equal: u64,
+    /// The first difference, in the order of the inputs.
+    pub first_difference: Option<Difference>,
+}
+
+impl Comparison {
+    const NONE: Self = Self { compared: 0, equal: 0, first_difference: None };
+
+    /// Whether every input agreed.
+    #[must_use]
+    pub fn identical(&self) -> bool {
+        self.compared == self.equal
+    }
+
+    /// This comparison, then `other`.
+    #[must_use]
+    pub fn then(self, other: Self) -> Self {
+        Self {
+            compared: self.compared + other.compared,
+            equal: self.equal + other.equal,
+            first_difference: self.first_difference.or(other.first_difference),
+        }
+    }
+}
+
+fn compare_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> Comparison {
+    let (runtime, reference) = (evaluate(model, inputs), evaluate_one(model, inputs));
+    let equal = runtime.to_bits() == reference.to_bits();
+    Comparison {
+        compared: 1,
+        equal: u64::from(equal),
+        first_difference: (!equal).then_some(Difference { inputs: *inputs, runtime, reference }),
+    }
+}
+
+/// Compares at each of `inputs`, for example those of a recording.
+#[must_use]
+pub fn compare<const CELLS: usize>(model: &Model<CELLS>, inputs: &[[f32; MAX_INPUTS]]) -> Comparison {
+    inputs.iter().fold(Comparison::NONE, |so_far, inputs| so_far.then(compare_one(model, inputs)))
+}
+
+/// Values at which floating-point code goes wrong, if anywhere.
+pub const SPECIAL_VALUES: [f32; 24] = [
+    0.0,
+    -0.0,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    f32::from_bits(1),
+    -f32::from_bits(1),
+    f32::from_bits(0x007F_FFFF),
+    -f32::from_bits(0x007F_FFFF),
+    1.0e-20,
+    -1.0e-20,
+    1.0,
+    -1.0,
+    16_777_216.0,
+    -16_777_216.0,
+    4_294_967_296.0,
+    -4_294_967_296.0,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    -f32::NAN,
+    f32::from_bits(0x7F80_0001),
+    f32::from_bits(0xFFFF_FFFF),
+];
+
+/// A sweep of `count` points over the trained ranges, widened by a quarter on either side, preceded by all combinations of special
+/// values and range ends. The points fill the space of all channels evenly (additive recurrence of Roberts 2018).
+#[must_use]
+pub fn sweep<const CELLS: usize>(model: &Model<CELLS>, count: usize) -> Vec<[f32; MAX_INPUTS]> {
+    let mut points = Vec::new();
+    let channels = model.inputs.len();
+    for channel in 0..channels {
+        let input = &model.inputs[channel];
+        let ends = [
+            input.low,
+            input.high,
+            input.low.next_down(),
+            input.low.next_up(),
+            input.high.next_down(),
+            input.high.next_up(),
+        ];
+        for &value in SPECIAL_VALUES.iter().chain(&ends) {
+            for &others in SPECIAL_VALUES.iter().chain(&[0.5, -0.25]) {
+                let mut point = [others; MAX_INPUTS];
+                point[channel] = value;
+                points.push(point);
+            }
+        }
+    }
+    // The root of g^(d+1) = g + 1 spreads d dimensions.
+    let ratio = (0..60).fold(2.0f64, |g, _| (1.0 + g).powf(1.0 / (channels as f64 + 1.0)));
+    for index in 0..count {
+        let mut point = [0.0f32; MAX_INPUTS];
+        let mut step = 1.0;
+        for (value, input) in point.iter_mut().zip(&model.inputs) {
+            step /= ratio;
+            let share = (0.5 + step * (index as f64 + 1.0)).fract() * 1.5 - 0.25;
+            let (low, high) = (f64::from(input.low), f64::from(input.high));
+            *value = (low + share * (high - low)) as f32;
+        }
+        points.push(point);
+    }
+    points
+}
+
+/// Compares a one-input model at all 2^32 `f32`, NaN included, in the order of their bit patterns. `progress` is told of every
+/// finished chunk, from any thread.
+#[must_use]
+pub fn compare_exhaustively<const CELLS: usize>(model: &Model<CELLS>, progress: impl Fn(u64) + Sync) -> Comparison {
+    let chunks: Vec<Comparison> = (0..(1u64 << 32) / CHUNK)
+        .into_par_iter()
+        .map(|chunk| {
+            let outcome = compare_patterns(model, (chunk * CHUNK) as u32, CHUNK);
+            progress(CHUNK);
+            outcome
+        })
+        .collect();
+    chunks.into_iter().fold(Comparison::NONE, Comparison::then)
+}
+
+/// Compares a one-input model at `count` consecutive bit patterns.
+#[must_use]
+pub fn compare_patterns<const CELLS: usize>(model: &Model<CELLS>, first: u32, count: u64) -> Comparison {
+    let mut outcome = Comparison::NONE;
+    for step in 0..count {
+        let pattern = first.wrapping_add(step as u32);
+        outcome = outcome.then(compare_one(model, &[f32::from_bits(pattern), 0.0, 0.0, 0.0]));
+    }
+    outcome
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::formula::{Curve, Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::program::compile_program;
+    use crate::compile::tables::{compile_layout, compile_table};
+    use frikan_shared::image::{Image, decode, encode};
+    use frikan_shared::model::{Input, Law, Provenance, RigidBody};
+    use frikan_shared::network::{Layer, Network, Outer, Source};
+    use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
+    use frikan_shared::units::{Quantity, Unit};
+
+    type TestModel = Model<256>;
+
+    fn model(law: Law, cells: &[Cell], quantities: &[Quantity]) -> TestModel {
+        let inputs = quantities.iter().map(|quantity| Input {
+            quantity: quantity.clone(),
+            unit: Unit::RadianPerSecond,
+            low: -2.0,
+            high: 2.0,
+        });
+        let model = TestModel {
+            inputs: inputs.collect(),
+            output_unit: Unit::NewtonMetre,
+            output_limit: 40.0,
+            rigid_body: RigidBody::default(),
+            law,
+            effects: heapless::Vec::new(),
+            cells: heapless::Vec::from_slice(cells).unwrap(),
+        };
+        // What is compared is what a drive decodes.
+        let mut buffer = [0; 8192];
+        let image = Image { provenance: Provenance::default(), model };
+        decode(encode(&image, &mut buffer).unwrap()).unwrap().model
+    }
+
+    fn assert_identical(model: &TestModel) {
+        let comparison = compare(model, &sweep(model, 1_000_000));
+        assert!(comparison.identical(), "{comparison:?}");
+        assert!(comparison.compared >= 1_000_000);
+        if model.inputs.len() == 1 {
+            for first in [0, 0x3C00_0000, 0x7F7F_0000, 0x8000_0000, 0xBE00_0000, 0xFF7F_0000] {
+                assert!(compare_patterns(model, first, 0x2_0000).identical());
+            }
+        }
+    }
+
+    #[test]
+    fn tables_agree_to_the_bit() {
+        let odd = stribeck_law();
+        let sided = stribeck_law().join(Operator::Add, Formula::Input(0).apply(Function::Cos));
+        for curve in [&odd, &sided] {
+            let compiled = compile_table(curve, -2.0, 2.0, 1.0e-3, 0).unwrap();
+            assert_identical(&model(Law::Table(compiled.table), &compiled.cells, &[Quantity::Velocity]));
+        }
+        let layout = Uniform::new(UniformShape { first_cell: 0, cells: 37, low: -1.7, high: 2.1 });
+        let uniform = compile_layout(&odd, Table::Uniform(layout));
+        assert_identical(&model(Law::Table(uniform.table), &uniform.cells, &[Quantity::Velocity]));
+    }
+
+    #[test]
+    fn expressions_agree_to_the_bit() {
+        let law = stribeck_law();
+        let program = compile_program(&law, 1).unwrap();
+        assert_identical(&model(Law::Expression(program), &[], &[Quantity::Velocity]));
+        let x = || Formula::Input(1);
+        let every_function =
+            [Function::Reciprocal, Function::Log, Function::Sin, Function::Cos, Function::Atan, Function::SquareRoot]
+                .into_iter()
+                .fold(law, |sum, function| sum.join(Operator::Add, x().apply(function)))
+                .join(Operator::Add, x().join(Operator::Power, Formula::Input(0)))
+                .join(Operator::Divide, Formula::Input(0).join(Operator::Subtract, x()));
+        let program = compile_program(&every_function, 2).unwrap();
+        assert_identical(&model(Law::Expression(program), &[], &[Quantity::Velocity, Quantity::Load]));
+    }
+
+    #[test]
+    fn networks_agree_to_the_bit() {
+        let geometric = Table::Geometric(Geometric::new(GeometricShape {
+            first_cell: 0,
+            offset_exponent: -3,
+            octave_cells_log2: 1,
+            symmetry: Symmetry::Sided,
+            reach: 2.0,
+            reach_negative: 2.0,
+        }));
+        let uniform = Table::Uniform(Uniform::new(UniformShape { first_cell: 0, cells: 8, low: -2.0, high: 2.0 }));
+        let (mut cells, mut sources) = (Vec::new(), heapless::Vec::new());
+        let layers = [Layer { additive: 2, products: 1 }, Layer { additive: 1, products: 0 }];
+        for (layer, tables) in layers.iter().zip([&[geometric, uniform][..], &[uniform; 3][..]]) {
+            for table in tables {
+                sources.push(Source { table: *table, first_cell: cells.len() as u16 }).unwrap();
+                let columns: Vec<_> = (0..layer.targets())
+                    .map(|target| {
+                        compile_layout(
+                            &(stribeck_law().join(Operator::Divide, Formula::Constant(10.0 + target as f64)))
+                                as &dyn Curve,
+                            *table,
+                        )
+                    })
+                    .collect();
+                for row in 0..table.cells() as usize {
+                    cells.extend(columns.iter().map(|column| column.cells[row]));
+                }
+            }
+        }
+        for outer in [Outer::Linear, Outer::Tanh { scale: 30.0, offset: 0.5 }] {
+            let network =
+                Network { layers: heapless::Vec::from_slice(&layers).unwrap(), sources: sources.clone(), outer };
+            assert_identical(&model(Law::Network(network), &cells, &[Quantity::Velocity, Quantity::Load]));
+        }
+    }
+
+    #[test]
+    #[ignore = "takes minutes: all 2^32 inputs"]
+    fn all_inputs_agree_to_the_bit() {
+        let compiled = compile_table(&stribeck_law(), -2.0, 2.0, 1.0e-3, 0).unwrap();
+        let model = model(Law::Table(compiled.table), &compiled.cells, &[Quantity::Velocity]);
+        let comparison = compare_exhaustively(&model, |_| ());
+        assert_eq!(comparison, Comparison { compared: 1 << 32, equal: 1 << 32, first_difference: None });
+    }
+}

@@ -1,0 +1,147 @@
+//! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
+
+use super::linear::{least_squares, residual};
+use super::prepare::Prepared;
+use super::signals::Signals;
+use crate::physics::JointState;
+
+/// Which static friction model the recording is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BaseKind {
+    /// Symmetric Coulomb and viscous friction, refitted.
+    CoulombViscous,
+    /// A symmetric spline over speed with nine coefficients, refitted.
+    Spline,
+    /// The law of a fitted model or a simulation: its torque is given, its parameters may move by the given Jacobian.
+    Reference,
+}
+
+/// A fitted base model: columns at the working rows behind the common filter.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Filtered columns, physical parameters first, then nuisances.
+    pub columns: Vec<Vec<f64>>,
+    /// Name of each physical parameter.
+    pub names: Vec<&'static str>,
+    /// Filtered target: recorded torque less the nominal rigid body or reference.
+    pub target: Vec<f64>,
+    /// Delay of the torque against the position that the fit found, in s.
+    pub delay: f64,
+    /// Whether the delay is small enough to be the sampling's own and is carried as a nuisance.
+    pub delay_is_nuisance: bool,
+    /// Coefficients of the ordinary fit.
+    pub coefficients: Vec<f64>,
+}
+
+/// Coefficients of the spline base.
+const SPLINE_KNOTS: usize = 9;
+
+/// The friction columns of a base kind at one velocity.
+pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign_velocity: f64, top_speed: f64) -> Vec<f64> {
+    let sign = (velocity / sign_velocity).tanh();
+    match kind {
+        BaseKind::CoulombViscous => vec![sign, velocity],
+        BaseKind::Spline => {
+            // Knots by a square law: dense at low speed, where friction bends.
+            let place = (velocity.abs() / top_speed.max(f64::MIN_POSITIVE)).sqrt().min(1.0) * (SPLINE_KNOTS - 1) as f64;
+            (0..SPLINE_KNOTS).map(|j| (1.0 - (place - j as f64).abs()).max(0.0) * sign).collect()
+        }
+        BaseKind::Reference => Vec::new(),
+    }
+}
+
+impl Base {
+    /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
+    /// `None` when the recording cannot determine it (no motion).
+    pub fn fit(prepared: &mut Prepared, signals: &Signals, kind: BaseKind) -> Option<Self> {
+        let raw = raw_columns(&prepared.state, signals, kind);
+        let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
+        let target = prepared.filtered(&prepared.friction_torque);
+        let runs = prepared.open_runs();
+        let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
+        columns.extend(nuisances(prepared));
+        let coefficients = least_squares(&columns, &target, &runs)?;
+        predict(prepared, signals, kind, &raw, &coefficients);
+        let mut rate = prepared.state.rate_of(&prepared.state.predicted);
+        rate.iter_mut().for_each(|value| *value = -*value);
+        let late = prepared.filtered(&rate);
+        columns.push(late);
+        let with_delay = least_squares(&columns, &target, &runs)?;
+        let delay = with_delay[columns.len() - 1];
+        // The drive holds its torque over a sample while the position is read at one edge of it.
+        let delay_is_nuisance = delay.abs() <= 1.25 * prepared.state.period;
+        let coefficients = if delay_is_nuisance {
+            with_delay
+        } else {
+            columns.pop();
+            coefficients
+        };
+        Some(Self { columns, names, target, delay, delay_is_nuisance, coefficients })
+    }
+
+    /// What the ordinary fit leaves at every working row.
+    pub fn residual(&self) -> Vec<f64> {
+        residual(&self.columns, &self.target, &self.coefficients)
+    }
+}
+
+fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'static str, Vec<f64>)> {
+    let top_speed = state.top_speed();
+    let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    let count = friction_basis(kind, 1.0, state.sign_velocity, top_speed).len();
+    let names = match kind {
+        BaseKind::CoulombViscous => &["coulomb_torque", "viscous_coefficient"][..],
+        _ => &["friction_knot"; SPLINE_KNOTS][..],
+    };
+    for (j, name) in names.iter().enumerate().take(count) {
+        columns.push((name, state.map(|i| friction_basis(kind, state.velocity[i], state.sign_velocity, top_speed)[j])));
+    }
+    if kind == BaseKind::Reference {
+        columns.extend(signals.reference_jacobian.iter().map(|column| ("model_parameter", column.clone())));
+    } else if signals.rigid_body.is_none() {
+        // No rigid body is given: its inertia is identified together with friction.
+        columns.push(("inertia", state.acceleration.clone()));
+    }
+    columns
+}
+
+/// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
+fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    let sign = state.map(|i| (prepared.narrow_velocity[i] / state.sign_velocity).tanh() - state.sign[i]);
+    let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
+    // The smoothed sign stands for a jump: its width is a nuisance too.
+    let width = state.map(|i| (state.velocity[i] / (3.0 * state.sign_velocity)).tanh() - state.sign[i]);
+    vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
+}
+
+fn predict(
+    prepared: &mut Prepared,
+    signals: &Signals,
+    kind: BaseKind,
+    raw: &[(&'static str, Vec<f64>)],
+    coefficients: &[f64],
+) {
+    let state = &mut prepared.state;
+    let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+    let mut predicted = known.cloned().unwrap_or_else(|| vec![0.0; state.len()]);
+    for ((_, column), coefficient) in raw.iter().zip(coefficients) {
+        predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
+    }
+    state.predicted = predicted;
+    let top_speed = state.top_speed();
+    state.base_friction = if signals.reference_friction.is_empty() {
+        let reach = 1.2 * top_speed;
+        (-120..=120)
+            .map(|k| {
+                // Finer steps towards zero, where the sign turns.
+                let x = f64::from(k) / 120.0;
+                let velocity = reach * x * x.abs() * x.abs();
+                let basis = friction_basis(kind, velocity, state.sign_velocity, top_speed);
+                (velocity, basis.iter().zip(coefficients).map(|(b, c)| b * c).sum())
+            })
+            .collect()
+    } else {
+        signals.reference_friction.clone()
+    };
+}

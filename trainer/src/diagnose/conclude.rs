@@ -1,0 +1,185 @@
+//! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
+
+use super::evidence::Bench;
+use super::linear::invert_symmetric;
+use super::noise::Noise;
+use super::refine::refine;
+use super::search::{Accepted, Search};
+use crate::physics::{Dimension, JointState, Shape};
+use super::candidates::Label;
+
+/// A finding after the joint refit.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// What it is.
+    pub label: Label,
+    /// Shape parameters.
+    pub shape: Shape,
+    /// Deviation of each shape parameter; `None` for discrete ones.
+    pub shape_deviation: Vec<Option<f64>>,
+    /// Linear coefficients.
+    pub coefficients: Vec<f64>,
+    /// Their standard deviations.
+    pub deviation: Vec<f64>,
+}
+
+/// The joint refit of base and effects.
+#[derive(Clone, Debug)]
+pub struct Refit {
+    /// Coefficients of the base columns, physical first.
+    pub base: Vec<f64>,
+    /// Deviations of the base coefficients.
+    pub base_deviation: Vec<f64>,
+    /// The effects.
+    pub effects: Vec<Fitted>,
+    /// Noise of what is left.
+    pub noise: Noise,
+}
+
+/// Sweeps over the shapes, one effect at a time with the others in the base.
+const SWEEPS: usize = 2;
+
+/// Refits everything together by generalised least squares; shapes by Gauss-Newton intervals around their optimum.
+/// `None` where the system is singular.
+pub(crate) fn refit(search: &Search, accepted: &[Accepted], noise: &Noise) -> Option<Refit> {
+    let mut accepted = accepted.to_vec();
+    let state = &search.prepared.state;
+    for _ in 0..SWEEPS {
+        for index in 0..accepted.len() {
+            let Label::Named(effect) = accepted[index].label else { continue };
+            let Some(hypothesis) = search.hypothesis(effect) else { continue };
+            let bench = search.bench(columns_without(search, &accepted, index), noise);
+            let label = accepted[index].label.clone();
+            accepted[index].shape = refine(hypothesis, state, &accepted[index].shape, |shape| {
+                bench.evidence(&search.whitened(&search.filtered_columns(&label, shape), noise)).map(|e| e.statistic)
+            });
+        }
+    }
+    let base_width = search.base.columns.len();
+    let mut columns = search.base.columns.clone();
+    let mut places = Vec::new();
+    for effect in &accepted {
+        let begin = columns.len();
+        columns.extend(search.filtered_columns(&effect.label, &effect.shape));
+        places.push(begin..columns.len());
+    }
+    let noise = search.noise_after(&columns, Some(noise));
+    let bench = search.bench(columns, &noise);
+    let (solution, covariance) = bench.solve(&[])?;
+    let mut effects = Vec::new();
+    for (effect, place) in accepted.iter().zip(&places) {
+        effects.push(Fitted {
+            label: effect.label.clone(),
+            shape: effect.shape.clone(),
+            shape_deviation: vec![None; effect.shape.len()],
+            coefficients: solution[place.clone()].to_vec(),
+            deviation: place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect(),
+        });
+    }
+    widen_by_shapes(search, &bench, &noise, &mut effects, &places);
+    let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    Some(Refit {
+        base: solution[..base_width].to_vec(),
+        base_deviation: (0..base_width).map(deviation).collect(),
+        effects,
+        noise,
+    })
+}
+
+/// Filtered base columns with every accepted effect but one, shapes as they stand, without tangents.
+fn columns_without(search: &Search, accepted: &[Accepted], without: usize) -> Vec<Vec<f64>> {
+    let mut columns = search.base.columns.clone();
+    for (_, effect) in accepted.iter().enumerate().filter(|(index, _)| *index != without) {
+        columns.extend(search.filtered_columns(&effect.label, &effect.shape));
+    }
+    columns
+}
+
+/// Adds the uncertainty of the free shapes: their tangents join the normal matrix (Gauss-Newton).
+fn widen_by_shapes(search: &Search, bench: &Bench, noise: &Noise, effects: &mut [Fitted], places: &[std::ops::Range<usize>]) {
+    let state = &search.prepared.state;
+    let mut tangents: Vec<Vec<f64>> = Vec::new();
+    let mut owners: Vec<(usize, usize)> = Vec::new();
+    for (index, effect) in effects.iter().enumerate() {
+        let Label::Named(id) = effect.label else { continue };
+        let Some(hypothesis) = search.hypothesis(id) else { continue };
+        for (slot, tangent) in search.shape_tangents(hypothesis, state, effect).into_iter() {
+            tangents.push(tangent);
+            owners.push((index, slot));
+        }
+    }
+    if tangents.is_empty() {
+        return;
+    }
+    let mut all = bench.base.clone();
+    all.extend(search.whitened(&tangents, noise));
+    let Some(covariance) = invert_symmetric(&super::linear::gram(&all, &bench.runs())) else { return };
+    for (effect, place) in effects.iter_mut().zip(places) {
+        effect.deviation = place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
+    }
+    for (row, (index, slot)) in (bench.base.len()..).zip(owners) {
+        effects[index].shape_deviation[slot] = Some(covariance[(row, row)].max(0.0).sqrt());
+    }
+}
+
+impl Search<'_> {
+    /// Change of an effect's fitted torque with each refinable shape parameter, filtered.
+    fn shape_tangents(
+        &self,
+        hypothesis: &dyn crate::physics::Hypothesis,
+        state: &JointState,
+        effect: &Fitted,
+    ) -> Vec<(usize, Vec<f64>)> {
+        (0..effect.shape.len())
+            .filter(|&slot| hypothesis.bounds(state, slot).is_some())
+            .map(|slot| {
+                let step = 0.05 * hypothesis.step(state, slot, &effect.shape);
+                let torque = |by: f64| {
+                    let mut shape = effect.shape.clone();
+                    shape[slot] += by;
+                    weighted(&self.filtered_columns(&effect.label, &shape), &effect.coefficients)
+                };
+                let (up, down) = (torque(step), torque(-step));
+                (slot, up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect())
+            })
+            .collect()
+    }
+}
+
+/// Sum of columns weighted by coefficients.
+pub(crate) fn weighted(columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
+    }
+    sum
+}
+
+/// Text of a dimension's unit for an axis and an actuator unit ("N m", "N" or "A").
+pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
+    let position = if rotary { "rad" } else { "m" };
+    match dimension {
+        Dimension::Torque => actuator.to_string(),
+        Dimension::TorquePerVelocity => format!("{actuator} s/{position}"),
+        Dimension::TorquePerVelocityPower => format!("{actuator} (s/{position})^p"),
+        Dimension::TorquePerKelvin => format!("{actuator}/K"),
+        Dimension::TorquePerVelocityKelvin => format!("{actuator} s/({position} K)"),
+        Dimension::TorquePerPosition => format!("{actuator}/{position}"),
+        Dimension::Inertia => match (actuator, rotary) {
+            ("N m", _) => "kg m2".to_string(),
+            ("N", false) => "kg".to_string(),
+            _ => format!("{actuator} s2/{position}"),
+        },
+        Dimension::TorquePerSecond => format!("{actuator}/s"),
+        Dimension::TorquePerWatt => format!("{actuator}/W"),
+        Dimension::TorquePerWattVelocity => format!("{actuator} s/({position} W)"),
+        Dimension::PerTorque => format!("1/({actuator})"),
+        Dimension::Velocity => format!("{position}/s"),
+        Dimension::Position => position.to_string(),
+        Dimension::Second => "s".to_string(),
+        Dimension::SecondSquared => "s2".to_string(),
+        Dimension::TorquePerVelocitySquared => format!("{actuator} s2/{position}2"),
+        Dimension::Order => if rotary { "1/turn" } else { "rad/m" }.to_string(),
+        Dimension::One => "1".to_string(),
+    }
+}

@@ -1,0 +1,217 @@
+//! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
+
+use super::linear::{dot, gram, solve_symmetric};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Whitened base and target, with the sums of every block: all that the evidence needs besides the candidate.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    /// Whitened base columns.
+    pub base: Vec<Vec<f64>>,
+    /// Whitened target.
+    pub target: Vec<f64>,
+    /// Runs of each open block.
+    pub blocks: Vec<Vec<Range<usize>>>,
+    sums: Vec<BlockSums>,
+}
+
+#[derive(Clone, Debug)]
+struct BlockSums {
+    base: DMatrix<f64>,
+    base_target: DVector<f64>,
+    target: f64,
+    rows: f64,
+}
+
+/// Evidence for one variant of a hypothesis.
+#[derive(Clone, Debug)]
+pub struct VariantEvidence {
+    /// Explained whitened energy: chi-square with `degrees` under the null.
+    pub statistic: f64,
+    /// Linear coefficients.
+    pub degrees: usize,
+    /// Residual energy over all open blocks.
+    pub residual: f64,
+    /// Residual energy of the training part of each fold.
+    pub fold_train: Vec<f64>,
+    /// Held-out log-likelihood of each fold.
+    pub fold_likelihood: Vec<f64>,
+}
+
+impl Bench {
+    /// Collects the sums of each block.
+    pub fn new(base: Vec<Vec<f64>>, target: Vec<f64>, blocks: Vec<Vec<Range<usize>>>) -> Self {
+        let sums = blocks
+            .iter()
+            .map(|runs| BlockSums {
+                base: gram(&base, runs),
+                base_target: DVector::from_iterator(base.len(), base.iter().map(|c| dot(c, &target, runs))),
+                target: dot(&target, &target, runs),
+                rows: runs.iter().map(|run| run.len() as f64).sum(),
+            })
+            .collect();
+        Self { base, target, blocks, sums }
+    }
+
+    /// All open runs.
+    pub fn runs(&self) -> Vec<Range<usize>> {
+        self.blocks.iter().flatten().cloned().collect()
+    }
+
+    /// Whitened rows in use.
+    pub fn rows(&self) -> f64 {
+        self.sums.iter().map(|sums| sums.rows).sum()
+    }
+
+    /// Evidence of the base alone.
+    pub fn alone(&self) -> Option<VariantEvidence> {
+        self.evidence(&[])
+    }
+
+    /// Evidence of the base with the given whitened columns; `None` where they depend on the base.
+    pub fn evidence(&self, columns: &[Vec<f64>]) -> Option<VariantEvidence> {
+        let (p, d) = (self.base.len(), columns.len());
+        let blocks: Vec<(DMatrix<f64>, DVector<f64>)> = self
+            .blocks
+            .iter()
+            .zip(&self.sums)
+            .map(|(runs, sums)| {
+                let mut normal = DMatrix::zeros(p + d, p + d);
+                let mut right = DVector::zeros(p + d);
+                normal.view_mut((0, 0), (p, p)).copy_from(&sums.base);
+                right.rows_mut(0, p).copy_from(&sums.base_target);
+                for (a, column) in columns.iter().enumerate() {
+                    right[p + a] = dot(column, &self.target, runs);
+                    for (b, base) in self.base.iter().enumerate() {
+                        let value = dot(column, base, runs);
+                        normal[(p + a, b)] = value;
+                        normal[(b, p + a)] = value;
+                    }
+                    for (b, other) in columns.iter().enumerate().take(a + 1) {
+                        let value = dot(column, other, runs);
+                        normal[(p + a, p + b)] = value;
+                        normal[(p + b, p + a)] = value;
+                    }
+                }
+                (normal, right)
+            })
+            .collect();
+        let normal: DMatrix<f64> = blocks.iter().fold(DMatrix::zeros(p + d, p + d), |sum, (n, _)| sum + n);
+        let right: DVector<f64> = blocks.iter().fold(DVector::zeros(p + d), |sum, (_, r)| sum + r);
+        if d > 0 && !independent(&normal, p) {
+            return None;
+        }
+        let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
+        let base_residual = energy - explained(&normal.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
+        let residual = energy - explained(&normal, &right)?;
+        let rows = self.rows();
+        let mut fold_train = Vec::with_capacity(blocks.len());
+        let mut fold_likelihood = Vec::with_capacity(blocks.len());
+        for ((block_normal, block_right), sums) in blocks.iter().zip(&self.sums) {
+            let (train_normal, train_right) = (&normal - block_normal, &right - block_right);
+            let solution = solve_symmetric(&train_normal, &train_right)?;
+            let train = (energy - sums.target - solution.dot(&train_right)).max(f64::MIN_POSITIVE);
+            let held_out = sums.target - 2.0 * solution.dot(block_right) + solution.dot(&(block_normal * &solution));
+            let variance = train / (rows - sums.rows - (p + d) as f64).max(1.0);
+            fold_train.push(train);
+            fold_likelihood.push(-0.5 * sums.rows * variance.ln() - 0.5 * held_out / variance);
+        }
+        Some(VariantEvidence { statistic: base_residual - residual, degrees: d, residual, fold_train, fold_likelihood })
+    }
+
+    /// Energy of a whitened column that the base cannot hold: the non-centrality of unit amplitude.
+    pub fn visible_energy(&self, column: &[f64]) -> Option<f64> {
+        let runs = self.runs();
+        let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, column, &runs)));
+        let normal = self.sums.iter().fold(DMatrix::zeros(self.base.len(), self.base.len()), |sum, s| sum + &s.base);
+        let energy = dot(column, column, &runs) - explained(&normal, &right)?;
+        (energy > 0.0).then_some(energy)
+    }
+
+    /// Coefficients of the base and the given whitened columns, with their covariance.
+    pub fn solve(&self, columns: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
+        let runs = self.runs();
+        let all: Vec<Vec<f64>> = self.base.iter().chain(columns).cloned().collect();
+        let normal = gram(&all, &runs);
+        let right = DVector::from_iterator(all.len(), all.iter().map(|c| dot(c, &self.target, &runs)));
+        let solution = solve_symmetric(&normal, &right)?;
+        let covariance = super::linear::invert_symmetric(&normal)?;
+        Some((solution.iter().copied().collect(), covariance))
+    }
+}
+
+fn explained(normal: &DMatrix<f64>, right: &DVector<f64>) -> Option<f64> {
+    if right.is_empty() {
+        return Some(0.0);
+    }
+    solve_symmetric(normal, right).map(|solution| solution.dot(right))
+}
+
+/// Whether each candidate column keeps a share of its energy that the base (and the columns before) cannot hold.
+fn independent(normal: &DMatrix<f64>, base: usize) -> bool {
+    const LEAST_SHARE: f64 = 1e-5;
+    let size = normal.nrows();
+    let scale: Vec<f64> = normal.diagonal().iter().map(|d| d.max(0.0).sqrt()).collect();
+    if scale.iter().skip(base).any(|s| *s <= 0.0) {
+        return false;
+    }
+    let correlation = DMatrix::from_fn(size, size, |i, j| {
+        let ridge = if i == j { 1e-11 } else { 0.0 };
+        let product = scale[i] * scale[j];
+        ridge + if product > 0.0 { normal[(i, j)] / product } else { 0.0 }
+    });
+    correlation.cholesky().is_some_and(|factor| {
+        let lower = factor.l();
+        (base..size).all(|i| lower[(i, i)] * lower[(i, i)] > LEAST_SHARE)
+    })
+}
+
+/// Evidence for a group: the best variant in each fold is chosen on the other folds only.
+#[derive(Clone, Debug)]
+pub struct GroupEvidence {
+    /// Index of the variant with the best criterion over all open blocks.
+    pub best: usize,
+    /// Score statistic of that variant.
+    pub statistic: f64,
+    /// Its linear coefficients.
+    pub degrees: usize,
+    /// Held-out gain over the base in nats.
+    pub held_out: f64,
+    /// Gain of each fold.
+    pub fold_gain: Vec<f64>,
+    /// Bayesian criterion over the base in nats, grid included.
+    pub criterion: f64,
+}
+
+impl GroupEvidence {
+    /// Weighs the variants of a group against the base.
+    pub fn weigh(base: &VariantEvidence, variants: &[Option<VariantEvidence>], rows: f64, grid_size: f64) -> Option<Self> {
+        let criterion_of = |variant: &VariantEvidence, energy: f64, base_energy: f64| {
+            0.5 * rows * (base_energy / energy).ln() - 0.5 * variant.degrees as f64 * rows.ln()
+        };
+        let tested = || variants.iter().enumerate().filter_map(|(i, v)| v.as_ref().map(|v| (i, v)));
+        let (best, variant) = tested().max_by(|(_, a), (_, b)| {
+            criterion_of(a, a.residual, base.residual).total_cmp(&criterion_of(b, b.residual, base.residual))
+        })?;
+        let folds = base.fold_likelihood.len();
+        let fold_gain: Vec<f64> = (0..folds)
+            .filter_map(|fold| {
+                tested()
+                    .max_by(|(_, a), (_, b)| {
+                        let of = |v: &VariantEvidence| criterion_of(v, v.fold_train[fold], base.fold_train[fold]);
+                        of(a).total_cmp(&of(b))
+                    })
+                    .map(|(_, chosen)| chosen.fold_likelihood[fold] - base.fold_likelihood[fold])
+            })
+            .collect();
+        Some(Self {
+            best,
+            statistic: variant.statistic,
+            degrees: variant.degrees,
+            held_out: fold_gain.iter().sum(),
+            fold_gain,
+            criterion: criterion_of(variant, variant.residual, base.residual) - 0.5 * grid_size.ln(),
+        })
+    }
+}

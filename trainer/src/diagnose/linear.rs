@@ -1,0 +1,104 @@
+//! Small dense least squares over columns and runs of rows.
+
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Inner product of two columns over runs of rows.
+pub(crate) fn dot(a: &[f64], b: &[f64], runs: &[Range<usize>]) -> f64 {
+    runs.iter().map(|run| dot_slices(&a[run.clone()], &b[run.clone()])).sum()
+}
+
+/// Inner product with four partial sums in a fixed order, so that it vectorises and always rounds alike.
+fn dot_slices(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (a_chunks, b_chunks) = (a.chunks_exact(4), b.chunks_exact(4));
+    let tail: f64 = a_chunks.remainder().iter().zip(b_chunks.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a_chunks.zip(b_chunks) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+}
+
+/// Normal matrix of columns over runs.
+pub(crate) fn gram(columns: &[Vec<f64>], runs: &[Range<usize>]) -> DMatrix<f64> {
+    let width = columns.len();
+    let mut gram = DMatrix::zeros(width, width);
+    for a in 0..width {
+        for b in a..width {
+            let value = dot(&columns[a], &columns[b], runs);
+            gram[(a, b)] = value;
+            gram[(b, a)] = value;
+        }
+    }
+    gram
+}
+
+/// Solves a symmetric positive system with unit-diagonal scaling; `None` where it is singular to working precision.
+pub(crate) fn solve_symmetric(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let scale = DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }));
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
+    });
+    let factor = scaled.cholesky()?;
+    let solution = factor.solve(&right.component_mul(&scale)).component_mul(&scale);
+    solution.iter().all(|v| v.is_finite()).then_some(solution)
+}
+
+/// Inverse of a symmetric positive matrix with the same scaling.
+pub(crate) fn invert_symmetric(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }).collect();
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}
+
+/// Coefficients of the least-squares fit of `target` by `columns` over runs; `None` where it is singular.
+pub(crate) fn least_squares(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<Vec<f64>> {
+    let right = DVector::from_iterator(columns.len(), columns.iter().map(|c| dot(c, target, runs)));
+    solve_symmetric(&gram(columns, runs), &right).map(|solution| solution.iter().copied().collect())
+}
+
+/// What a fit leaves: target less the weighted columns.
+pub(crate) fn residual(columns: &[Vec<f64>], target: &[f64], coefficients: &[f64]) -> Vec<f64> {
+    let mut residual = target.to_vec();
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        for (r, c) in residual.iter_mut().zip(column) {
+            *r -= coefficient * c;
+        }
+    }
+    residual
+}
+
+/// Orthonormal basis of the span of columns over runs (modified Gram-Schmidt, twice); columns that depend on
+/// the ones before are left out.
+pub(crate) fn orthonormal(columns: &[Vec<f64>], runs: &[Range<usize>]) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for column in columns {
+        let before = dot(column, column, runs);
+        let mut rest = column.clone();
+        for _ in 0..2 {
+            project_out(&mut rest, &basis, runs);
+        }
+        let after = dot(&rest, &rest, runs);
+        if before > 0.0 && after > 1e-10 * before {
+            let scale = after.sqrt().recip();
+            rest.iter_mut().for_each(|v| *v *= scale);
+            basis.push(rest);
+        }
+    }
+    basis
+}
+
+/// Removes from a column its projection on an orthonormal basis over runs.
+pub(crate) fn project_out(column: &mut [f64], basis: &[Vec<f64>], runs: &[Range<usize>]) {
+    for direction in basis {
+        let share = dot(column, direction, runs);
+        for (value, d) in column.iter_mut().zip(direction) {
+            *value -= share * d;
+        }
+    }
+}

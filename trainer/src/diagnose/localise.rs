@@ -1,0 +1,163 @@
+//! Where a finding sits: evidence density along time and every channel, and the interval that holds most of it.
+
+use super::candidates::Channel;
+use super::conclude::{Refit, weighted};
+use super::prove::rest;
+use super::search::Search;
+use std::ops::Range;
+
+/// An interval of a channel with its share of the evidence and of the samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Channel name; the sign of velocity is in the interval itself for `velocity`.
+    pub channel: &'static str,
+    /// Lower end in the channel's SI unit.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// Share of the explained excess inside, 0..1.
+    pub share_of_excess: f64,
+    /// Share of the samples inside, 0..1.
+    pub share_of_samples: f64,
+}
+
+/// Regions and times of one finding.
+#[derive(Clone, Debug, Default)]
+pub struct Location {
+    /// Regions, sharpest first.
+    pub regions: Vec<Region>,
+    /// Stretches of time in s that hold the most evidence.
+    pub when_s: Vec<[f64; 2]>,
+}
+
+/// Bins a channel for the search of the maximal interval.
+const BINS: usize = 40;
+
+/// Locates one effect of a refit: the evidence that it adds to all the others.
+pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
+    let runs = search.prepared.open_runs();
+    let order = refit.noise.autoregression.len();
+    let with = rest(search, refit);
+    let effect = &refit.effects[index];
+    let torque = weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients);
+    let mut white_with = with.clone();
+    let mut white_without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
+    refit.noise.whiten(&mut white_with, &runs);
+    refit.noise.whiten(&mut white_without, &runs);
+    let rows: Vec<usize> = runs.iter().flat_map(|run| (run.start + order).min(run.end)..run.end).collect();
+    let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
+    let state = &search.prepared.state;
+    let mut channels = vec![
+        Channel::Position,
+        Channel::Load,
+        Channel::Temperature,
+        Channel::Acceleration,
+        Channel::DistanceSinceReversal,
+        Channel::TimeSinceReversal,
+        Channel::Dwell,
+        Channel::Time,
+    ];
+    channels.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
+    let mut regions: Vec<Region> = Vec::new();
+    let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };
+    regions.extend(interval("velocity", &at_rows(&state.velocity), &density));
+    for channel in channels {
+        let Some(series) = channel.series(state) else { continue };
+        regions.extend(interval(channel.name(), &at_rows(&series), &density));
+    }
+    regions.sort_by(|a, b| contrast(b).total_cmp(&contrast(a)));
+    let time = at_rows(&state.time);
+    Location { regions, when_s: when(&time, &density) }
+}
+
+/// How much denser the evidence is inside than on average, weighed by what it holds.
+fn contrast(region: &Region) -> f64 {
+    region.share_of_excess - region.share_of_samples
+}
+
+/// The interval of a channel with the largest evidence above the average (Kadane's maximal sum over quantile bins).
+fn interval(channel: &'static str, values: &[f64], density: &[f64]) -> Option<Region> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let (&first, &last) = (order.first()?, order.last()?);
+    if values[first] >= values[last] {
+        return None;
+    }
+    let total: f64 = density.iter().sum();
+    if total <= 0.0 {
+        return None;
+    }
+    let mean = total / density.len() as f64;
+    let edges: Vec<usize> = (0..=BINS).map(|k| order.len() * k / BINS).collect();
+    let sums: Vec<f64> = edges.windows(2).map(|e| order[e[0]..e[1]].iter().map(|&i| density[i] - mean).sum()).collect();
+    let best = maximal_sum(&sums);
+    let (begin, end) = (edges[best.start], edges[best.end]);
+    let inside: f64 = order[begin..end].iter().map(|&i| density[i]).sum();
+    Some(Region {
+        channel,
+        from: values[order[begin]],
+        to: values[order[end - 1]],
+        share_of_excess: (inside / total).clamp(0.0, 1.0),
+        share_of_samples: (end - begin) as f64 / order.len() as f64,
+    })
+}
+
+/// Range of consecutive entries with the largest sum (Kadane).
+fn maximal_sum(values: &[f64]) -> Range<usize> {
+    let (mut best, mut best_sum) = (0..1, f64::NEG_INFINITY);
+    let (mut begin, mut sum) = (0, 0.0);
+    for (i, value) in values.iter().enumerate() {
+        if sum <= 0.0 {
+            (begin, sum) = (i, 0.0);
+        }
+        sum += value;
+        if sum > best_sum {
+            (best, best_sum) = (begin..i + 1, sum);
+        }
+    }
+    best
+}
+
+/// Up to five stretches of time in which the evidence is densest.
+fn when(time: &[f64], density: &[f64]) -> Vec<[f64; 2]> {
+    let total: f64 = density.iter().sum();
+    if total <= 0.0 || time.is_empty() {
+        return Vec::new();
+    }
+    let mean = total / density.len() as f64;
+    let width = (density.len() / 240).max(4);
+    let mut sums: Vec<f64> = density.chunks(width).map(|c| c.iter().map(|d| d - 1.5 * mean).sum()).collect();
+    let mut stretches = Vec::new();
+    while stretches.len() < 5 {
+        let best = maximal_sum(&sums);
+        let gain: f64 = sums[best.clone()].iter().sum();
+        if gain < 0.05 * total {
+            break;
+        }
+        let end = (best.end * width).min(time.len()) - 1;
+        stretches.push([time[best.start * width], time[end]]);
+        sums[best].fill(f64::NEG_INFINITY);
+    }
+    stretches.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maximal_sum_finds_the_best_stretch() {
+        assert_eq!(maximal_sum(&[-1.0, 2.0, -0.5, 3.0, -4.0, 1.0]), 1..4);
+        assert_eq!(maximal_sum(&[-3.0, -1.0, -2.0]), 1..2);
+    }
+
+    #[test]
+    fn interval_holds_a_local_bump() {
+        let values: Vec<f64> = (0..1000).map(|i| f64::from(i) / 1000.0).collect();
+        let density: Vec<f64> = values.iter().map(|v| if (0.3..0.4).contains(v) { 1.0 } else { 0.0 }).collect();
+        let region = interval("position", &values, &density).unwrap();
+        assert!((region.from - 0.3).abs() < 0.03 && (region.to - 0.4).abs() < 0.03, "{region:?}");
+        assert!(region.share_of_excess > 0.99 && region.share_of_samples < 0.16);
+    }
+}

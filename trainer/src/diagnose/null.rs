@@ -1,0 +1,129 @@
+//! What the statistics do when nothing is missing: draws of moving blocks of the residual with random signs and places,
+//! the tail of every hypothesis' statistic, and the family-wise probability (Westfall and Young 1993).
+
+use super::linear::{orthonormal, project_out};
+use super::random::uniform;
+use nalgebra::DMatrix;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Length of a moving block in whitened rows (about half a second at the usual working rates).
+const BLOCK_ROWS: usize = 64;
+
+/// One null draw of every hypothesis.
+#[derive(Clone, Debug)]
+pub struct NullDraws {
+    /// For each group, location and scale of the Gumbel tail of its statistic in -log p.
+    tails: Vec<(f64, f64)>,
+    /// Effective number of independent hypotheses.
+    effective: f64,
+}
+
+/// Orthonormal directions of each variant of each group, with the base projected out.
+pub(crate) type Directions = Vec<Vec<Vec<Vec<f64>>>>;
+
+/// -log of the upper tail of chi-square.
+pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
+    if statistic <= 0.0 || degrees == 0 {
+        return 0.0;
+    }
+    let half = 0.5 * degrees as f64;
+    let tail = statrs::function::gamma::checked_gamma_ur(half, 0.5 * statistic).unwrap_or(1.0);
+    if tail > 1e-280 {
+        -tail.ln()
+    } else {
+        // Leading term of the asymptotic series.
+        0.5 * statistic - (half - 1.0) * (0.5 * statistic).ln() + statrs::function::gamma::ln_gamma(half)
+    }
+}
+
+impl NullDraws {
+    /// Draws the null `count` times. `residual` is whitened, what the base and the best candidates leave.
+    pub fn draw(directions: &Directions, base: &[Vec<f64>], residual: &[f64], runs: &[Range<usize>], count: usize, seed: u64) -> Self {
+        let rows: usize = runs.iter().map(|run| run.len()).sum();
+        let gather = |column: &[f64]| -> Vec<f64> { runs.iter().flat_map(|run| column[run.clone()].iter().copied()).collect() };
+        let pool = gather(residual);
+        let packed_runs = [0..rows];
+        let packed_base = orthonormal(&base.iter().map(|c| gather(c)).collect::<Vec<_>>(), &packed_runs);
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let starts: Vec<Vec<(usize, f64)>> = (0..count)
+            .map(|_| {
+                (0..rows.div_ceil(BLOCK_ROWS))
+                    .map(|_| {
+                        let start = (uniform(&mut random) * pool.len() as f64) as usize;
+                        (start, if uniform(&mut random) < 0.5 { -1.0 } else { 1.0 })
+                    })
+                    .collect()
+            })
+            .collect();
+        let draws: Vec<Vec<f64>> = starts
+            .par_iter()
+            .map(|blocks| {
+                let mut draw: Vec<f64> = (0..rows)
+                    .map(|i| {
+                        let (start, sign) = blocks[i / BLOCK_ROWS];
+                        sign * pool[(start + i % BLOCK_ROWS) % pool.len()]
+                    })
+                    .collect();
+                project_out(&mut draw, &packed_base, &packed_runs);
+                draw
+            })
+            .collect();
+        let matrix = DMatrix::from_fn(rows, count, |i, j| draws[j][i]);
+        // One group after the other, so that only one group's directions are packed at a time.
+        let surprises: Vec<Vec<f64>> = directions
+            .par_iter()
+            .map(|variants| {
+                let packed: Vec<Vec<f64>> = variants.iter().flatten().map(|d| gather(d)).collect();
+                if packed.is_empty() {
+                    return vec![0.0; count];
+                }
+                let directions = DMatrix::from_fn(packed.len(), rows, |i, j| packed[i][j]);
+                let shares = directions * &matrix;
+                (0..count)
+                    .map(|draw| {
+                        let mut row = 0;
+                        let mut largest = 0.0f64;
+                        for variant in variants {
+                            let energy: f64 = (row..row + variant.len()).map(|i| shares[(i, draw)].powi(2)).sum();
+                            row += variant.len();
+                            largest = largest.max(chi_square_surprise(energy, variant.len()));
+                        }
+                        largest
+                    })
+                    .collect()
+            })
+            .collect();
+        let tails: Vec<(f64, f64)> = surprises.iter().map(|values| gumbel(values)).collect();
+        // min-p over the family: 1 - (1 - p)^K with K fitted to the draws.
+        let log_survivals: f64 = (0..count)
+            .map(|draw| {
+                let least = surprises.iter().zip(&tails).map(|(v, tail)| tail_probability(v[draw], *tail)).fold(1.0, f64::min);
+                (1.0 - least).max(1e-300).ln()
+            })
+            .sum();
+        Self { tails, effective: (count as f64 / -log_survivals).clamp(1.0, 10.0 * directions.len() as f64) }
+    }
+
+    /// Family-wise probability that a group's surprise (-log p of its best variant) arises when nothing is missing.
+    pub fn family_wise(&self, group: usize, surprise: f64) -> f64 {
+        let alone = tail_probability(surprise, self.tails[group]);
+        -(self.effective * (-alone).ln_1p()).exp_m1()
+    }
+}
+
+/// Gumbel location and scale by moments; the scale is at least one, that of independent exponential tails.
+fn gumbel(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let scale = (6.0 * variance).sqrt() / std::f64::consts::PI;
+    let scale = scale.max(1.0);
+    (mean - 0.577_215_664_9 * scale, scale)
+}
+
+fn tail_probability(surprise: f64, (location, scale): (f64, f64)) -> f64 {
+    -(-(-(surprise - location) / scale).exp()).exp_m1()
+}

@@ -1,0 +1,114 @@
+//! What a diagnosis says: verdict, findings with their evidence, gain, and what would have been seen.
+
+use super::advise::Advice;
+use super::base::BaseKind;
+use super::conclude::{Fitted, Refit};
+use super::health::HealthNote;
+use super::localise::Location;
+use super::prove::Proof;
+use super::search::Scored;
+use crate::parameter::Parameter;
+use crate::physics::{Action, EffectId};
+use serde::Serialize;
+
+/// The overall answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing is missing that this recording could show.
+    Consistent,
+    /// Named effects are missing.
+    MissingPhysics,
+    /// Something structured is missing that the catalogue does not hold.
+    Unexplained,
+    /// The measurement is at fault.
+    BadData,
+}
+
+/// One finding.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// Which effect.
+    pub effect: EffectId,
+    /// Calibrated probability that the effect is the named one.
+    pub probability: f64,
+    /// What this recording cannot tell from it, with probabilities.
+    pub alternatives: Vec<(EffectId, f64)>,
+    /// What to do about it.
+    pub action: Action,
+    /// The equation it adds.
+    pub equation: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Where it sits.
+    pub location: Location,
+    /// One sentence of evidence.
+    pub evidence: String,
+    /// An excitation that would tell the alternatives apart.
+    pub separate_by: Advice,
+    /// The fitted term.
+    pub fitted: Fitted,
+    /// Score in nats.
+    pub score: f64,
+    /// Margin in nats to the best rival outside the set.
+    pub margin: f64,
+    /// Gain on locked data in nats when this effect alone is left out.
+    pub locked_gain_nats: Option<f64>,
+}
+
+/// The amplitude that would have been seen.
+#[derive(Clone, Debug, Serialize)]
+pub struct DetectionLimit {
+    /// Which effect.
+    pub effect: EffectId,
+    /// Root mean square of its torque that would have been found with 90 % probability, in the actuator's unit.
+    pub torque_rms: f64,
+}
+
+/// A whole diagnosis.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// The answer.
+    pub verdict: Verdict,
+    /// Notes on the measurement, before any physics.
+    pub health: Vec<HealthNote>,
+    /// Findings in the order in which they were accepted.
+    pub findings: Vec<Finding>,
+    /// Effects that were found but withdrawn, because locked data did not confirm them.
+    pub withdrawn: Vec<EffectId>,
+    /// What would have been seen.
+    pub limits: Vec<DetectionLimit>,
+    /// Which base the recording was compared with.
+    pub base: BaseKind,
+    /// Names of the base's physical parameters, as far as they have one, with their refitted values.
+    pub base_parameters: Vec<Parameter>,
+    /// Root mean square of the noise that is left.
+    pub noise_rmse: f64,
+    /// Root mean square and R2 (against the recorded torque) of the base on all rows.
+    pub baseline: Score,
+    /// The same with the effects.
+    pub improved: Score,
+    /// Proof on locked rows.
+    pub proof: Option<Proof>,
+    /// The last round's table: every hypothesis that was not accepted.
+    pub rivals: Vec<Scored>,
+    /// Refit of the base alone and with the effects.
+    pub baseline_refit: Refit,
+    /// Refit with the effects.
+    pub improved_refit: Refit,
+    /// Cut-off of the common filter in Hz.
+    pub cut_off_hz: f64,
+    /// Rows of evidence.
+    pub rows: usize,
+    /// Delay of the torque against the position in s, as far as it is the sampling's own.
+    pub sampling_delay_s: f64,
+}
+
+/// Goodness of fit on the working rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Score {
+    /// Root mean square error in the actuator's unit.
+    pub rmse: f64,
+    /// Coefficient of determination against the filtered recorded torque.
+    pub r2: f64,
+}

@@ -1,0 +1,298 @@
+//! From signals to states and working rows: one filter for all, rest and edges left out, blocks set aside.
+
+use super::filter::{ZeroPhase, first_derivative, second_derivative};
+use super::signals::Signals;
+use crate::physics::{JointState, MemoryAxes, OtherJoint};
+use std::ops::Range;
+
+/// Which blocks are locked away from all fitting and choosing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lock {
+    /// Every fifth block: about a fifth of the recording, spread over it.
+    Spread,
+    /// The last share (0..1) of the recording.
+    Tail(f64),
+    /// Nothing is locked: proof must come from another recording.
+    Nothing,
+}
+
+/// One block of consecutive working rows that belongs together in folds and proofs.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Runs of consecutive working rows (uninterrupted by rest or gaps).
+    pub runs: Vec<Range<usize>>,
+    /// Whether the block is locked away until the proof.
+    pub locked: bool,
+}
+
+/// States at the recording's rate and the rows on which evidence is weighed.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The states.
+    pub state: JointState,
+    /// The common filter F.
+    pub filter: ZeroPhase,
+    /// Sample index of each working row.
+    pub rows: Vec<usize>,
+    /// Blocks of rows.
+    pub blocks: Vec<Block>,
+    /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
+    pub narrow_velocity: Vec<f64>,
+    /// Acceleration behind a narrower filter.
+    pub narrow_acceleration: Vec<f64>,
+    /// Recorded torque less the nominal rigid body or the reference, unfiltered: what the friction has to explain.
+    pub friction_torque: Vec<f64>,
+    /// Recorded torque, unfiltered.
+    pub torque: Vec<f64>,
+}
+
+/// Working samples a period of the cut-off: fine enough for the transition of the filter.
+const ROWS_PER_CUT_OFF: f64 = 2.5;
+/// Cut-off frequencies that are tried, widest first, in Hz.
+const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
+/// Share of the residual's deviation that encoder noise may reach through the inertia.
+const ENCODER_SHARE: f64 = 0.1;
+/// Least number of blocks for held-out evidence.
+const LEAST_BLOCKS: usize = 10;
+
+impl Prepared {
+    /// Prepares states and rows. The cut-off is the widest at which encoder noise, through the inertia, stays below a
+    /// tenth of the residual.
+    pub fn new(signals: &Signals, lock: Lock) -> Self {
+        let rate = 1.0 / signals.period;
+        let mut chosen = None;
+        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
+            let prepared = Self::at_cut_off(signals, cut_off, lock);
+            let fits = encoder_noise_is_small(&prepared, signals);
+            let enough_rows = prepared.rows.len() >= 200;
+            if fits || (chosen.is_some() && !enough_rows) {
+                return prepared;
+            }
+            chosen = Some(prepared);
+        }
+        chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, lock))
+    }
+
+    fn at_cut_off(signals: &Signals, cut_off: f64, lock: Lock) -> Self {
+        let period = signals.period;
+        let segments = &signals.segments;
+        let filter = ZeroPhase::new(cut_off, period);
+        let wide = ZeroPhase::new((1.6 * cut_off).min(0.35 / period), period);
+        let narrow = ZeroPhase::new(0.8 * cut_off, period);
+        let position = wide.over(&signals.position, segments);
+        let velocity = match &signals.velocity {
+            Some(recorded) => wide.over(recorded, segments),
+            None => first_derivative(&position, segments, period),
+        };
+        let second = |smooth: &[f64]| match &signals.velocity {
+            Some(recorded) => first_derivative(&wide.over(recorded, segments), segments, period),
+            None => second_derivative(smooth, segments, period),
+        };
+        let acceleration = second(&position);
+        let narrow_position = narrow.over(&signals.position, segments);
+        let narrow_velocity = match &signals.velocity {
+            Some(recorded) => narrow.over(recorded, segments),
+            None => first_derivative(&narrow_position, segments, period),
+        };
+        let narrow_acceleration = second(&narrow_position);
+        let velocity_noise = velocity_noise(signals.position_resolution, &wide, period);
+        let mut state = JointState {
+            period,
+            time: signals.time.clone(),
+            position,
+            velocity,
+            acceleration,
+            sign_velocity: 0.0,
+            sign: Vec::new(),
+            rigid_body: signals.rigid_body.as_ref().map(|series| wide.over(series, segments)),
+            load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| wide.over(series, segments)),
+            temperature: signals.temperature.as_ref().map(|series| slow(series, segments, period)),
+            link_position: signals.link_position.as_ref().map(|series| wide.over(series, segments)),
+            other_joints: signals
+                .other_positions
+                .iter()
+                .map(|series| {
+                    let smooth = wide.over(series, segments);
+                    OtherJoint {
+                        velocity: first_derivative(&smooth, segments, period),
+                        acceleration: second_derivative(&smooth, segments, period),
+                    }
+                })
+                .collect(),
+            torque: wide.over(&signals.torque, segments),
+            predicted: Vec::new(),
+            base_friction: Vec::new(),
+            segments: segments.clone(),
+            memory: MemoryAxes::default(),
+            gear_ratio: signals.gear_ratio,
+            rotary: signals.rotary,
+            resolution: signals.position_resolution,
+        };
+        state.sign_velocity = (4.0 * velocity_noise).max(0.004 * state.top_speed()).max(f64::MIN_POSITIVE);
+        state.sign = state.velocity.iter().map(|v| (v / state.sign_velocity).tanh()).collect();
+        state.memory =
+            MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
+        let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+        let friction_torque = match known {
+            Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
+            None => signals.torque.clone(),
+        };
+        let (rows, blocks) = rows_and_blocks(&state, &standstill(signals), &filter, lock);
+        Self {
+            state,
+            filter,
+            rows,
+            blocks,
+            narrow_velocity,
+            narrow_acceleration,
+            friction_torque,
+            torque: signals.torque.clone(),
+        }
+    }
+
+    /// A series behind the common filter, one value a working row.
+    pub fn filtered(&self, series: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&i| self.filter.at(series, i)).collect()
+    }
+
+    /// A series at the working rows, unfiltered.
+    pub fn at_rows(&self, series: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&i| series[i]).collect()
+    }
+
+    /// Runs of rows that take part in fitting and choosing.
+    pub fn open_runs(&self) -> Vec<Range<usize>> {
+        self.blocks.iter().filter(|block| !block.locked).flat_map(|block| block.runs.clone()).collect()
+    }
+
+    /// Runs of the locked blocks.
+    pub fn locked_runs(&self) -> Vec<Range<usize>> {
+        self.blocks.iter().filter(|block| block.locked).flat_map(|block| block.runs.clone()).collect()
+    }
+}
+
+/// Deviation of the derived velocity caused by the encoder's grain.
+fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
+    // A derivative at the cut-off: white noise of res/sqrt(12) through a low-pass of bandwidth f has the share 2 f dt.
+    let bandwidth = filter.cut_off_hz;
+    resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
+}
+
+/// Smooths a slow channel over two seconds, so that its noise does not hand the evidence to a rival.
+fn slow(series: &[f64], segments: &[Range<usize>], period: f64) -> Vec<f64> {
+    let reach = (1.0 / period).round() as usize;
+    let mut smooth = series.to_vec();
+    for segment in segments {
+        let mut sums = Vec::with_capacity(segment.len() + 1);
+        sums.push(0.0);
+        for i in segment.clone() {
+            sums.push(sums[i - segment.start] + series[i]);
+        }
+        for i in 0..segment.len() {
+            let half = reach.min(i).min(segment.len() - 1 - i);
+            smooth[segment.start + i] = (sums[i + half + 1] - sums[i - half]) / (2 * half + 1) as f64;
+        }
+    }
+    smooth
+}
+
+/// Whether encoder noise, through the inertia, stays small against what the simplest model leaves.
+fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
+    if signals.position_resolution <= 0.0 || signals.velocity.is_some() {
+        return true;
+    }
+    let state = &prepared.state;
+    let columns: Vec<Vec<f64>> = [&state.sign, &state.velocity, &state.acceleration, &vec![1.0; state.len()]]
+        .into_iter()
+        .map(|series| prepared.filtered(series))
+        .collect();
+    let target = prepared.filtered(&signals.torque);
+    let Some(coefficients) = super::linear::least_squares(&columns, &target, &prepared.open_runs()) else { return true };
+    let friction = prepared.filtered(&prepared.friction_torque);
+    let Some(rest) = super::linear::least_squares(&columns, &friction, &prepared.open_runs()) else { return true };
+    let residual = super::linear::residual(&columns, &friction, &rest);
+    let rows = prepared.open_runs();
+    let count: usize = rows.iter().map(|run| run.len()).sum();
+    let energy: f64 = rows.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
+    let deviation = (energy / count.max(1) as f64).sqrt();
+    let grain = signals.position_resolution / 12f64.sqrt() * prepared.filter.second_derivative_gain(signals.period);
+    coefficients[2].abs() * grain < ENCODER_SHARE * deviation
+}
+
+fn rows_and_blocks(state: &JointState, stuck: &[bool], filter: &ZeroPhase, lock: Lock) -> (Vec<usize>, Vec<Block>) {
+    let step = ((1.0 / (ROWS_PER_CUT_OFF * filter.cut_off_hz * state.period)).round() as usize).max(1);
+    let reach = filter.reach();
+    let pieces = pieces(state, reach, step);
+    let mut rows = Vec::new();
+    let mut blocks = Vec::new();
+    let duration: usize = pieces.iter().map(Range::len).sum();
+    let mut before = 0;
+    for (index, piece) in pieces.into_iter().enumerate() {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        let mut begin = rows.len();
+        let span = piece.len();
+        for i in piece.step_by(step) {
+            // A row that sees standstill sees a torque that no law of motion can predict.
+            let near_rest = (i - reach / 2..=i + reach / 2).any(|j| stuck[j] || state.memory.at_rest[j]);
+            if near_rest {
+                if rows.len() > begin {
+                    runs.push(begin..rows.len());
+                }
+                begin = rows.len();
+            } else {
+                rows.push(i);
+            }
+        }
+        if rows.len() > begin {
+            runs.push(begin..rows.len());
+        }
+        let locked = match lock {
+            Lock::Spread => index % 5 == 3,
+            Lock::Tail(share) => before as f64 >= (1.0 - share) * duration as f64 - 1.0,
+            Lock::Nothing => false,
+        };
+        before += span;
+        blocks.push(Block { runs, locked });
+    }
+    (rows, blocks)
+}
+
+/// Samples at which the encoder shows no motion over four milliseconds: the joint sticks, if only for a moment.
+fn standstill(signals: &Signals) -> Vec<bool> {
+    const WINDOW_S: f64 = 0.004;
+    let mut stuck = vec![false; signals.position.len()];
+    let reach = ((0.5 * WINDOW_S / signals.period).round() as usize).max(1);
+    for segment in &signals.segments {
+        for i in segment.start + reach..segment.end.saturating_sub(reach) {
+            let moved = (signals.position[i + reach] - signals.position[i - reach]).abs();
+            stuck[i] = moved <= 1.5 * signals.position_resolution;
+        }
+    }
+    stuck
+}
+
+/// Sample ranges of the blocks: the segments where there are enough of them, else segments cut into pieces. What the
+/// filter reaches at both ends of a segment is left out.
+fn pieces(state: &JointState, reach: usize, step: usize) -> Vec<Range<usize>> {
+    let inner: Vec<Range<usize>> = state
+        .segments
+        .iter()
+        .map(|s| s.start + reach + 3..s.end.saturating_sub(reach + 3))
+        .filter(|s| s.end > s.start + 20 * step)
+        .collect();
+    if inner.len() >= LEAST_BLOCKS {
+        return inner;
+    }
+    let total: usize = inner.iter().map(Range::len).sum();
+    let length = (total / (LEAST_BLOCKS + 2)).max(1);
+    inner
+        .into_iter()
+        .flat_map(|segment| {
+            let count = (segment.len() as f64 / length as f64).round().max(1.0) as usize;
+            (0..count).map(move |k| {
+                let at = |k: usize| segment.start + segment.len() * k / count;
+                at(k)..at(k + 1)
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,261 @@
+//! One diagnosis from signals to outcome.
+
+use super::advise::{Advice, separation};
+use super::base::{Base, BaseKind};
+use super::candidates::Label;
+use super::conclude::{Fitted, Refit, refit, unit_text};
+use super::confidence::{alternatives, probability};
+use super::health::{HealthNote, examine};
+use super::localise::locate;
+use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
+use super::prepare::{Lock, Prepared};
+use super::prove::{prove, rest};
+use super::search::{Accepted, Scored, Search, SearchOutcome, Settings};
+use super::signals::Signals;
+use crate::parameter::Parameter;
+use crate::physics::{Action, Dimension, EffectId, catalogue};
+
+/// What a diagnosis is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The base model.
+    pub base: BaseKind,
+    /// Which blocks are locked.
+    pub lock: Lock,
+    /// Limits of the search.
+    pub settings: Settings,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { base: BaseKind::CoulombViscous, lock: Lock::Spread, settings: Settings::default() }
+    }
+}
+
+/// Why no diagnosis is possible.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// Too few rows of motion behind the filter.
+    #[error("only {rows} rows of motion are left behind the filter at {cut_off_hz} Hz; at least {least} are needed")]
+    TooLittleMotion {
+        /// Rows that are left.
+        rows: usize,
+        /// Rows that are needed.
+        least: usize,
+        /// Cut-off of the filter in Hz.
+        cut_off_hz: f64,
+    },
+    /// The base model cannot be determined.
+    #[error("the motion does not determine even the base model (one velocity, or no change of direction)")]
+    Undetermined,
+}
+
+/// Least rows of evidence.
+const LEAST_ROWS: usize = 150;
+/// Log-likelihood in nats that locked data may speak against an effect before its name is withdrawn.
+const WITHDRAWN_BELOW_NATS: f64 = -1.0;
+/// Non-centrality that is found with 90 % probability.
+const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
+
+/// Diagnoses one recording. `actuator` is the text of the actuator's unit ("N m", "N" or "A").
+///
+/// # Errors
+/// [`Refusal`] when the recording holds too little motion for any answer.
+pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+    let health = examine(signals);
+    let mut prepared = Prepared::new(signals, options.lock);
+    let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
+    if rows < LEAST_ROWS {
+        return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });
+    }
+    let base = Base::fit(&mut prepared, signals, options.base).ok_or(Refusal::Undetermined)?;
+    let hypotheses = catalogue();
+    let search = Search::new(&prepared, &base, &hypotheses, options.settings);
+    let SearchOutcome { accepted, last_round, noise } = search.run();
+    let baseline = refit(&search, &[], &noise).ok_or(Refusal::Undetermined)?;
+    let (accepted, withdrawn) = withdraw_unproven(&search, accepted, &baseline);
+    let improved = refit(&search, &accepted, &noise).ok_or(Refusal::Undetermined)?;
+    let proof = prove(&search, &baseline, &improved);
+    let findings: Vec<Finding> =
+        accepted.iter().enumerate().map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator)).collect();
+    let verdict = verdict(&findings, &health);
+    let score = |refit: &Refit| score(&search, refit);
+    Ok(Diagnosis {
+        verdict,
+        health,
+        limits: limits(&search, &last_round, &improved),
+        base: options.base,
+        base_parameters: base_parameters(&base, &improved, signals, actuator),
+        noise_rmse: improved.noise.rms,
+        baseline: score(&baseline),
+        improved: score(&improved),
+        proof,
+        findings,
+        withdrawn,
+        rivals: last_round,
+        cut_off_hz: prepared.filter.cut_off_hz,
+        rows,
+        sampling_delay_s: if base.delay_is_nuisance { base.delay } else { 0.0 },
+        baseline_refit: baseline,
+        improved_refit: improved,
+    })
+}
+
+/// Drops effects, weakest first, against which the locked data speak.
+fn withdraw_unproven(search: &Search, mut accepted: Vec<Accepted>, baseline: &Refit) -> (Vec<Accepted>, Vec<EffectId>) {
+    let mut withdrawn = Vec::new();
+    while !accepted.is_empty() {
+        let gains: Vec<f64> = (0..accepted.len()).map(|index| locked_gain(search, &accepted, index, baseline)).collect();
+        let weakest = (0..gains.len())
+            .filter(|&i| accepted[i].effect() != EffectId::TransientEvent)
+            .min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
+        match weakest {
+            Some(index) if gains[index] < WITHDRAWN_BELOW_NATS => withdrawn.push(accepted.remove(index).effect()),
+            _ => break,
+        }
+    }
+    (accepted, withdrawn)
+}
+
+/// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
+fn locked_gain(search: &Search, accepted: &[Accepted], index: usize, baseline: &Refit) -> f64 {
+    let mut others = accepted.to_vec();
+    others.remove(index);
+    let with = refit(search, accepted, &baseline.noise);
+    let without = refit(search, &others, &baseline.noise);
+    with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
+}
+
+fn finding(search: &Search, found: &Accepted, all: &[Accepted], index: usize, improved: &Refit, actuator: &str) -> Finding {
+    let effect = found.effect();
+    let fitted = improved.effects[index].clone();
+    let location = locate(search, improved, index);
+    let equation = match &found.label {
+        Label::Named(id) => search.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
+        Label::Generic(rival) => format!("dF = {} c({})", rival.factor.text(), rival.channel.name()),
+    };
+    let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
+    let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
+    let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index, improved));
+    let evidence = format!(
+        "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {:.1e}, {} rival{} within reach",
+        found.score,
+        found.fold_gain.iter().sum::<f64>(),
+        found.family_wise,
+        found.rivals.len(),
+        if found.rivals.len() == 1 { "" } else { "s" },
+    );
+    Finding {
+        effect,
+        probability: probability(found),
+        alternatives: alternatives(found),
+        action: effect.action(),
+        equation,
+        parameters: parameters(search, &fitted, actuator),
+        location,
+        evidence,
+        separate_by: Advice { sentence: advice },
+        fitted,
+        score: found.score,
+        margin: found.margin,
+        locked_gain_nats: locked,
+    }
+}
+
+/// Coefficients, then free shapes, with units and 95 % intervals.
+fn parameters(search: &Search, fitted: &Fitted, actuator: &str) -> Vec<Parameter> {
+    let Label::Named(effect) = fitted.label else { return Vec::new() };
+    let Some(hypothesis) = search.hypothesis(effect) else { return Vec::new() };
+    let rotary = search.prepared.state.rotary;
+    let parameter = |name: &str, symbol: &str, dimension: Dimension, value: f64, deviation: f64| Parameter {
+        name: name.to_string(),
+        symbol: symbol.to_string(),
+        value,
+        unit: unit_text(dimension, rotary, actuator),
+        ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+    };
+    let linear = hypothesis
+        .coefficients(&fitted.shape)
+        .into_iter()
+        .zip(fitted.coefficients.iter().zip(&fitted.deviation))
+        .map(|((name, symbol, dimension), (value, deviation))| parameter(name, symbol, dimension, *value, *deviation));
+    let shapes = hypothesis
+        .shape_names()
+        .into_iter()
+        .zip(fitted.shape.iter().zip(&fitted.shape_deviation))
+        .filter(|(shape, _)| shape.name != "variant")
+        .map(|(shape, (value, deviation))| parameter(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0)));
+    linear.chain(shapes).collect()
+}
+
+fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, actuator: &str) -> Vec<Parameter> {
+    let dimension = |name: &str| match name {
+        "viscous_coefficient" => Dimension::TorquePerVelocity,
+        "inertia" => Dimension::Inertia,
+        _ => Dimension::Torque,
+    };
+    base.names
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| !matches!(**name, "model_parameter" | "friction_knot"))
+        .map(|(i, name)| {
+            let (value, deviation) = (refit.base[i], refit.base_deviation[i]);
+            Parameter {
+                name: (*name).to_string(),
+                symbol: match *name {
+                    "coulomb_torque" => "F_c",
+                    "viscous_coefficient" => "F_v",
+                    _ => "J",
+                }
+                .to_string(),
+                value,
+                unit: unit_text(dimension(name), signals.rotary, actuator),
+                ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+            }
+        })
+        .collect()
+}
+
+fn verdict(findings: &[Finding], health: &[HealthNote]) -> Verdict {
+    if health.iter().any(|note| note.blocking) {
+        return Verdict::BadData;
+    }
+    if findings.is_empty() {
+        return Verdict::Consistent;
+    }
+    if findings.iter().all(|f| f.action == Action::Measurement) {
+        return Verdict::BadData;
+    }
+    if findings.iter().all(|f| f.effect == EffectId::Unknown) { Verdict::Unexplained } else { Verdict::MissingPhysics }
+}
+
+fn score(search: &Search, refit: &Refit) -> Score {
+    let rest = rest(search, refit);
+    let torque = search.prepared.filtered(&search.prepared.torque);
+    let count = rest.len() as f64;
+    let mean = torque.iter().sum::<f64>() / count;
+    let energy: f64 = rest.iter().map(|r| r * r).sum();
+    let spread: f64 = torque.iter().map(|t| (t - mean).powi(2)).sum();
+    Score { rmse: (energy / count).sqrt(), r2: 1.0 - energy / spread.max(f64::MIN_POSITIVE) }
+}
+
+/// Torque of each effect that was not found at which it would have been found nine times in ten.
+fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
+    let bench = search.bench(search.base.columns.clone(), &refit.noise);
+    let Some(alone) = bench.alone() else { return Vec::new() };
+    table
+        .iter()
+        .filter_map(|scored| {
+            let Label::Named(effect) = scored.label else { return None };
+            let columns = search.filtered_columns(&scored.label, &scored.shape);
+            let first = columns.first()?;
+            // The statistic of the column itself as target: its non-centrality per squared amplitude.
+            let white = search.whitened(&columns[..1], &refit.noise);
+            let visible = bench.visible_energy(&white[0])?;
+            let amplitude = (FOUND_WITH_NINETY_PERCENT / visible).sqrt();
+            let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
+            Some(DetectionLimit { effect, torque_rms: amplitude * rms })
+        })
+        .filter(|limit| limit.torque_rms.is_finite() && alone.residual > 0.0)
+        .collect()
+}

@@ -1,0 +1,92 @@
+//! Where training starts: hidden nodes that already see the main effects of the inputs, each a little differently.
+
+use super::architecture::Architecture;
+use super::error::KanError;
+use super::knots::Pilot;
+use super::network::Network;
+use super::random::Random;
+use super::spline::{Grid, SplineBasis};
+
+/// Hidden values start within this share of the next layer's grid.
+const FILL: f64 = 0.9;
+
+/// A network whose first layer blends each input's effect with its knot placement, and whose last layer is zero:
+/// the first step of training solves for that one. Without hidden layers it is the pilot on other knots.
+pub(super) fn initial(architecture: &Architecture, pilot: &Pilot, random: &mut Random) -> Result<Network, KanError> {
+    let mut network = Network::zeros(architecture)?;
+    let mut bases = Vec::new();
+    for (index, layer) in network.layers().iter().enumerate() {
+        for position in 0..layer.edges.len() {
+            let resolution = architecture.resolution(index, position % layer.inputs);
+            // A single spline keeps its knots symmetric; several share the work by standing between each other's.
+            let shift =
+                if layer.nodes.terminals() * depth_factor(architecture) > 1 { random.uniform(-0.5, 0.5) } else { 0.0 };
+            let breaks = match index {
+                0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, shift),
+                _ => staggered(resolution.cells, shift),
+            };
+            bases.push(SplineBasis::new(Grid { order: resolution.order, breaks })?);
+        }
+    }
+    network.set_bases(bases);
+
+    let depth = network.layers().len();
+    for index in 0..depth.saturating_sub(1) {
+        let (inputs, terminals) = (network.layers()[index].inputs, network.layers()[index].nodes.terminals());
+        for to in 0..terminals {
+            let weights = unit_weights(inputs, random);
+            // Spread evenly between the bare placement and the bare effect, so that the nodes differ.
+            let blend = (to as f64 + random.unit()) / terminals as f64;
+            for (from, weight) in weights.into_iter().enumerate() {
+                let position = to * inputs + from;
+                if index == 0 {
+                    let (low, high) = effect_range(pilot, from);
+                    let curve = |x: f64| {
+                        let place = 2.0 * pilot.placements[from].share_below(x) - 1.0;
+                        let effect = 2.0 * (pilot.effect(from, x.clamp(-1.0, 1.0)) - low) / (high - low) - 1.0;
+                        FILL * weight * ((1.0 - blend) * place + blend * effect)
+                    };
+                    network.set_curve(index, position, curve);
+                } else {
+                    network.set_curve(index, position, |x| FILL * weight * x);
+                }
+            }
+        }
+    }
+    Ok(network)
+}
+
+/// Zero for a network of one layer.
+fn depth_factor(architecture: &Architecture) -> usize {
+    architecture.hidden.len()
+}
+
+/// Random weights whose absolute values sum to one.
+fn unit_weights(count: usize, random: &mut Random) -> Vec<f64> {
+    let weights: Vec<f64> = (0..count).map(|_| random.sign() * random.uniform(0.2, 1.0)).collect();
+    let total: f64 = weights.iter().map(|w| w.abs()).sum();
+    weights.into_iter().map(|w| w / total).collect()
+}
+
+/// Least and greatest value of an input's effect; never equal.
+fn effect_range(pilot: &Pilot, input: usize) -> (f64, f64) {
+    let values = (0..=100).map(|i| pilot.effect(input, -1.0 + 0.02 * i as f64));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if high - low > 1e-9 { (low, high) } else { (low - 1.0, low + 1.0) }
+}
+
+/// Equal cells over `[-1, 1]`, inner boundaries moved by `shift` cells.
+fn staggered(cells: usize, shift: f64) -> Vec<f64> {
+    let inner = |i: usize| -1.0 + 2.0 * (i as f64 + shift) / cells as f64;
+    (0..=cells)
+        .map(|i| {
+            if i == 0 {
+                -1.0
+            } else if i == cells {
+                1.0
+            } else {
+                inner(i)
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,408 @@
+//! Least squares for one structure: variable projection over the linear coefficients (Golub & Pereyra 1973, in the
+//! approximation of Kaufman 1975), Levenberg-Marquardt over the few non-linear constants.
+
+use super::data::LawData;
+use super::projection::{Basis, dot};
+use super::ranges::{Extents, Range};
+use super::structure::{Nonlinear, Structure, Term};
+use super::tape::Tape;
+
+/// Data prepared for many fits: what the nuisance columns explain is projected out once.
+#[derive(Debug)]
+pub struct Problem<'a> {
+    data: &'a LawData,
+    channels: Vec<&'a [f64]>,
+    nuisance: Basis,
+    target: Vec<f64>,
+    extents: &'a Extents,
+}
+
+/// A fitted structure.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Which law.
+    pub structure: Structure,
+    /// Non-linear constants (in the order of [`Structure::nonlinear`]), then the coefficients of the terms.
+    pub params: Vec<f64>,
+    /// Sum of squared residuals.
+    pub rss: f64,
+    /// Whether the optimiser stopped because nothing more was to be gained.
+    pub converged: bool,
+    /// Terms whose column the other terms or the nuisance columns already hold.
+    pub dependent: Vec<bool>,
+}
+
+/// Constants that an optimisation leaves where they are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Held<'a> {
+    /// Non-linear constants, at their starting values.
+    pub nonlinear: &'a [Nonlinear],
+    /// One coefficient (by index of its term) and its value.
+    pub coefficient: Option<(usize, f64)>,
+}
+
+/// How hard an optimisation tries.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Most iterations.
+    pub iterations: usize,
+    /// Stops when a step reduces the sum of squares by a smaller share.
+    pub tolerance: f64,
+}
+
+impl Effort {
+    /// Enough to rank structures.
+    pub const SEARCH: Self = Self { iterations: 25, tolerance: 1e-6 };
+    /// Until rounding stops it.
+    pub const FINAL: Self = Self { iterations: 200, tolerance: 1e-15 };
+}
+
+struct Point {
+    rss: f64,
+    residual: Vec<f64>,
+    coefficients: Vec<f64>,
+    independent: Vec<bool>,
+    jacobian: Vec<Vec<f64>>,
+}
+
+impl<'a> Problem<'a> {
+    /// Prepares `data`, which must have passed [`LawData::check`].
+    pub fn new(data: &'a LawData, extents: &'a Extents) -> Self {
+        let nuisance = Basis::new(data.nuisance.iter().map(|n| n.values.as_slice()));
+        let mut target = data.target.clone();
+        nuisance.remove_from(&mut target);
+        Self { data, channels: data.columns(), nuisance, target, extents }
+    }
+
+    /// The data.
+    pub fn data(&self) -> &LawData {
+        self.data
+    }
+
+    /// The extents of its channels.
+    pub fn extents(&self) -> &Extents {
+        self.extents
+    }
+
+    /// Number of samples.
+    pub fn rows(&self) -> usize {
+        self.target.len()
+    }
+
+    /// Sum of squares of the target after the nuisance columns.
+    pub fn total(&self) -> f64 {
+        dot(&self.target, &self.target)
+    }
+
+    /// Basis of the nuisance columns.
+    pub fn nuisance(&self) -> &Basis {
+        &self.nuisance
+    }
+
+    /// Channels as slices.
+    pub fn channels(&self) -> &[&'a [f64]] {
+        &self.channels
+    }
+
+    /// Target with the nuisance columns projected out.
+    pub fn projected_target(&self) -> &[f64] {
+        &self.target
+    }
+
+    fn tape(&self, structure: &Structure) -> Tape {
+        Tape::new(&structure.columns(self.extents.layout()), structure.nonlinear().len())
+    }
+
+    fn at(&self, tape: &Tape, psi: &[f64], pinned: Option<(usize, f64)>, jacobian: bool) -> Point {
+        let mut columns = tape.run(&self.channels, self.rows(), psi, jacobian);
+        let mut basis = Basis::default();
+        let mut residual = self.target.clone();
+        for (j, column) in columns.values.iter_mut().enumerate() {
+            let before = dot(column, column);
+            self.nuisance.remove_from(column);
+            // What is left of a column inside the span of the nuisance columns is rounding.
+            if dot(column, column) <= 1e-18 * before {
+                column.fill(0.0);
+            }
+            if let Some((_, value)) = pinned.filter(|p| p.0 == j) {
+                residual.iter_mut().zip(&*column).for_each(|(r, c)| *r -= value * c);
+                column.fill(0.0);
+            }
+            basis.push(column);
+        }
+        let products = basis.remove_from(&mut residual);
+        let mut coefficients = basis.coefficients(&products);
+        if let Some((j, value)) = pinned {
+            coefficients[j] = value;
+        }
+        let mut derivatives = Vec::new();
+        if jacobian {
+            for k in 0..psi.len() {
+                let mut d = vec![0.0; self.rows()];
+                for (slopes, &c) in columns.slopes.iter().zip(&coefficients) {
+                    if let Some(slope) = &slopes[k] {
+                        d.iter_mut().zip(slope).for_each(|(d, s)| *d -= c * s);
+                    }
+                }
+                self.nuisance.remove_from(&mut d);
+                basis.remove_from(&mut d);
+                derivatives.push(d);
+            }
+        }
+        Point {
+            rss: dot(&residual, &residual),
+            residual,
+            coefficients,
+            independent: basis.independent(),
+            jacobian: derivatives,
+        }
+    }
+
+    /// Ranges of the non-linear constants of a structure.
+    pub fn ranges(&self, structure: &Structure) -> Vec<Range> {
+        structure.nonlinear().into_iter().map(|n| self.extents.range(n, structure.sign())).collect()
+    }
+
+    /// Fits from the non-linear constants `psi`; what is `held` stays where it is.
+    pub fn fit_from(&self, structure: &Structure, psi: &[f64], held: Held<'_>, effort: Effort) -> Fit {
+        let tape = self.tape(structure);
+        let ranges = self.ranges(structure);
+        let free: Vec<usize> = structure
+            .nonlinear()
+            .iter()
+            .enumerate()
+            .filter(|(_, n)| !held.nonlinear.contains(n))
+            .map(|(k, _)| k)
+            .collect();
+        let mut psi = psi.to_vec();
+        let mut point = self.at(&tape, &psi, held.coefficient, true);
+        let mut damping = 1e-3;
+        let mut converged = free.is_empty();
+        let floor = 1e-30 * self.total();
+        for _ in 0..effort.iterations {
+            if converged || point.rss <= floor {
+                converged = true;
+                break;
+            }
+            let Some((trial, tried, reduction)) =
+                self.step(&tape, (&ranges, &free, held.coefficient), &psi, &point, &mut damping)
+            else {
+                // No damping gave a descent: a minimum to rounding.
+                converged = true;
+                break;
+            };
+            psi = trial;
+            point = tried;
+            converged = reduction < effort.tolerance;
+        }
+        let dependent = point.independent.iter().map(|i| !i).collect();
+        let params = psi.iter().chain(&point.coefficients).copied().collect();
+        Fit { structure: structure.clone(), params, rss: point.rss, converged, dependent }
+    }
+
+    /// One accepted step: the new constants, the point there and the share by which the sum of squares fell.
+    fn step(
+        &self,
+        tape: &Tape,
+        (ranges, free, pinned): (&[Range], &[usize], Option<(usize, f64)>),
+        psi: &[f64],
+        point: &Point,
+        damping: &mut f64,
+    ) -> Option<(Vec<f64>, Point, f64)> {
+        let scale = |k: usize| if ranges[k].logarithmic { psi[k] } else { 1.0 };
+        let n = free.len();
+        let mut normal = nalgebra::DMatrix::zeros(n, n);
+        let mut gradient = nalgebra::DVector::zeros(n);
+        for (i, &k) in free.iter().enumerate() {
+            gradient[i] = scale(k) * dot(&point.jacobian[k], &point.residual);
+            for (j, &l) in free.iter().enumerate().take(i + 1) {
+                normal[(i, j)] = scale(k) * scale(l) * dot(&point.jacobian[k], &point.jacobian[l]);
+                normal[(j, i)] = normal[(i, j)];
+            }
+        }
+        let largest = (0..n).map(|i| normal[(i, i)]).fold(0.0, f64::max);
+        if largest.is_nan() || largest <= 0.0 {
+            return None;
+        }
+        while *damping < 1e12 {
+            let mut damped = normal.clone();
+            for i in 0..n {
+                damped[(i, i)] += *damping * normal[(i, i)].max(1e-12 * largest);
+            }
+            let step = damped.cholesky().map(|c| c.solve(&gradient));
+            if let Some(step) = step {
+                let mut trial = psi.to_vec();
+                for (i, &k) in free.iter().enumerate() {
+                    let range = &ranges[k];
+                    let moved = if range.logarithmic {
+                        psi[k] * libm::exp((-step[i]).clamp(-1.5, 1.5))
+                    } else {
+                        psi[k] - step[i]
+                    };
+                    trial[k] = moved.clamp(range.lower, range.upper);
+                }
+                if trial == psi {
+                    return None;
+                }
+                let tried = self.at(tape, &trial, pinned, true);
+                if tried.rss < point.rss {
+                    *damping = (*damping * 0.1).max(1e-12);
+                    let reduction = (point.rss - tried.rss) / point.rss;
+                    return Some((trial, tried, reduction));
+                }
+            }
+            *damping *= 8.0;
+        }
+        *damping = 1.0;
+        None
+    }
+
+    /// Sum of squares with the non-linear constants held at `psi`.
+    pub fn rss_at(&self, structure: &Structure, psi: &[f64]) -> f64 {
+        self.at(&self.tape(structure), psi, None, false).rss
+    }
+
+    /// Adds terms to a fitted law without moving its constants: the values of the newly needed constants that serve best
+    /// among their starts, and the sum of squares then.
+    pub fn screen(&self, parent: &Fit, added: &[Term]) -> (Vec<(Nonlinear, f64)>, f64) {
+        let layout = self.extents.layout();
+        let known = parent.nonlinear();
+        let tape = self.tape(&parent.structure);
+        let columns = tape.run(&self.channels, self.rows(), &parent.params, false);
+        let mut basis = self.nuisance.clone();
+        columns.values.iter().for_each(|c| {
+            basis.push(c);
+        });
+        let mut residual = self.target.clone();
+        basis.remove_from(&mut residual);
+        let before = dot(&residual, &residual);
+
+        let child = Structure::new(parent.structure.sign(), added.iter().copied());
+        let names = child.nonlinear();
+        let axes: Vec<Vec<f64>> = names
+            .iter()
+            .map(|n| match known.iter().find(|(k, _)| k == n) {
+                Some((_, value)) => vec![*value],
+                None => self.extents.range(*n, parent.structure.sign()).starts,
+            })
+            .collect();
+        let tape = Tape::new(&child.columns(layout), names.len());
+        let mut best = (f64::INFINITY, Vec::new());
+        for index in 0..axes.iter().map(Vec::len).product() {
+            let mut rest = index;
+            let psi: Vec<f64> = axes
+                .iter()
+                .map(|axis| {
+                    let value = axis[rest % axis.len()];
+                    rest /= axis.len();
+                    value
+                })
+                .collect();
+            let mut extra = Basis::default();
+            for mut column in tape.run(&self.channels, self.rows(), &psi, false).values {
+                let size = dot(&column, &column);
+                basis.remove_from(&mut column);
+                if dot(&column, &column) > 1e-16 * size {
+                    extra.push(&column);
+                }
+            }
+            let mut left = residual.clone();
+            let gained: f64 = extra.remove_from(&mut left).iter().map(|p| p * p).sum();
+            let rss = (before - gained).max(0.0);
+            if rss < best.0 {
+                best = (rss, psi);
+            }
+        }
+        (names.into_iter().zip(best.1).collect(), best.0)
+    }
+
+    /// Fits from a grid over the constants in `open`, the others starting at `known`; the best `polish` grid points that
+    /// are no neighbours of a better one are optimised.
+    pub fn fit_grid(
+        &self,
+        structure: &Structure,
+        known: &[(Nonlinear, f64)],
+        held: Held<'_>,
+        polish: usize,
+        effort: Effort,
+    ) -> Fit {
+        let names = structure.nonlinear();
+        let ranges = self.ranges(structure);
+        let axes: Vec<Vec<f64>> = names
+            .iter()
+            .zip(&ranges)
+            .map(|(n, range)| match known.iter().find(|(k, _)| k == n) {
+                Some((_, value)) => vec![*value],
+                None => range.starts.clone(),
+            })
+            .collect();
+        let tape = self.tape(structure);
+        let total: usize = axes.iter().map(Vec::len).product();
+        let place = |mut index: usize| -> Vec<usize> {
+            axes.iter()
+                .map(|axis| {
+                    let i = index % axis.len();
+                    index /= axis.len();
+                    i
+                })
+                .collect()
+        };
+        let value = |place: &[usize]| -> Vec<f64> { place.iter().zip(&axes).map(|(&i, a)| a[i]).collect() };
+        let mut ranked: Vec<(f64, Vec<usize>)> = (0..total)
+            .map(|index| {
+                let place = place(index);
+                let rss = if total == 1 { 0.0 } else { self.at(&tape, &value(&place), held.coefficient, false).rss };
+                (if rss.is_nan() { f64::INFINITY } else { rss }, place)
+            })
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut chosen: Vec<Vec<usize>> = Vec::new();
+        for (_, place) in ranked {
+            let near = chosen.iter().any(|c| c.iter().zip(&place).all(|(a, b)| a.abs_diff(*b) <= 1));
+            if !near {
+                chosen.push(place);
+            }
+            if chosen.len() == polish {
+                break;
+            }
+        }
+        chosen
+            .iter()
+            .map(|place| self.fit_from(structure, &value(place), held, effort))
+            .min_by(|a, b| a.rss.total_cmp(&b.rss))
+            .expect("a grid has at least one point")
+    }
+
+    /// Coefficients of the nuisance columns beside a fitted law.
+    pub fn nuisance_coefficients(&self, fit: &Fit) -> Vec<f64> {
+        let law = self.law_values(fit);
+        let mut rest: Vec<f64> = self.data.target.iter().zip(&law).map(|(y, f)| y - f).collect();
+        let products = self.nuisance.remove_from(&mut rest);
+        self.nuisance.coefficients(&products)
+    }
+
+    /// The law at every sample, without the nuisance columns.
+    pub fn law_values(&self, fit: &Fit) -> Vec<f64> {
+        let template = fit.structure.template(self.extents.layout());
+        Tape::new(&[template], fit.params.len()).run(&self.channels, self.rows(), &fit.params, false).values.remove(0)
+    }
+
+    /// Residuals of law and nuisance columns together.
+    pub fn residuals(&self, fit: &Fit) -> Vec<f64> {
+        let mut rest: Vec<f64> = self.data.target.iter().zip(self.law_values(fit)).map(|(y, f)| y - f).collect();
+        self.nuisance.remove_from(&mut rest);
+        rest
+    }
+}
+
+impl Fit {
+    /// The non-linear constants with their values.
+    pub fn nonlinear(&self) -> Vec<(Nonlinear, f64)> {
+        self.structure.nonlinear().into_iter().zip(self.params.iter().copied()).collect()
+    }
+
+    /// The coefficients of the terms.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.params[self.params.len() - self.structure.terms().len()..]
+    }
+}

@@ -1,0 +1,162 @@
+//! Which terms the data allow and which change of a structure is one move of the search.
+
+use super::data::{ChannelRole, LawData};
+use super::fit::{Fit, Problem};
+use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+
+/// A change of a fitted structure: terms taken out, terms put in, the sign form afterwards.
+#[derive(Clone, Debug)]
+pub struct Move {
+    /// Taken out.
+    pub removed: Vec<Term>,
+    /// Put in.
+    pub added: Vec<Term>,
+    /// Smoothing afterwards.
+    pub sign: SignForm,
+}
+
+/// The terms that the channels of the data allow. A ripple comes as sine and cosine together.
+pub fn terms(data: &LawData, problem: &Problem<'_>) -> Vec<Vec<Term>> {
+    let plain = [
+        Shape::Sign,
+        Shape::StribeckExponential,
+        Shape::StribeckGaussian,
+        Shape::SignPower,
+        Shape::Viscous,
+        Shape::Quadratic,
+        Shape::OddPower,
+        Shape::AbsSign,
+        Shape::AbsViscous,
+        Shape::Offset,
+    ];
+    let mut all: Vec<Vec<Term>> = plain.iter().map(|s| vec![Term::plain(*s)]).collect();
+    for (i, channel) in data.channels.iter().enumerate().filter(|(i, _)| problem.extents().varies(*i)) {
+        let mut one = |shape, modulation| all.push(vec![Term { shape, modulation }]);
+        match channel.role {
+            ChannelRole::Velocity => {}
+            ChannelRole::Load | ChannelRole::Other => {
+                one(Shape::Sign, Modulation::Magnitude(i));
+                one(Shape::StribeckExponential, Modulation::Magnitude(i));
+                one(Shape::Viscous, Modulation::Magnitude(i));
+                one(Shape::Sign, Modulation::Value(i));
+                one(Shape::Offset, Modulation::Value(i));
+            }
+            ChannelRole::Temperature => {
+                one(Shape::Viscous, Modulation::Decay(i));
+                one(Shape::Viscous, Modulation::Difference(i));
+                one(Shape::Sign, Modulation::Decay(i));
+                one(Shape::Sign, Modulation::Difference(i));
+            }
+            ChannelRole::Position => {
+                for shape in [Shape::Offset, Shape::Sign] {
+                    let both = [Modulation::Sine(i), Modulation::Cosine(i)];
+                    all.push(both.map(|modulation| Term { shape, modulation }).to_vec());
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Whether a structure is one that a person would write down: no two terms for the same thing.
+pub fn admissible(structure: &Structure) -> bool {
+    let count = |f: &dyn Fn(&Term) -> bool| structure.terms().iter().filter(|t| f(t)).count();
+    let plain = |t: &Term| t.modulation == Modulation::Plain;
+    let one_stribeck = count(&|t| plain(t) && t.shape.is_stribeck()) <= 1;
+    let stribeck_shapes: Vec<Shape> = structure.terms().iter().map(|t| t.shape).filter(|s| s.is_stribeck()).collect();
+    let one_shape = stribeck_shapes.windows(2).all(|w| w[0] == w[1]);
+    let one_power = count(&|t| t.shape.is_power() || t.shape == Shape::Quadratic) <= 1;
+    let decays = |shape| count(&|t| t.shape == shape && matches!(t.modulation, Modulation::Decay(_)));
+    let plains = |shape| count(&|t| t.shape == shape && plain(t));
+    // A decay already holds its value at the reference temperature.
+    let one_decay = [Shape::Sign, Shape::Viscous].into_iter().all(|s| decays(s) == 0 || plains(s) == 0);
+    one_stribeck && one_shape && one_power && one_decay
+}
+
+/// All moves from a structure.
+pub fn moves(structure: &Structure, library: &[Vec<Term>]) -> Vec<Move> {
+    let sign = structure.sign();
+    let mut all = Vec::new();
+    for added in library {
+        let new: Vec<Term> = added.iter().copied().filter(|t| !structure.has(*t)).collect();
+        if !new.is_empty() {
+            all.push(Move { removed: Vec::new(), added: new, sign });
+        }
+    }
+    for &removed in structure.terms() {
+        all.push(Move { removed: vec![removed], added: Vec::new(), sign });
+        let kin =
+            library.iter().filter(|a| a.iter().all(|t| !structure.has(*t)) && a.iter().any(|t| related(removed, *t)));
+        all.extend(kin.map(|added| Move { removed: vec![removed], added: added.clone(), sign }));
+        if removed.shape.is_stribeck() && removed.modulation == Modulation::Plain {
+            let general = Term::plain(Shape::StribeckPower);
+            if !structure.has(general) {
+                all.push(Move { removed: vec![removed], added: vec![general], sign });
+            }
+        }
+    }
+    if structure.nonlinear().contains(&Nonlinear::Smoothing) {
+        let forms = [SignForm::Tanh, SignForm::Arctan, SignForm::Algebraic, SignForm::Parabolic, SignForm::Cubic];
+        all.extend(forms.into_iter().filter(|f| *f != sign).map(|f| Move {
+            removed: Vec::new(),
+            added: Vec::new(),
+            sign: f,
+        }));
+    }
+    all.retain(|m| admissible(&m.apply(structure)));
+    all
+}
+
+/// Whether one term is an alternative for another: the same shape with another factor, or shapes that look alike.
+fn related(a: Term, b: Term) -> bool {
+    let family = |s: Shape| match s {
+        Shape::StribeckExponential | Shape::StribeckGaussian | Shape::StribeckPower | Shape::Breakaway => 0,
+        Shape::SignPower | Shape::OddPower | Shape::Quadratic | Shape::Viscous => 1,
+        Shape::AbsSign | Shape::AbsViscous | Shape::Offset => 2,
+        Shape::Sign => 3,
+    };
+    (a.modulation == b.modulation && family(a.shape) == family(b.shape))
+        || (a.shape == b.shape && a.modulation != b.modulation)
+}
+
+impl Move {
+    /// The structure after the move.
+    pub fn apply(&self, structure: &Structure) -> Structure {
+        let kept = structure.terms().iter().copied().filter(|t| !self.removed.contains(t));
+        Structure::new(self.sign, kept.chain(self.added.iter().copied()))
+    }
+
+    /// Constants to start from: those of the fit, the width of the sign carried over to another smoothing.
+    pub fn carry_over(&self, fit: &Fit) -> Vec<(Nonlinear, f64)> {
+        let from = fit.structure.sign();
+        let convert = |(n, x): (Nonlinear, f64)| {
+            let moved = n == Nonlinear::Smoothing && from != self.sign;
+            (n, if moved { self.sign.from_width(from.width(x)) } else { x })
+        };
+        fit.nonlinear().into_iter().map(convert).collect()
+    }
+}
+
+impl SignForm {
+    /// Velocity at which the slope at zero would reach 1.
+    pub fn width(self, constant: f64) -> f64 {
+        match self {
+            Self::Tanh => 1.0 / constant,
+            Self::Arctan => std::f64::consts::FRAC_PI_2 / constant,
+            Self::Algebraic => constant,
+            Self::Parabolic => 0.5 * constant,
+            Self::Cubic => constant / 1.5,
+        }
+    }
+
+    /// The constant that gives such a width.
+    pub fn from_width(self, width: f64) -> f64 {
+        match self {
+            Self::Tanh => 1.0 / width,
+            Self::Arctan => std::f64::consts::FRAC_PI_2 / width,
+            Self::Algebraic => width,
+            Self::Parabolic => 2.0 * width,
+            Self::Cubic => 1.5 * width,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Beam search over structures. Every constant is refitted jointly for every candidate; the score pays for constants.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::fit::{Effort, Fit, Held, Problem};
+use super::library::{self, Move};
+use super::price::Evidence;
+use super::structure::{Shape, SignForm, Structure, Term};
+
+/// How far the search goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam {
+    /// Structures kept from round to round.
+    pub width: usize,
+    /// Most rounds.
+    pub rounds: usize,
+    /// Additions and exchanges of a structure that are refitted, the most promising first.
+    pub refits: usize,
+}
+
+/// Every structure that was fitted, by structure.
+pub type Explored = BTreeMap<Structure, Fit>;
+
+fn seeds() -> Vec<Structure> {
+    let of = |shapes: &[Shape]| Structure::new(SignForm::Tanh, shapes.iter().copied().map(Term::plain));
+    vec![
+        of(&[]),
+        of(&[Shape::Offset]),
+        of(&[Shape::Viscous]),
+        of(&[Shape::Sign]),
+        of(&[Shape::Sign, Shape::Viscous]),
+        of(&[Shape::Sign, Shape::StribeckExponential]),
+        of(&[Shape::Sign, Shape::StribeckExponential, Shape::Viscous]),
+        of(&[Shape::Sign, Shape::StribeckGaussian, Shape::Viscous]),
+    ]
+}
+
+/// Explores structures on `problem`. `extra` are more structures to start from.
+pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[Structure]) -> Explored {
+    let library = library::terms(problem.data(), problem);
+    let mut start = seeds();
+    start.extend(extra.iter().cloned());
+    let fits: Vec<Fit> =
+        start.par_iter().map(|s| problem.fit_grid(s, &[], Held::default(), 2, Effort::SEARCH)).collect();
+    let mut explored: Explored = fits.into_iter().map(|f| (f.structure.clone(), f)).collect();
+    let mut expanded: Vec<Structure> = Vec::new();
+    for _ in 0..beam.rounds {
+        let parents: Vec<&Fit> =
+            best(&explored, evidence, beam.width).into_iter().filter(|f| !expanded.contains(&f.structure)).collect();
+        if parents.is_empty() {
+            break;
+        }
+        expanded.extend(parents.iter().map(|f| f.structure.clone()));
+        let mut children: Vec<Child> = parents
+            .par_iter()
+            .flat_map_iter(|parent| promising(problem, parent, &library, beam.refits, evidence))
+            .collect();
+        children.retain(|c| !explored.contains_key(&c.structure));
+        children.sort_by(|a, b| a.structure.cmp(&b.structure).then(a.rss.total_cmp(&b.rss)));
+        children.dedup_by(|a, b| a.structure == b.structure);
+        let fits: Vec<Fit> = children
+            .par_iter()
+            .map(|c| problem.fit_grid(&c.structure, &c.start, Held::default(), 1, Effort::SEARCH))
+            .collect();
+        explored.extend(fits.into_iter().map(|f| (f.structure.clone(), f)));
+    }
+    explored
+}
+
+/// The structures of best score, best first.
+pub fn best(explored: &Explored, evidence: Evidence, count: usize) -> Vec<&Fit> {
+    let mut ranked: Vec<(f64, &Fit)> =
+        explored.values().filter(|f| usable(f)).map(|f| (evidence.score(f), f)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.structure.cmp(&b.1.structure)));
+    ranked.into_iter().take(count).map(|(_, f)| f).collect()
+}
+
+/// Whether every term adds something and every number is finite.
+fn usable(fit: &Fit) -> bool {
+    fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
+}
+
+struct Child {
+    structure: Structure,
+    start: Vec<(super::structure::Nonlinear, f64)>,
+    rss: f64,
+}
+
+/// Children of a fit: all simplifications and changes of smoothing, and the additions and exchanges that promise most
+/// before the other constants are refitted.
+fn promising(
+    problem: &Problem<'_>,
+    parent: &Fit,
+    library: &[Vec<Term>],
+    refits: usize,
+    evidence: Evidence,
+) -> Vec<Child> {
+    let mut sure = Vec::new();
+    let mut screened = Vec::new();
+    for change in library::moves(&parent.structure, library) {
+        let structure = change.apply(&parent.structure);
+        let mut start = change.carry_over(parent);
+        if change.added.is_empty() {
+            sure.push(Child { structure, start, rss: f64::INFINITY });
+            continue;
+        }
+        let base = reduced(parent, &change);
+        let (found, rss) = problem.screen(&base, &change.added);
+        start.extend(found.into_iter().filter(|(n, _)| parent.nonlinear().iter().all(|(k, _)| k != n)));
+        let cost = super::price::constants(&structure) as f64;
+        let score = evidence.misfit(rss / problem.rows() as f64) + 0.5 * libm::log(evidence.effective) * cost;
+        screened.push((score, Child { structure, start, rss }));
+    }
+    screened.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sure.extend(screened.into_iter().take(refits).map(|(_, c)| c));
+    sure
+}
+
+/// The parent without the removed terms, its non-linear constants where they were.
+fn reduced(parent: &Fit, change: &Move) -> Fit {
+    let kept: Vec<Term> = parent.structure.terms().iter().copied().filter(|t| !change.removed.contains(t)).collect();
+    let structure = Structure::new(parent.structure.sign(), kept);
+    let known = parent.nonlinear();
+    let mut params: Vec<f64> =
+        structure.nonlinear().iter().filter_map(|n| known.iter().find(|(k, _)| k == n).map(|(_, x)| *x)).collect();
+    params.resize(params.len() + structure.terms().len(), 0.0);
+    Fit { params, structure, rss: f64::INFINITY, converged: false, dependent: Vec::new() }
+}

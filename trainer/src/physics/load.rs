@@ -1,0 +1,88 @@
+//! B3 and B3b: friction grows with the transmitted load (Dohring, Lee and Newman 1993; Hamon, Gautier and Garrec 2010),
+//! differently when driving and backdriving.
+
+use super::state::quantile;
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+
+pub(super) struct LoadFriction;
+
+/// Whether the load varies enough to be told from a constant.
+fn varied_load(state: &JointState) -> Option<&[f64]> {
+    let load = state.load.as_deref()?;
+    let spread = |share| quantile(load.iter().map(|l| l.abs()), share);
+    (spread(0.95) - spread(0.05) > 1e-6 * (1.0 + spread(0.95))).then_some(load)
+}
+
+impl Hypothesis for LoadFriction {
+    fn id(&self) -> EffectId {
+        EffectId::LoadFriction
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = mu |tau_l|^m tanh(v/v_eps)"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        if varied_load(state).is_some() { vec![vec![1.0], vec![2.0]] } else { Vec::new() }
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let Some(load) = &state.load else { return Vec::new() };
+        let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
+        let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
+        vec![state.map(|i| grow(load[i]) * state.sign[i])]
+    }
+
+    fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        vec![("load_friction_coefficient", "mu", Dimension::One)]
+    }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![ShapeName::new("load_exponent", "m", Dimension::One)]
+    }
+}
+
+pub(super) struct DriveBackdrive;
+
+impl Hypothesis for DriveBackdrive {
+    fn id(&self) -> EffectId {
+        EffectId::DriveBackdrive
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = (mu_d [tau_l v > 0] + mu_b [tau_l v < 0]) |tau_l| tanh(v/v_eps)"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        if varied_load(state).is_some() { vec![vec![0.0], vec![1.0], vec![2.0]] } else { Vec::new() }
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let Some(load) = &state.load else { return Vec::new() };
+        let loss = |i: usize, driving: bool| {
+            if (load[i] * state.velocity[i] > 0.0) == driving { load[i].abs() * state.sign[i] } else { 0.0 }
+        };
+        let mut columns = Vec::new();
+        if shape[0] != 1.0 {
+            columns.push(state.map(|i| loss(i, true)));
+        }
+        if shape[0] != 0.0 {
+            columns.push(state.map(|i| loss(i, false)));
+        }
+        columns
+    }
+
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        let driving = ("driving_loss", "mu_d", Dimension::One);
+        let backdriving = ("backdriving_loss", "mu_b", Dimension::One);
+        match shape[0] {
+            0.0 => vec![driving],
+            1.0 => vec![backdriving],
+            _ => vec![driving, backdriving],
+        }
+    }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![ShapeName::new("variant", "variant", Dimension::One)]
+    }
+}

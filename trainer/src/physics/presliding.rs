@@ -1,0 +1,58 @@
+//! C1, Dahl 1968; Canudas de Wit et al. 1995: after a reversal friction builds up over a distance, not at once.
+
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+
+pub(super) struct Presliding;
+
+/// Normalised bristle deflection in [-1, 1] with the exact exponential step
+/// z <- S + (z - S) exp(-|dq| / distance), S = sign(dq); at rest until the first motion of a segment.
+pub(crate) fn bristle(state: &JointState, distance: f64) -> Vec<f64> {
+    let mut deflection = vec![0.0; state.len()];
+    for segment in &state.segments {
+        let mut z = state.sign[segment.start];
+        for i in segment.clone() {
+            if i > segment.start {
+                let step = state.position[i] - state.position[i - 1];
+                let target = if step > 0.0 { 1.0 } else { -1.0 };
+                z = target + (z - target) * (-step.abs() / distance).exp();
+            }
+            deflection[i] = z;
+        }
+    }
+    deflection
+}
+
+impl Hypothesis for Presliding {
+    fn id(&self) -> EffectId {
+        EffectId::Presliding
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = F_b (z - tanh(v/v_eps)), dz/dq = (sign(v) - z) / delta"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        let (low, high) = state.travel();
+        let travel = high - low;
+        let finest = (4.0 * state.resolution).max(3e-5 * travel);
+        geometric_grid(finest, (0.1 * travel).max(finest), 8).into_iter().map(|delta| vec![delta]).collect()
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let z = bristle(state, shape[0]);
+        vec![state.map(|i| z[i] - state.sign[i])]
+    }
+
+    fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        vec![("presliding_torque", "F_b", Dimension::Torque)]
+    }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![ShapeName::new("breakaway_distance", "delta", Dimension::Position)]
+    }
+
+    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+        let (low, high) = state.travel();
+        Some((state.resolution.max(1e-9), 0.5 * (high - low)))
+    }
+}

@@ -1,0 +1,43 @@
+//! F1: the actuator gives less than commanded beyond a torque limit. The regressor is the torque that the model needs, not
+//! the recorded one, whose noise would explain itself.
+
+use super::state::quantile;
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+
+pub(super) struct Saturation;
+
+impl Hypothesis for Saturation {
+    fn id(&self) -> EffectId {
+        EffectId::Saturation
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = c sign(tau) max(0, |tau| - tau_max), tau = torque needed"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        let mut shapes: Vec<Shape> = [0.7, 0.8, 0.87, 0.92, 0.96, 0.985]
+            .into_iter()
+            .map(|share| vec![quantile(state.predicted.iter().map(|t| t.abs()), share)])
+            .collect();
+        shapes.dedup();
+        shapes
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        vec![state.map(|i| (state.predicted[i].abs() - shape[0]).max(0.0) * state.predicted[i].signum())]
+    }
+
+    fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        vec![("excess_command", "c", Dimension::One)]
+    }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![ShapeName::new("torque_limit", "tau_max", Dimension::Torque)]
+    }
+
+    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+        let at = |share| quantile(state.predicted.iter().map(|t| t.abs()), share);
+        Some((at(0.5), at(0.995)))
+    }
+}

@@ -1,0 +1,197 @@
+//! The recorded states at which every hypothesis evaluates its torque.
+
+use std::ops::Range;
+
+/// States of one joint at the recording's own rate, all series of one length; SI units, joint side.
+#[derive(Clone, Debug)]
+pub struct JointState {
+    /// Sample period in s.
+    pub period: f64,
+    /// Time in s.
+    pub time: Vec<f64>,
+    /// Position in rad or m.
+    pub position: Vec<f64>,
+    /// Velocity in rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// Acceleration in rad/s2 or m/s2.
+    pub acceleration: Vec<f64>,
+    /// Velocity below which the smoothed sign turns, in the unit of velocity.
+    pub sign_velocity: f64,
+    /// Smoothed sign `tanh(v / sign_velocity)`.
+    pub sign: Vec<f64>,
+    /// Torque of the nominal rigid body, where one is given.
+    pub rigid_body: Option<Vec<f64>>,
+    /// Torque transmitted through the gear, where recorded or known from the rigid body.
+    pub load: Option<Vec<f64>>,
+    /// Temperature in degrees Celsius, smoothed over seconds.
+    pub temperature: Option<Vec<f64>>,
+    /// Link-side position, where a second encoder is fitted.
+    pub link_position: Option<Vec<f64>>,
+    /// Motions of other joints on the same clock.
+    pub other_joints: Vec<OtherJoint>,
+    /// Recorded actuator torque, smoothed like the states.
+    pub torque: Vec<f64>,
+    /// Torque that the base model predicts.
+    pub predicted: Vec<f64>,
+    /// Friction part of the base model, as pairs (velocity, torque) in ascending velocity.
+    pub base_friction: Vec<(f64, f64)>,
+    /// Stretches of uninterrupted time; memories restart at each.
+    pub segments: Vec<Range<usize>>,
+    /// Distance, time and dwell since the last reversal or stop.
+    pub memory: MemoryAxes,
+    /// Motor turns per joint turn, where known.
+    pub gear_ratio: Option<f64>,
+    /// Whether the axis turns (else it slides).
+    pub rotary: bool,
+    /// Resolution of the position, in its unit.
+    pub resolution: f64,
+}
+
+/// Motion of another joint.
+#[derive(Clone, Debug)]
+pub struct OtherJoint {
+    /// Velocity in rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// Acceleration in rad/s2 or m/s2.
+    pub acceleration: Vec<f64>,
+}
+
+/// What the contact may remember.
+#[derive(Clone, Debug, Default)]
+pub struct MemoryAxes {
+    /// Distance travelled since the last change of direction, in rad or m.
+    pub distance: Vec<f64>,
+    /// Time since the last change of direction in s.
+    pub elapsed: Vec<f64>,
+    /// Length of the stop before the present motion in s (0 where it reversed without a stop).
+    pub dwell: Vec<f64>,
+    /// Distance travelled since the last stop or reversal.
+    pub since_start: Vec<f64>,
+    /// Whether the joint rests.
+    pub at_rest: Vec<bool>,
+}
+
+impl MemoryAxes {
+    /// Follows position and velocity; a joint rests while its speed stays below `rest_speed` for at least 20 ms.
+    pub fn follow(position: &[f64], velocity: &[f64], segments: &[Range<usize>], period: f64, rest_speed: f64) -> Self {
+        let count = position.len();
+        let mut axes = Self {
+            distance: vec![0.0; count],
+            elapsed: vec![0.0; count],
+            dwell: vec![0.0; count],
+            since_start: vec![0.0; count],
+            at_rest: vec![false; count],
+        };
+        let shortest_rest = (0.02 / period).ceil() as usize;
+        for segment in segments {
+            mark_rest(&velocity[segment.clone()], rest_speed, shortest_rest, &mut axes.at_rest[segment.clone()]);
+            let mut direction = 0.0;
+            let (mut distance, mut elapsed, mut dwell, mut rested, mut start) = (0.0, 0.0, 0.0, 0.0, 0.0);
+            for i in segment.clone() {
+                let step = if i > segment.start { (position[i] - position[i - 1]).abs() } else { 0.0 };
+                if axes.at_rest[i] {
+                    rested += period;
+                } else {
+                    if rested > 0.0 {
+                        (dwell, start, rested) = (rested, 0.0, 0.0);
+                    }
+                    let heading = velocity[i].signum();
+                    if velocity[i].abs() > 0.5 * rest_speed && heading != direction {
+                        if direction != 0.0 && start > 20.0 * step.max(f64::MIN_POSITIVE) {
+                            (dwell, start) = (0.0, 0.0);
+                        }
+                        (distance, elapsed, direction) = (0.0, 0.0, heading);
+                    }
+                    distance += step;
+                    start += step;
+                }
+                elapsed += period;
+                axes.distance[i] = distance;
+                axes.elapsed[i] = elapsed;
+                axes.dwell[i] = dwell;
+                axes.since_start[i] = start;
+            }
+        }
+        axes
+    }
+}
+
+fn mark_rest(velocity: &[f64], rest_speed: f64, shortest: usize, at_rest: &mut [bool]) {
+    let mut begin = 0;
+    for i in 0..=velocity.len() {
+        if i == velocity.len() || velocity[i].abs() >= rest_speed {
+            if i - begin >= shortest {
+                at_rest[begin..i].fill(true);
+            }
+            begin = i + 1;
+        }
+    }
+}
+
+impl JointState {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Largest speed that is common: the 98 % quantile of |v|.
+    pub fn top_speed(&self) -> f64 {
+        quantile(self.velocity.iter().map(|v| v.abs()), 0.98)
+    }
+
+    /// Travel between the 0.5 % and 99.5 % quantiles of position.
+    pub fn travel(&self) -> (f64, f64) {
+        (quantile(self.position.iter().copied(), 0.005), quantile(self.position.iter().copied(), 0.995))
+    }
+
+    /// Recorded duration in s, gaps left out.
+    pub fn duration(&self) -> f64 {
+        self.len() as f64 * self.period
+    }
+
+    /// Friction of the base model at a velocity, held beyond the ends.
+    pub fn base_friction_at(&self, velocity: f64) -> f64 {
+        let table = &self.base_friction;
+        let after = table.partition_point(|(v, _)| *v < velocity);
+        match (after.checked_sub(1).and_then(|i| table.get(i)), table.get(after)) {
+            (Some(&(v0, f0)), Some(&(v1, f1))) => f0 + (f1 - f0) * (velocity - v0) / (v1 - v0),
+            (Some(&(_, f)), None) | (None, Some(&(_, f))) => f,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Central difference of a series, one-sided at the ends of a segment.
+    pub fn rate_of(&self, series: &[f64]) -> Vec<f64> {
+        let mut rate = vec![0.0; series.len()];
+        for segment in &self.segments {
+            let last = segment.end - 1;
+            for i in segment.clone() {
+                let (before, after) = (i.saturating_sub(1).max(segment.start), (i + 1).min(last));
+                if after > before {
+                    rate[i] = (series[after] - series[before]) / ((after - before) as f64 * self.period);
+                }
+            }
+        }
+        rate
+    }
+
+    /// One value a sample.
+    pub fn map(&self, torque: impl Fn(usize) -> f64) -> Vec<f64> {
+        (0..self.len()).map(torque).collect()
+    }
+}
+
+/// Quantile of finite values by sorting; 0 when there are none.
+pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    if sorted.is_empty() {
+        return 0.0;
+    }
+    let rank = ((sorted.len() - 1) as f64 * share).round() as usize;
+    *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
+}

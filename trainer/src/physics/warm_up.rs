@@ -1,0 +1,78 @@
+//! B2, Simoni, Beschi, Legnani and Visioli 2015: warm-up by the joint's own dissipated power, without a sensor.
+
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+
+pub(super) struct WarmUp;
+
+/// Power smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.
+pub(crate) fn smoothed_power(state: &JointState, time_constant: f64) -> Vec<f64> {
+    let step = 1.0 - (-state.period / time_constant).exp();
+    let mut warmth = 0.0;
+    let mut before = f64::NEG_INFINITY;
+    (0..state.len())
+        .map(|i| {
+            let gap = state.time[i] - before;
+            if gap.is_finite() && gap > 2.0 * state.period {
+                warmth *= (-gap / time_constant).exp();
+            }
+            before = state.time[i];
+            let power = (state.predicted[i] * state.velocity[i]).abs();
+            warmth += step * (power - warmth);
+            warmth
+        })
+        .collect()
+}
+
+impl Hypothesis for WarmUp {
+    fn id(&self) -> EffectId {
+        EffectId::WarmUp
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = h (b_0 tanh(v/v_eps) + b_1 v), tau_th dh/dt = |tau v| - h"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        let duration = state.duration();
+        if duration < 10.0 {
+            return Vec::new();
+        }
+        geometric_grid(0.08 * duration, 3.0 * duration, 4)
+            .into_iter()
+            .flat_map(|tau| [vec![tau, 0.0], vec![tau, 1.0], vec![tau, 2.0]])
+            .collect()
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let warmth = smoothed_power(state, shape[0]);
+        let mut columns = Vec::new();
+        if shape[1] != 1.0 {
+            columns.push(state.map(|i| warmth[i] * state.sign[i]));
+        }
+        if shape[1] != 0.0 {
+            columns.push(state.map(|i| warmth[i] * state.velocity[i]));
+        }
+        columns
+    }
+
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        let coulomb = ("coulomb_per_watt", "b_0", Dimension::TorquePerWatt);
+        let viscous = ("viscous_per_watt", "b_1", Dimension::TorquePerWattVelocity);
+        match shape[1] {
+            0.0 => vec![coulomb],
+            1.0 => vec![viscous],
+            _ => vec![coulomb, viscous],
+        }
+    }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![
+            ShapeName::new("thermal_time_constant", "tau_th", Dimension::Second),
+            ShapeName::new("variant", "variant", Dimension::One),
+        ]
+    }
+
+    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
+        (index == 0).then(|| (0.02 * state.duration(), 20.0 * state.duration()))
+    }
+}

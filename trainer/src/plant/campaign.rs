@@ -1,0 +1,114 @@
+//! A campaign: the list of trajectories that make one recording.
+#![allow(non_snake_case, reason = "keys carry their unit, spelled as in the columns of a recording")]
+
+use super::motion::Motion;
+use serde::{Deserialize, Serialize};
+
+/// Trajectories in turn. The joint starts and ends each at rest at zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Campaign {
+    /// Length of a trajectory that does not say its own, s.
+    pub trajectory_s: f64,
+    /// How often the whole list is repeated (>= 1), each time with fresh random details.
+    pub sets: usize,
+    /// The trajectories.
+    pub trajectories: Vec<Trajectory>,
+}
+
+/// One motion with one payload.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trajectory {
+    /// Shape of the motion.
+    pub motion: Motion,
+    /// Length, s; the campaign's when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    /// Amplitude of the gravity torque of this payload, N m; the joint's list in turn when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_torque_Nm: Option<f64>,
+    /// Rest before this trajectory that is not recorded but in which the joint cools, s.
+    #[serde(default)]
+    pub pause_before_s: f64,
+}
+
+impl From<Motion> for Trajectory {
+    fn from(motion: Motion) -> Self {
+        Self { motion, duration_s: None, gravity_torque_Nm: None, pause_before_s: 0.0 }
+    }
+}
+
+impl Default for Campaign {
+    fn default() -> Self {
+        Self { trajectory_s: 6.0, sets: 1, trajectories: twelve().into_iter().map(Trajectory::from).collect() }
+    }
+}
+
+impl Campaign {
+    /// Every trajectory of every set.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Trajectory> {
+        (0..self.sets.max(1)).flat_map(|_| &self.trajectories)
+    }
+
+    /// Length of the whole recording, s.
+    pub fn duration_s(&self) -> f64 {
+        self.all().map(|trajectory| trajectory.duration_s.unwrap_or(self.trajectory_s)).sum()
+    }
+
+    /// The same motions stretched over another total length, s (> 0).
+    pub fn with_duration(mut self, duration_s: f64) -> Self {
+        let factor = duration_s / self.duration_s();
+        self.trajectory_s *= factor;
+        for trajectory in &mut self.trajectories {
+            trajectory.duration_s = trajectory.duration_s.map(|length| length * factor);
+        }
+        self
+    }
+
+    /// Puts an unrecorded rest of `pause_s` in the middle of the list, so that the joint cools inside the recording.
+    pub fn with_cooling(mut self, pause_s: f64) -> Self {
+        let middle = self.trajectories.len() / 2;
+        if let Some(trajectory) = self.trajectories.get_mut(middle) {
+            trajectory.pause_before_s = pause_s;
+        }
+        self
+    }
+}
+
+/// Twelve motions that between them excite every effect of the catalogue.
+fn twelve() -> [Motion; 12] {
+    let multisine = |amplitude_rad, lowest_Hz, highest_Hz| Motion::Multisine {
+        amplitude_rad,
+        lowest_Hz,
+        highest_Hz,
+        speed_rad_s: 3.5,
+        lines: 7,
+    };
+    [
+        multisine(1.4, 0.17, 0.9),
+        Motion::StopAndGo { step_rad: 0.25, speed_rad_s: 1.1, dwells_s: vec![0.05, 0.15, 0.4, 0.9] },
+        Motion::Triangles { amplitude_rad: 1.1, speed_rad_s: 2.3 },
+        Motion::SmallReversals { smallest_rad: 0.002, largest_rad: 0.08, frequency_Hz: 2.0 },
+        multisine(0.7, 0.3, 3.2),
+        Motion::Plateaus { speeds_rad_s: vec![0.06, 0.35, 1.3, 0.15, 0.7], hold_s: 0.5 },
+        Motion::Trapezoids { amplitude_rad: 1.3, speed_rad_s: 2.8, dwells_s: vec![0.1, 0.3, 0.8] },
+        Motion::Sweep { amplitude_rad: 0.9, lowest_Hz: 0.3, highest_Hz: 6.0 },
+        Motion::Triangles { amplitude_rad: 0.35, speed_rad_s: 0.5 },
+        Motion::UnidirectionalSwing { speed_rad_s: 0.45, swing: 0.8, frequency_Hz: 1.7 },
+        Motion::StopAndGo { step_rad: 0.12, speed_rad_s: 0.4, dwells_s: vec![0.08, 0.25, 0.7] },
+        multisine(1.6, 0.14, 1.4),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn default_campaign_is_twelve_times_six_seconds() {
+        assert_eq!(Campaign::default().trajectories.len(), 12);
+        assert!((Campaign::default().duration_s() - 72.0).abs() < 1e-9);
+        assert!((Campaign::default().with_duration(10.0).duration_s() - 10.0).abs() < 1e-9);
+    }
+}

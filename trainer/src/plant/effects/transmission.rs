@@ -1,0 +1,48 @@
+//! Gears that are not rigid: kinematic error, elasticity, backlash, hysteretic wind-up.
+
+use super::{Mechanism, Setting};
+use crate::plant::random::Draws;
+use crate::plant::transmission::{Compliant, KinematicError, Transmission};
+use std::f64::consts::TAU;
+
+/// Two waves a turn of the wave generator and a slow one of the output (Tuttle & Seering 1996).
+pub(super) fn kinematic_error(draws: &mut Draws, setting: &Setting) -> Mechanism {
+    let order = 2.0 * setting.joint.drive.gear_ratio;
+    let size = setting.amplitude * draws.log_uniform("error_rad", 1.0e-4, 3.0e-4);
+    let phase = draws.uniform("phase_rad", 0.0, TAU);
+    let half = draws.uniform("first_order_share", 0.1, 0.4);
+    let waves = vec![(size, order, phase), (half * size, 0.5 * order, draws.between(0.0, TAU))];
+    draws.note("order", order);
+    Mechanism::Transmission(Transmission::Kinematic(KinematicError { waves }))
+}
+
+fn compliant(stiffness: f64, setting: &Setting) -> Compliant {
+    // A twentieth of critical damping of the two masses against each other.
+    let (motor, link) = (setting.joint.motor_inertia_share, 1.0 - setting.joint.motor_inertia_share);
+    let reduced = setting.joint.inertia_kgm2 * motor * link;
+    let damping = 0.1 * (stiffness * reduced).sqrt();
+    Compliant { stiffness, damping, half_gap: 0.0, hysteresis: (0.0, 1.0), link: None, hysteresis_state: 0.0 }
+}
+
+/// A spring between motor and link (Spong 1987); the amplitude multiplies its compliance.
+pub(super) fn elasticity(draws: &mut Draws, setting: &Setting) -> Mechanism {
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 1500.0, 4000.0) / setting.amplitude.max(1e-3);
+    Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, setting)))
+}
+
+/// A gap between motor and link; the amplitude multiplies its width.
+pub(super) fn backlash(draws: &mut Draws, setting: &Setting) -> Mechanism {
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 8_000.0, 20_000.0);
+    let half_gap = setting.amplitude * draws.log_uniform("half_gap_rad", 5e-4, 2e-3);
+    let gear = Compliant { half_gap, ..compliant(stiffness, setting) };
+    Mechanism::Transmission(Transmission::Compliant(gear))
+}
+
+/// A stiff gear whose wind-up has a loop; the amplitude multiplies the twist over which it builds up.
+pub(super) fn windup_hysteresis(draws: &mut Draws, setting: &Setting) -> Mechanism {
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 2_000.0, 6_000.0) / setting.amplitude.max(1e-3);
+    let level = draws.uniform("loop_torque_Nm", 0.8, 2.0);
+    let twist = setting.amplitude.max(1e-3) * draws.log_uniform("loop_twist_rad", 5e-4, 2e-3);
+    let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, setting) };
+    Mechanism::Transmission(Transmission::Compliant(gear))
+}

@@ -1,0 +1,287 @@
+//! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
+#![allow(non_snake_case, reason = "keys carry their unit, spelled as in the columns of a recording")]
+
+use super::campaign::Campaign;
+use serde::{Deserialize, Serialize};
+
+/// A joint, its drive, its sensors and what is hidden in it.
+///
+/// SI units on the joint side. The nominal law is
+/// `torque = inertia * acceleration + gravity_torque * sin(position + gravity_phase) + friction(velocity)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Joint {
+    /// Total inertia at the joint, rotor included, kg m2 (> 0).
+    pub inertia_kgm2: f64,
+    /// Share of the inertia on the motor side of the gear, (0, 1); matters to compliant transmissions only.
+    pub motor_inertia_share: f64,
+    /// Amplitudes of the gravity torque, N m, one a payload; trajectories take them in turn unless they say otherwise.
+    pub gravity_torque_Nm: Vec<f64>,
+    /// Phase of the gravity torque, rad.
+    pub gravity_phase_rad: f64,
+    /// The velocity-only friction law.
+    pub friction: Friction,
+    /// The position controller.
+    pub control: Control,
+    /// Sampling, encoder and torque signal.
+    pub drive: Drive,
+    /// Noise of the torque signal and vibration of the base.
+    pub noise: Noise,
+    /// Temperature of the housing and its sensor.
+    pub thermal: Thermal,
+    /// What the `load_torque_Nm` column carries.
+    pub load_channel: LoadChannel,
+    /// The neighbouring joint that may couple into this one.
+    pub other_joint: OtherJoint,
+    /// Adds `link_position_rad`: a second encoder on the link side.
+    pub link_encoder: bool,
+    /// Which motions are recorded.
+    pub campaign: Campaign,
+    /// What the nominal law leaves out.
+    pub effects: Vec<Hidden>,
+}
+
+/// Coulomb, viscous and Stribeck friction of the nominal joint; torque has the sign of the velocity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Friction {
+    /// Coulomb torque, N m (>= 0).
+    pub coulomb_torque_Nm: f64,
+    /// Viscous coefficient, N m s/rad (>= 0).
+    pub viscous_Nm_s_rad: f64,
+    /// Torque above Coulomb at rest, N m; 0 switches the Stribeck effect off.
+    pub stribeck_torque_Nm: f64,
+    /// Stribeck velocity, rad/s (> 0).
+    pub stribeck_velocity_rad_s: f64,
+}
+
+/// Proportional-derivative position control with feed-forward of the nominal law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Control {
+    /// Closed-loop bandwidth, Hz (> 0).
+    pub bandwidth_Hz: f64,
+    /// Damping ratio of the closed loop (> 0).
+    pub damping_ratio: f64,
+    /// Corner of the low-pass behind the differentiated encoder, Hz (> 0).
+    pub velocity_corner_Hz: f64,
+    /// Share of the nominal rigid-body torque and friction that is fed forward, [0, 1].
+    pub feed_forward: f64,
+}
+
+/// Sampling, encoder and torque signal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Drive {
+    /// Sample rate of control and recording, Hz (> 0).
+    pub rate_Hz: f64,
+    /// Integration steps within one sample (>= 1).
+    pub steps_per_sample: usize,
+    /// Encoder counts a joint turn (> 0).
+    pub counts_per_turn: f64,
+    /// Step of the torque signal, N m; 0 for none.
+    pub torque_resolution_Nm: f64,
+    /// Largest torque of the drive, N m; 0 for no limit.
+    pub torque_limit_Nm: f64,
+    /// Gear ratio: rotor turns a joint turn (> 0).
+    pub gear_ratio: f64,
+}
+
+/// Which noise the torque signal carries: the five kinds of control recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseKind {
+    /// White only, of the total standard deviation.
+    White,
+    /// White plus slow coloured noise.
+    Coloured,
+    /// Coloured, with a standard deviation that grows with speed and acceleration.
+    StateDependent,
+    /// Coloured, with a 17-bit joint-side encoder.
+    CoarseEncoder,
+    /// Coloured, on a base that vibrates.
+    FlexibleBase,
+}
+
+impl NoiseKind {
+    /// All five kinds.
+    pub const ALL: [Self; 5] =
+        [Self::White, Self::Coloured, Self::StateDependent, Self::CoarseEncoder, Self::FlexibleBase];
+}
+
+/// Noise of the torque signal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Noise {
+    /// Kind of noise.
+    pub kind: NoiseKind,
+    /// Standard deviation of the white part at the sample rate, N m.
+    pub white_torque_Nm: f64,
+    /// Standard deviation of the coloured part, N m.
+    pub coloured_torque_Nm: f64,
+    /// Correlation time of the coloured part, s (> 0).
+    pub correlation_time_s: f64,
+    /// The vibrating base of [`NoiseKind::FlexibleBase`].
+    pub base: Base,
+}
+
+/// A base that vibrates under the joint: the encoder sees the joint against the base, inertia moves in space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Base {
+    /// Natural frequency, Hz (> 0).
+    pub frequency_Hz: f64,
+    /// Damping ratio (> 0).
+    pub damping_ratio: f64,
+    /// Standard deviation of the inertial torque that floor vibration causes, N m.
+    pub vibration_torque_Nm: f64,
+    /// Inertia of the base over that of the joint; the reaction torque excites the base through it. 0: no reaction.
+    pub inertia_ratio: f64,
+}
+
+/// First-order thermal model of the housing: `time_constant * dT/dt = ambient + rise * power - T`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Thermal {
+    /// Whether `temperature_C` is recorded.
+    pub sensor: bool,
+    /// Ambient and initial temperature, degC.
+    pub ambient_C: f64,
+    /// Steady rise a watt of friction and motor loss, K/W.
+    pub rise_K_W: f64,
+    /// Steady rise from everything else that is switched on, K.
+    pub idle_rise_K: f64,
+    /// Time constant, s (> 0).
+    pub time_constant_s: f64,
+    /// Standard deviation of the sensor noise, K.
+    pub sensor_noise_K: f64,
+    /// Step of the sensor, K; 0 for none.
+    pub sensor_resolution_K: f64,
+}
+
+/// What the `load_torque_Nm` column carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LoadChannel {
+    /// The nominal gravity torque of the payload at the measured position: what a drive computes. It contains no
+    /// gravity error, so that `torque = inertia * acceleration + load_torque + friction` is the nominal law.
+    NominalGravity,
+    /// No such column.
+    None,
+}
+
+/// A neighbouring joint that moves on its own: `other_position_rad`, `other_velocity_rad_s`, `other_acceleration_rad_s2`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OtherJoint {
+    /// Whether it exists and is recorded.
+    pub recorded: bool,
+    /// Amplitude of its multisine, rad.
+    pub amplitude_rad: f64,
+    /// Highest frequency of its multisine, Hz.
+    pub highest_Hz: f64,
+}
+
+/// An effect to hide in the joint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hidden {
+    /// Name in [`CATALOGUE`](super::CATALOGUE) or [`OUTSIDE`](super::OUTSIDE).
+    pub name: String,
+    /// Multiplier of the drawn effect; 1 is a plausible strength, 0 is none.
+    pub amplitude: f64,
+}
+
+impl Default for Joint {
+    fn default() -> Self {
+        Self {
+            inertia_kgm2: 0.5,
+            motor_inertia_share: 0.6,
+            gravity_torque_Nm: vec![4.0, 6.0, 8.0],
+            gravity_phase_rad: 0.0,
+            friction: Friction::default(),
+            control: Control::default(),
+            drive: Drive::default(),
+            noise: Noise::default(),
+            thermal: Thermal::default(),
+            load_channel: LoadChannel::NominalGravity,
+            other_joint: OtherJoint::default(),
+            link_encoder: false,
+            campaign: Campaign::default(),
+            effects: Vec::new(),
+        }
+    }
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self { coulomb_torque_Nm: 2.0, viscous_Nm_s_rad: 1.2, stribeck_torque_Nm: 0.0, stribeck_velocity_rad_s: 0.05 }
+    }
+}
+
+impl Friction {
+    /// Dry level at a speed, N m: Coulomb plus Stribeck (Tustin 1947, exponent 1).
+    pub(crate) fn dry_level(&self, speed: f64) -> f64 {
+        if self.stribeck_torque_Nm == 0.0 {
+            return self.coulomb_torque_Nm;
+        }
+        self.coulomb_torque_Nm + self.stribeck_torque_Nm * (-speed / self.stribeck_velocity_rad_s).exp()
+    }
+}
+
+impl Default for Control {
+    fn default() -> Self {
+        Self { bandwidth_Hz: 8.0, damping_ratio: 0.8, velocity_corner_Hz: 120.0, feed_forward: 1.0 }
+    }
+}
+
+impl Default for Drive {
+    fn default() -> Self {
+        Self {
+            rate_Hz: 1000.0,
+            steps_per_sample: 4,
+            counts_per_turn: 2_097_152.0,
+            torque_resolution_Nm: 0.01,
+            torque_limit_Nm: 0.0,
+            gear_ratio: 30.0,
+        }
+    }
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self {
+            kind: NoiseKind::Coloured,
+            white_torque_Nm: 0.37,
+            coloured_torque_Nm: 0.06,
+            correlation_time_s: 0.076,
+            base: Base::default(),
+        }
+    }
+}
+
+impl Default for Base {
+    fn default() -> Self {
+        Self { frequency_Hz: 14.0, damping_ratio: 0.05, vibration_torque_Nm: 0.1, inertia_ratio: 0.0 }
+    }
+}
+
+impl Default for Thermal {
+    fn default() -> Self {
+        Self {
+            sensor: true,
+            ambient_C: 25.0,
+            rise_K_W: 2.5,
+            idle_rise_K: 4.0,
+            time_constant_s: 60.0,
+            sensor_noise_K: 0.05,
+            sensor_resolution_K: 0.1,
+        }
+    }
+}
+
+impl Default for OtherJoint {
+    fn default() -> Self {
+        Self { recorded: true, amplitude_rad: 0.8, highest_Hz: 1.1 }
+    }
+}
