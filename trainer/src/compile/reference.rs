@@ -6,6 +6,7 @@
 
 use frikan_shared::elementary;
 use frikan_shared::expression::{Operation, Program};
+use frikan_shared::integer_table::IntegerShape;
 use frikan_shared::model::{Law, MAX_INPUTS, Model};
 use frikan_shared::network::{Network, Outer};
 use frikan_shared::table::{Cell, Geometric, Symmetry, Table, Uniform};
@@ -31,7 +32,12 @@ pub fn evaluate_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX
                 inputs.iter().zip(&model.inputs).map(|(x, channel)| x.clamp(channel.low, channel.high)).collect();
             program_value(program, &held)
         }
-        Law::IntegerTable(_) => 0.0,
+        Law::IntegerTable(table) => {
+            let shape = table.shape();
+            let half = if inputs[0].is_sign_negative() { -0.5 } else { 0.5 };
+            let steps = (inputs[0] / shape.input_step + half) as i32;
+            integer_value(&shape, &model.cells, steps) as f32 * shape.output_step
+        }
     };
     if value.is_nan() { 0.0 } else { value.clamp(-model.output_limit, model.output_limit) }
 }
@@ -98,6 +104,35 @@ fn cubic(cell: Cell, (_, x, turned): Found) -> f32 {
 fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
     let found = find(table, input);
     cubic(cells[found.0], found)
+}
+
+/// The value of an integer table at `steps`, both in steps, worked out in 128 bits and by division instead of shifts.
+#[must_use]
+pub fn integer_value(shape: &IntegerShape, cells: &[Cell], steps: i32) -> i32 {
+    let width = |shift: u8| 1i128 << shift;
+    let position = i128::from(steps).abs().min(i128::from(shape.reach) - 1);
+    let split = width(shape.split_shift);
+    let inner_cells = split / width(shape.inner_shift);
+    let cell_of = |position: i128| {
+        if position < split {
+            position / width(shape.inner_shift)
+        } else {
+            inner_cells + (position - split) / width(shape.outer_shift)
+        }
+    };
+    let width = width(if position < split { shape.inner_shift } else { shape.outer_shift });
+    let mut cell = i128::from(shape.first_cell) + cell_of(position);
+    if steps < 0 && shape.symmetry == Symmetry::Sided {
+        cell += cell_of(i128::from(shape.reach) - 1) + 1;
+    }
+    let [c0, c1, c2, c3] = cells[cell as usize].integers().map(i128::from);
+    let x = position % width;
+    let mut value = c3;
+    for coefficient in [c2, c1, c0] {
+        value = coefficient + (value * x).div_euclid(width);
+    }
+    let value = if steps < 0 && shape.symmetry == Symmetry::Odd { -value } else { value };
+    value as i32
 }
 
 fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {

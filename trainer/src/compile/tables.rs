@@ -6,7 +6,7 @@
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 use thiserror::Error;
 
-use super::cells::{Certificate, Cubic, certify, fit_cell, sampled_error};
+use super::cells::{Certificate, certify, fit_cell, sampled_error, to_f32};
 use super::formula::{Curve, Parity};
 
 /// Most cells of a side that are tried.
@@ -94,8 +94,8 @@ pub fn compile_layout(curve: &dyn Curve, table: Table) -> CompiledTable {
     certified(curve, candidate.table, &candidate.edges, &fitted(curve, &candidate.edges), candidate.coordinate_error)
 }
 
-fn fitted(curve: &dyn Curve, edges: &[(f64, f64)]) -> Vec<Cubic> {
-    edges.iter().map(|&(near, far)| fit_cell(curve, near, far)).collect()
+fn fitted(curve: &dyn Curve, edges: &[(f64, f64)]) -> Vec<[f32; 4]> {
+    edges.iter().map(|&(near, far)| to_f32(fit_cell(curve, near, far))).collect()
 }
 
 fn fill(curve: &dyn Curve, candidate: &Candidate, bound: f64) -> Option<CompiledTable> {
@@ -106,7 +106,7 @@ fn fill(curve: &dyn Curve, candidate: &Candidate, bound: f64) -> Option<Compiled
         if !acceptable {
             return None;
         }
-        cubics.push(cubic);
+        cubics.push(to_f32(cubic));
     }
     let compiled = certified(curve, candidate.table, &candidate.edges, &cubics, candidate.coordinate_error);
     (compiled.certificate.total() <= bound).then_some(compiled)
@@ -116,7 +116,7 @@ fn certified(
     curve: &dyn Curve,
     table: Table,
     edges: &[(f64, f64)],
-    cubics: &[Cubic],
+    cubics: &[[f32; 4]],
     coordinate_error: f64,
 ) -> CompiledTable {
     let per_cell: Vec<Certificate> = edges

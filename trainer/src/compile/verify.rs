@@ -165,6 +165,7 @@ pub fn compare_patterns<const CELLS: usize>(model: &Model<CELLS>, first: u32, co
 mod tests {
     use super::*;
     use crate::compile::formula::{Curve, Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::integers::compile_integer_table;
     use crate::compile::program::compile_program;
     use crate::compile::tables::{compile_layout, compile_table};
     use frikan_shared::image::{Image, decode, encode};
@@ -219,6 +220,12 @@ mod tests {
         let layout = Uniform::new(UniformShape { first_cell: 0, cells: 37, low: -1.7, high: 2.1 });
         let uniform = compile_layout(&odd, Table::Uniform(layout));
         assert_identical(&model(Law::Table(uniform.table), &uniform.cells, &[Quantity::Velocity]));
+    }
+
+    #[test]
+    fn integer_tables_agree_to_the_bit() {
+        let compiled = compile_integer_table(&stribeck_law(), -2.0, 2.0, 5.0e-2, 0).unwrap();
+        assert_identical(&model(Law::IntegerTable(compiled.table), &compiled.cells, &[Quantity::Velocity]));
     }
 
     #[test]
