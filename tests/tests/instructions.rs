@@ -1,30 +1,14 @@
 //! Instructions of an evaluation on the emulated targets: the same for every input, and within the budget.
 
-use frikan_tests::models::{self, TestModel};
-use frikan_tests::vectors::{one_input, space_filling};
-use frikan_trainer::emulator::{Emulator, Mode, Request};
-
-/// Rows that are counted; the special values are among them.
-const ROWS: usize = 4096;
-
-/// Fewest and most instructions of one evaluation over [`ROWS`] rows.
-fn instruction_range(emulator: &Emulator, model: &TestModel) -> (u32, u32) {
-    let inputs = model.inputs.len();
-    let values = if inputs == 1 {
-        one_input(ROWS, model.inputs[0].high, 2)
-    } else {
-        space_filling(ROWS, &model.inputs.iter().map(|input| input.high).collect::<Vec<_>>())
-    };
-    let image = models::image(model);
-    let request = Request { image: &image, values: &values, inputs, mode: Mode::Count, floating_point_control: 0 };
-    emulator.run(&request).unwrap().instruction_range().unwrap()
-}
+use frikan_tests::cost::{count, count_integer};
+use frikan_tests::models;
+use frikan_trainer::emulator::{Emulator, Firmware};
 
 /// Every kind of model, constant; those named in `budgets` within their budget.
 fn every_kind_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
     let emulator = Emulator::new(target).unwrap();
-    let counted: Vec<_> =
-        models::every_kind().into_iter().map(|(name, model)| (name, instruction_range(&emulator, &model))).collect();
+    let range = |model| count(&emulator, &model).unwrap().instruction_range().unwrap();
+    let counted: Vec<_> = models::every_kind().into_iter().map(|(name, model)| (name, range(model))).collect();
     for (name, (fewest, most)) in &counted {
         assert_eq!(fewest, most, "{name} on {target} is not constant: {counted:?}");
     }
@@ -32,6 +16,14 @@ fn every_kind_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
         let (_, (_, most)) = counted.iter().find(|(counted, _)| counted == name).unwrap();
         assert!(most <= budget, "{name} on {target} takes {most} instructions, {budget} at most: {counted:?}");
     }
+}
+
+fn integer_table_is_constant_on(target: &str, budget: u32) {
+    let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-integer").unwrap();
+    let answer = count_integer(&emulator, &models::integer_table(), 1 << 17).unwrap();
+    let (fewest, most) = answer.instruction_range().unwrap();
+    assert_eq!(fewest, most, "the integer table on {target} is not constant");
+    assert!(most <= budget, "the integer table on {target} takes {most} instructions, {budget} at most");
 }
 
 #[test]
@@ -51,12 +43,25 @@ fn every_kind_is_constant_on_cortex_m33() {
     every_kind_is_constant_on("cortex-m33", &[]);
 }
 
-/// The count itself, against code whose instructions are known: a model that is a constant program of one more operation
-/// cannot be cheaper, and counting twice gives the same.
 #[test]
-fn counting_repeats() {
-    let emulator = Emulator::new("cortex-m4f").unwrap();
-    let first = instruction_range(&emulator, &models::stribeck_expression());
-    let second = instruction_range(&emulator, &models::stribeck_expression());
-    assert_eq!(first, second);
+fn the_integer_table_is_constant_on_cortex_m0plus() {
+    integer_table_is_constant_on("cortex-m0plus", 50);
+}
+
+#[test]
+fn the_integer_table_is_constant_on_riscv32imac() {
+    integer_table_is_constant_on("riscv32imac", 45);
+}
+
+#[test]
+fn the_integer_table_is_constant_on_riscv32imc() {
+    integer_table_is_constant_on("riscv32imc", 45);
+}
+
+/// Without a floating-point unit the float table does take its time by the input: the count sees the difference.
+#[test]
+fn the_count_sees_a_time_that_varies() {
+    let emulator = Emulator::new("cortex-m0plus").unwrap();
+    let (fewest, most) = count(&emulator, &models::symmetric_table()).unwrap().instruction_range().unwrap();
+    assert!(fewest < most && fewest > 50, "{fewest} to {most}");
 }

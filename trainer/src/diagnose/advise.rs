@@ -13,20 +13,32 @@ pub struct Advice {
 pub(crate) fn separation(effect: EffectId) -> &'static str {
     use EffectId::*;
     match effect {
-        Stribeck => "constant-velocity plateaus, at least six per decade from a tenth of the Stribeck velocity up, both directions, with slow ramps up and down",
+        Stribeck => {
+            "constant-velocity plateaus, at least six per decade from a tenth of the Stribeck velocity up, both directions, with slow ramps up and down"
+        }
         ViscousNonlinearity => "three well spread speeds at one temperature, repeated cold and hot",
-        DirectionAsymmetry => "samples at rest inside the friction cone, mirrored plateaus over the same positions, or the joint mounted turned by 180 degrees",
-        Temperature => "one cooling phase inside the recording (warm-up, rest, run again), so that temperature and time stop being collinear",
+        DirectionAsymmetry => {
+            "samples at rest inside the friction cone, mirrored plateaus over the same positions, or the joint mounted turned by 180 degrees"
+        }
+        Temperature => {
+            "one cooling phase inside the recording (warm-up, rest, run again), so that temperature and time stop being collinear"
+        }
         WarmUp => "hard, idle and hard blocks of unequal length",
-        LoadFriction => "the same motion with three payloads or arm poses including none, both signs of load times velocity",
+        LoadFriction => {
+            "the same motion with three payloads or arm poses including none, both signs of load times velocity"
+        }
         DriveBackdrive => "a weighed payload added, a link-side torque sensor, or the torque constant from back-EMF",
         SlowDrift => "a rest of several minutes and a repeated reference move: drift does not recover",
         Presliding => "slow sinusoids of half, one, three and ten break-away distances at two accelerations",
         FrictionalLag => "unidirectional oscillating velocity at two frequencies, and one swing with a heavy payload",
         DwellBreakaway => "identical starts after 0.1, 0.3, 1, 3, 10 and 30 s of rest in random order",
         PositionRipple => "slow constant speed over a full turn at three speeds, both directions",
-        KinematicError => "constant speeds a factor of three apart (its torque grows with the square of speed), or a second encoder",
-        PositionFriction => "constant speed over the whole range in both directions: friction changes sign with direction, a spring does not",
+        KinematicError => {
+            "constant speeds a factor of three apart (its torque grows with the square of speed), or a second encoder"
+        }
+        PositionFriction => {
+            "constant speed over the whole range in both directions: friction changes sign with direction, a spring does not"
+        }
         GravityError => "motion beyond 60 degrees to both sides, a second payload, or the base turned",
         InertiaError => "two well separated frequencies of oscillation",
         TorqueScale => "a weighed payload added, back-EMF, or a torque sensor",

@@ -140,7 +140,9 @@ impl Design {
         let state = &prepared.state;
         let mut jobs: Vec<(Label, Shape, usize)> = Vec::new();
         for (index, hypothesis) in hypotheses.iter().enumerate().filter(|(_, h)| !left_out.contains(&h.id())) {
-            jobs.extend(hypothesis.shapes(state).into_iter().map(|shape| (Label::Named(hypothesis.id()), shape, index)));
+            jobs.extend(
+                hypothesis.shapes(state).into_iter().map(|shape| (Label::Named(hypothesis.id()), shape, index)),
+            );
         }
         let built: Vec<Vec<Vec<f64>>> = jobs
             .par_iter()

@@ -1,12 +1,12 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
+use super::candidates::Label;
 use super::evidence::Bench;
 use super::linear::invert_symmetric;
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
 use crate::physics::{Dimension, JointState, Shape};
-use super::candidates::Label;
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -96,7 +96,13 @@ fn columns_without(search: &Search, accepted: &[Accepted], without: usize) -> Ve
 }
 
 /// Adds the uncertainty of the free shapes: their tangents join the normal matrix (Gauss-Newton).
-fn widen_by_shapes(search: &Search, bench: &Bench, noise: &Noise, effects: &mut [Fitted], places: &[std::ops::Range<usize>]) {
+fn widen_by_shapes(
+    search: &Search,
+    bench: &Bench,
+    noise: &Noise,
+    effects: &mut [Fitted],
+    places: &[std::ops::Range<usize>],
+) {
     let state = &search.prepared.state;
     let mut tangents: Vec<Vec<f64>> = Vec::new();
     let mut owners: Vec<(usize, usize)> = Vec::new();

@@ -186,7 +186,12 @@ pub struct GroupEvidence {
 
 impl GroupEvidence {
     /// Weighs the variants of a group against the base.
-    pub fn weigh(base: &VariantEvidence, variants: &[Option<VariantEvidence>], rows: f64, grid_size: f64) -> Option<Self> {
+    pub fn weigh(
+        base: &VariantEvidence,
+        variants: &[Option<VariantEvidence>],
+        rows: f64,
+        grid_size: f64,
+    ) -> Option<Self> {
         let criterion_of = |variant: &VariantEvidence, energy: f64, base_energy: f64| {
             0.5 * rows * (base_energy / energy).ln() - 0.5 * variant.degrees as f64 * rows.ln()
         };

@@ -78,18 +78,25 @@ impl ZeroPhase {
 
 /// First derivative by the sixth-order central difference, lower order near the ends of a segment.
 pub fn first_derivative(series: &[f64], segments: &[Range<usize>], period: f64) -> Vec<f64> {
-    differentiate(series, segments, |at| (45.0 * (at(1) - at(-1)) - 9.0 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60.0 * period))
+    differentiate(series, segments, |at| {
+        (45.0 * (at(1) - at(-1)) - 9.0 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60.0 * period)
+    })
 }
 
 /// Second derivative by the sixth-order central difference.
 pub fn second_derivative(series: &[f64], segments: &[Range<usize>], period: f64) -> Vec<f64> {
     differentiate(series, segments, |at| {
-        (270.0 * (at(1) + at(-1)) - 27.0 * (at(2) + at(-2)) + 2.0 * (at(3) + at(-3)) - 490.0 * at(0)) / (180.0 * period * period)
+        (270.0 * (at(1) + at(-1)) - 27.0 * (at(2) + at(-2)) + 2.0 * (at(3) + at(-3)) - 490.0 * at(0))
+            / (180.0 * period * period)
     })
 }
 
 /// Applies a stencil of three samples on each side; beyond an end the series continues by odd reflection.
-fn differentiate(series: &[f64], segments: &[Range<usize>], stencil: impl Fn(&dyn Fn(isize) -> f64) -> f64) -> Vec<f64> {
+fn differentiate(
+    series: &[f64],
+    segments: &[Range<usize>],
+    stencil: impl Fn(&dyn Fn(isize) -> f64) -> f64,
+) -> Vec<f64> {
     let mut derivative = vec![0.0; series.len()];
     for segment in segments.iter().filter(|segment| segment.len() > 1) {
         let piece = &series[segment.clone()];

@@ -66,7 +66,11 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     }
     let sign: Vec<f64> = velocity.iter().map(|v| (v / (0.02 * top)).tanh()).collect();
     let torque = filter.over(&signals.torque, segments);
-    let runs: Vec<_> = segments.iter().map(|s| (s.start + filter.reach()).min(s.end)..s.end.saturating_sub(filter.reach()).max(s.start)).filter(|r| r.start < r.end).collect();
+    let runs: Vec<_> = segments
+        .iter()
+        .map(|s| (s.start + filter.reach()).min(s.end)..s.end.saturating_sub(filter.reach()).max(s.start))
+        .filter(|r| r.start < r.end)
+        .collect();
     let rigid = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
     let given = rigid.is_some();
     let main = rigid.map_or(acceleration, |torque| filter.over(torque, segments));
@@ -76,24 +80,30 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     let energy = |series: &[f64]| runs.iter().flat_map(|r| &series[r.clone()]).map(|v| v * v).sum::<f64>();
     let rows: usize = runs.iter().map(|r| r.len()).sum();
     let explains = 1.0 - energy(&rest) / energy(&torque).max(f64::MIN_POSITIVE);
-    let power_share = coefficients[0].abs() * (energy(&columns[0]) / rows as f64).sqrt() / (energy(&torque) / rows as f64).sqrt();
+    let power_share =
+        coefficients[0].abs() * (energy(&columns[0]) / rows as f64).sqrt() / (energy(&torque) / rows as f64).sqrt();
     if explains < 0.5 {
         return None;
     }
-    let friction_drives = coefficients[1] < 0.0 && coefficients[1].abs() * (energy(&columns[1]) / energy(&torque)).sqrt() > 0.1;
+    let friction_drives =
+        coefficients[1] < 0.0 && coefficients[1].abs() * (energy(&columns[1]) / energy(&torque)).sqrt() > 0.1;
     let flipped = coefficients[0] < 0.0 && power_share > 0.3;
     if flipped && friction_drives {
         return Some(HealthNote {
             effect: EffectId::UnitOrSign,
             blocking: true,
-            sentence: "torque and motion have opposite signs: both the rigid body and the friction come out negative".into(),
+            sentence: "torque and motion have opposite signs: both the rigid body and the friction come out negative"
+                .into(),
         });
     }
     if flipped && given {
         return Some(HealthNote {
             effect: EffectId::UnitOrSign,
             blocking: true,
-            sentence: format!("the given rigid-body torque enters with factor {:.3}: its sign is opposite to the recording's", coefficients[0]),
+            sentence: format!(
+                "the given rigid-body torque enters with factor {:.3}: its sign is opposite to the recording's",
+                coefficients[0]
+            ),
         });
     }
     if given && power_share > 0.3 {
@@ -103,7 +113,10 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
                 return Some(HealthNote {
                     effect: EffectId::UnitOrSign,
                     blocking: true,
-                    sentence: format!("the given rigid-body torque enters with factor {:.4}, as with {story}", coefficients[0]),
+                    sentence: format!(
+                        "the given rigid-body torque enters with factor {:.4}, as with {story}",
+                        coefficients[0]
+                    ),
                 });
             }
         }

@@ -37,7 +37,10 @@ pub(crate) fn gram(columns: &[Vec<f64>], runs: &[Range<usize>]) -> DMatrix<f64> 
 
 /// Solves a symmetric positive system with unit-diagonal scaling; `None` where it is singular to working precision.
 pub(crate) fn solve_symmetric(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let scale = DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }));
+    let scale = DVector::from_iterator(
+        matrix.nrows(),
+        matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }),
+    );
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
         matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
     });

@@ -25,14 +25,14 @@ mod search;
 mod signals;
 mod strength;
 
+pub use advise::Advice;
 pub use base::{Base, BaseKind};
 pub use candidates::{Channel, Factor, Generic, Label};
-pub use prepare::{Lock, Prepared};
-pub use advise::Advice;
 pub use conclude::{Fitted, Refit, unit_text};
 pub use health::{HealthNote, examine};
 pub use localise::{Location, Region};
 pub use outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
+pub use prepare::{Lock, Prepared};
 pub use prove::Proof;
 pub use run::{Options, Refusal, diagnose};
 pub use search::{Accepted, Scored, Search, SearchOutcome, Settings};

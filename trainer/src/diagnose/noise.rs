@@ -46,7 +46,8 @@ impl Noise {
                 column[i] = if i < run.start + order {
                     0.0
                 } else {
-                    let coloured: f64 = self.autoregression.iter().enumerate().map(|(k, a)| a * column[i - k - 1]).sum();
+                    let coloured: f64 =
+                        self.autoregression.iter().enumerate().map(|(k, a)| a * column[i - k - 1]).sum();
                     (column[i] - coloured) / self.deviation[i]
                 };
             }
@@ -63,7 +64,11 @@ impl Noise {
 fn autoregression(residual: &[f64], runs: &[Range<usize>]) -> Vec<f64> {
     let count: usize = runs.iter().map(|run| run.len()).sum();
     let covariance: Vec<f64> = (0..=LARGEST_ORDER)
-        .map(|lag| runs.iter().map(|run| (run.start + lag..run.end).map(|i| residual[i] * residual[i - lag]).sum::<f64>()).sum())
+        .map(|lag| {
+            runs.iter()
+                .map(|run| (run.start + lag..run.end).map(|i| residual[i] * residual[i - lag]).sum::<f64>())
+                .sum()
+        })
         .collect();
     if covariance[0] <= 0.0 || count < 10 * LARGEST_ORDER {
         return Vec::new();
@@ -94,7 +99,8 @@ fn whiten_colour(residual: &[f64], runs: &[Range<usize>], autoregression: &[f64]
     let mut innovation = vec![0.0; residual.len()];
     for run in runs {
         for i in run.start + autoregression.len()..run.end {
-            innovation[i] = residual[i] - autoregression.iter().enumerate().map(|(k, a)| a * residual[i - k - 1]).sum::<f64>();
+            innovation[i] =
+                residual[i] - autoregression.iter().enumerate().map(|(k, a)| a * residual[i - k - 1]).sum::<f64>();
         }
     }
     innovation

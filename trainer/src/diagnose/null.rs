@@ -41,9 +41,17 @@ pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
 
 impl NullDraws {
     /// Draws the null `count` times. `residual` is whitened, what the base and the best candidates leave.
-    pub fn draw(directions: &Directions, base: &[Vec<f64>], residual: &[f64], runs: &[Range<usize>], count: usize, seed: u64) -> Self {
+    pub fn draw(
+        directions: &Directions,
+        base: &[Vec<f64>],
+        residual: &[f64],
+        runs: &[Range<usize>],
+        count: usize,
+        seed: u64,
+    ) -> Self {
         let rows: usize = runs.iter().map(|run| run.len()).sum();
-        let gather = |column: &[f64]| -> Vec<f64> { runs.iter().flat_map(|run| column[run.clone()].iter().copied()).collect() };
+        let gather =
+            |column: &[f64]| -> Vec<f64> { runs.iter().flat_map(|run| column[run.clone()].iter().copied()).collect() };
         let pool = gather(residual);
         let packed_runs = [0..rows];
         let packed_base = orthonormal(&base.iter().map(|c| gather(c)).collect::<Vec<_>>(), &packed_runs);
@@ -100,7 +108,8 @@ impl NullDraws {
         // min-p over the family: 1 - (1 - p)^K with K fitted to the draws.
         let log_survivals: f64 = (0..count)
             .map(|draw| {
-                let least = surprises.iter().zip(&tails).map(|(v, tail)| tail_probability(v[draw], *tail)).fold(1.0, f64::min);
+                let least =
+                    surprises.iter().zip(&tails).map(|(v, tail)| tail_probability(v[draw], *tail)).fold(1.0, f64::min);
                 (1.0 - least).max(1e-300).ln()
             })
             .sum();

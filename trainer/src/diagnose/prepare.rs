@@ -207,7 +207,9 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
         .map(|series| prepared.filtered(series))
         .collect();
     let target = prepared.filtered(&signals.torque);
-    let Some(coefficients) = super::linear::least_squares(&columns, &target, &prepared.open_runs()) else { return true };
+    let Some(coefficients) = super::linear::least_squares(&columns, &target, &prepared.open_runs()) else {
+        return true;
+    };
     let friction = prepared.filtered(&prepared.friction_torque);
     let Some(rest) = super::linear::least_squares(&columns, &friction, &prepared.open_runs()) else { return true };
     let residual = super::linear::residual(&columns, &friction, &rest);

@@ -25,7 +25,9 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     let blocks: Vec<&Vec<Range<usize>>> = search.prepared.blocks.iter().filter(|b| b.locked).map(|b| &b.runs).collect();
     let before = rest(search, baseline);
     let after = rest(search, improved);
-    let energy = |series: &[f64], runs: &[Range<usize>]| -> f64 { runs.iter().flat_map(|r| &series[r.clone()]).map(|e| e * e).sum() };
+    let energy = |series: &[f64], runs: &[Range<usize>]| -> f64 {
+        runs.iter().flat_map(|r| &series[r.clone()]).map(|e| e * e).sum()
+    };
     let pairs: Vec<(f64, f64)> = blocks.iter().map(|runs| (energy(&before, runs), energy(&after, runs))).collect();
     let rows: usize = blocks.iter().flat_map(|runs| runs.iter()).map(Range::len).sum();
     if rows == 0 {
@@ -67,7 +69,8 @@ fn ratio_interval(pairs: &[(f64, f64)], ratio: f64) -> [f64; 2] {
     let mean = pairs.iter().map(|p| p.0).sum::<f64>() / count;
     // Linearised: d(log ratio^2) = (after - ratio^2 before) / (ratio^2 mean).
     let square = ratio * ratio;
-    let variance = pairs.iter().map(|(b, a)| ((a - square * b) / (square * mean)).powi(2)).sum::<f64>() / (count * (count - 1.0));
+    let variance =
+        pairs.iter().map(|(b, a)| ((a - square * b) / (square * mean)).powi(2)).sum::<f64>() / (count * (count - 1.0));
     let half = 0.5 * student_95(pairs.len() - 1) * variance.sqrt();
     [ratio * (-half).exp(), ratio * half.exp()]
 }
@@ -81,5 +84,7 @@ fn student_95(degrees: usize) -> f64 {
     }
     let z3 = Z.powi(3);
     let z5 = Z.powi(5);
-    Z + (z3 + Z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * Z) / (96.0 * n * n) + (3.0 * Z.powi(7) + 19.0 * z5 + 17.0 * z3 - 15.0 * Z) / (384.0 * n.powi(3))
+    Z + (z3 + Z) / (4.0 * n)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * Z) / (96.0 * n * n)
+        + (3.0 * Z.powi(7) + 19.0 * z5 + 17.0 * z3 - 15.0 * Z) / (384.0 * n.powi(3))
 }

@@ -76,8 +76,11 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let (accepted, withdrawn) = withdraw_unproven(&search, accepted, &baseline);
     let improved = refit(&search, &accepted, &noise).ok_or(Refusal::Undetermined)?;
     let proof = prove(&search, &baseline, &improved);
-    let findings: Vec<Finding> =
-        accepted.iter().enumerate().map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator)).collect();
+    let findings: Vec<Finding> = accepted
+        .iter()
+        .enumerate()
+        .map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator))
+        .collect();
     let verdict = verdict(&findings, &health);
     let score = |refit: &Refit| score(&search, refit);
     Ok(Diagnosis {
@@ -105,7 +108,8 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
 fn withdraw_unproven(search: &Search, mut accepted: Vec<Accepted>, baseline: &Refit) -> (Vec<Accepted>, Vec<EffectId>) {
     let mut withdrawn = Vec::new();
     while !accepted.is_empty() {
-        let gains: Vec<f64> = (0..accepted.len()).map(|index| locked_gain(search, &accepted, index, baseline)).collect();
+        let gains: Vec<f64> =
+            (0..accepted.len()).map(|index| locked_gain(search, &accepted, index, baseline)).collect();
         let weakest = (0..gains.len())
             .filter(|&i| accepted[i].effect() != EffectId::TransientEvent)
             .min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
@@ -126,7 +130,14 @@ fn locked_gain(search: &Search, accepted: &[Accepted], index: usize, baseline: &
     with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
 }
 
-fn finding(search: &Search, found: &Accepted, all: &[Accepted], index: usize, improved: &Refit, actuator: &str) -> Finding {
+fn finding(
+    search: &Search,
+    found: &Accepted,
+    all: &[Accepted],
+    index: usize,
+    improved: &Refit,
+    actuator: &str,
+) -> Finding {
     let effect = found.effect();
     let fitted = improved.effects[index].clone();
     let location = locate(search, improved, index);
@@ -174,17 +185,18 @@ fn parameters(search: &Search, fitted: &Fitted, actuator: &str) -> Vec<Parameter
         unit: unit_text(dimension, rotary, actuator),
         ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
     };
-    let linear = hypothesis
-        .coefficients(&fitted.shape)
-        .into_iter()
-        .zip(fitted.coefficients.iter().zip(&fitted.deviation))
-        .map(|((name, symbol, dimension), (value, deviation))| parameter(name, symbol, dimension, *value, *deviation));
+    let linear =
+        hypothesis.coefficients(&fitted.shape).into_iter().zip(fitted.coefficients.iter().zip(&fitted.deviation)).map(
+            |((name, symbol, dimension), (value, deviation))| parameter(name, symbol, dimension, *value, *deviation),
+        );
     let shapes = hypothesis
         .shape_names()
         .into_iter()
         .zip(fitted.shape.iter().zip(&fitted.shape_deviation))
         .filter(|(shape, _)| shape.name != "variant")
-        .map(|(shape, (value, deviation))| parameter(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0)));
+        .map(|(shape, (value, deviation))| {
+            parameter(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0))
+        });
     linear.chain(shapes).collect()
 }
 

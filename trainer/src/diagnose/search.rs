@@ -31,7 +31,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { family_wise_level: 0.01, least_score: 3.0, ambiguity_margin: 3.0, null_draws: 200, most_findings: 4, seed: 0 }
+        Self {
+            family_wise_level: 0.01,
+            least_score: 3.0,
+            ambiguity_margin: 3.0,
+            null_draws: 200,
+            most_findings: 4,
+            seed: 0,
+        }
     }
 }
 
@@ -92,9 +99,18 @@ pub struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Builds the design of every hypothesis that the recording can show.
-    pub fn new(prepared: &'a Prepared, base: &'a Base, hypotheses: &'a [Box<dyn Hypothesis + Send>], settings: Settings) -> Self {
+    pub fn new(
+        prepared: &'a Prepared,
+        base: &'a Base,
+        hypotheses: &'a [Box<dyn Hypothesis + Send>],
+        settings: Settings,
+    ) -> Self {
         let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
-        let t0 = std::time::Instant::now(); let design = Design::new(prepared, hypotheses, left_out); if std::env::var("DBG").is_ok() { eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len()); }
+        let t0 = std::time::Instant::now();
+        let design = Design::new(prepared, hypotheses, left_out);
+        if std::env::var("DBG").is_ok() {
+            eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len());
+        }
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
     }
@@ -125,7 +141,11 @@ impl<'a> Search<'a> {
         loop {
             let base = self.base_with(&accepted, None);
             let round = Round::new(self, base, self.settings.seed.wrapping_add(accepted.len() as u64));
-            let t0 = std::time::Instant::now(); let table = round.score_table(&accepted); if std::env::var("DBG").is_ok() { eprintln!("score {:?}", t0.elapsed()); }
+            let t0 = std::time::Instant::now();
+            let table = round.score_table(&accepted);
+            if std::env::var("DBG").is_ok() {
+                eprintln!("score {:?}", t0.elapsed());
+            }
             let finding = choose(&table, &self.settings);
             match finding {
                 Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
@@ -179,7 +199,8 @@ impl<'a> Search<'a> {
             let weakest = (0..accepted.len())
                 .filter_map(|index| {
                     let bench = self.bench(self.base_with(&accepted, Some(index)), noise);
-                    let columns = self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
+                    let columns =
+                        self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
                     let gain = bench.alone().zip(bench.evidence(&columns)).and_then(|(alone, evidence)| {
                         GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0)
                     });
@@ -216,7 +237,12 @@ impl<'a> Search<'a> {
             .iter()
             .filter(|block| !block.locked)
             .map(|block| {
-                block.runs.iter().map(|run| (run.start + order).min(run.end)..run.end).filter(|r| !r.is_empty()).collect()
+                block
+                    .runs
+                    .iter()
+                    .map(|run| (run.start + order).min(run.end)..run.end)
+                    .filter(|r| !r.is_empty())
+                    .collect()
             })
             .filter(|runs: &Vec<Range<usize>>| !runs.is_empty())
             .collect();
@@ -291,10 +317,14 @@ impl<'s, 'a> Round<'s, 'a> {
         let (white, bench, variants) = weigh_all(search, base, &noise);
         let t1 = t0.elapsed();
         let alone = bench.alone();
-        if std::env::var("DBG").is_ok() { eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms);
+        }
         let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
         let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
-        if std::env::var("DBG").is_ok() { eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1);
+        }
         Self { search, noise, bench, alone, variants, null }
     }
 
@@ -336,7 +366,11 @@ impl<'s, 'a> Round<'s, 'a> {
     fn refine_leaders(&self, table: &mut [(usize, Scored)], alone: &VariantEvidence, rows: f64) {
         const REFINED_WITHIN_NATS: f64 = 15.0;
         let lead = |table: &[(usize, Scored)]| {
-            table.iter().filter(|(_, s)| matches!(s.label, Label::Named(_))).map(|(_, s)| s.score).fold(f64::NEG_INFINITY, f64::max)
+            table
+                .iter()
+                .filter(|(_, s)| matches!(s.label, Label::Named(_)))
+                .map(|(_, s)| s.score)
+                .fold(f64::NEG_INFINITY, f64::max)
         };
         let threshold = (lead(table) - REFINED_WITHIN_NATS).max(0.0);
         table.par_iter_mut().for_each(|(index, scored)| {
@@ -365,7 +399,11 @@ impl<'s, 'a> Round<'s, 'a> {
 }
 
 /// Whitens the design and weighs every variant.
-fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
+fn weigh_all(
+    search: &Search,
+    base: Vec<Vec<f64>>,
+    noise: &Noise,
+) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
     let bench = search.bench(base, noise);
     let runs = search.prepared.open_runs();
     let white: Vec<Vec<f64>> = search
@@ -405,7 +443,9 @@ fn best_two(search: &Search, bench: &Bench, variants: &[Vec<Option<VariantEviden
     gains
         .iter()
         .take(2)
-        .flat_map(|(_, group, variant)| search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec())
+        .flat_map(|(_, group, variant)| {
+            search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
+        })
         .collect()
 }
 

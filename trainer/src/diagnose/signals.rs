@@ -55,7 +55,11 @@ impl Signals {
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
         let even = EvenClock::of(recording)?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
-        let actuator = recording.actuator().or_else(|| recording.separated_friction()).and_then(|channel| even.named(&channel.name)).map(<[f64]>::to_vec);
+        let actuator = recording
+            .actuator()
+            .or_else(|| recording.separated_friction())
+            .and_then(|channel| even.named(&channel.name))
+            .map(<[f64]>::to_vec);
         let torque = match actuator {
             Some(torque) => torque,
             None => {

@@ -16,7 +16,8 @@ impl Hypothesis for DwellBreakaway {
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let mut starts = 0;
         for i in 1..state.len() {
-            starts += usize::from(state.memory.dwell[i] > 0.0 && state.memory.at_rest[i - 1] && !state.memory.at_rest[i]);
+            starts +=
+                usize::from(state.memory.dwell[i] > 0.0 && state.memory.at_rest[i - 1] && !state.memory.at_rest[i]);
         }
         if starts < 3 {
             return Vec::new();

@@ -25,12 +25,18 @@ impl Hypothesis for PositionFriction {
         let (knots, low, high) = (shape[0] as usize, shape[1], shape[2]);
         let place = |q: f64| ((q - low) / (high - low)).clamp(0.0, 1.0) * (knots - 1) as f64;
         // The first knot is left out: the sum of all is Coulomb friction, which the base has.
-        (1..knots).map(|j| state.map(|i| (1.0 - (place(state.position[i]) - j as f64).abs()).max(0.0) * state.sign[i])).collect()
+        (1..knots)
+            .map(|j| state.map(|i| (1.0 - (place(state.position[i]) - j as f64).abs()).max(0.0) * state.sign[i]))
+            .collect()
     }
 
     fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
         const SYMBOLS: [&str; 9] = ["b_1", "b_2", "b_3", "b_4", "b_5", "b_6", "b_7", "b_8", "b_9"];
-        SYMBOLS.iter().take(shape[0] as usize - 1).map(|symbol| ("position_friction_knot", *symbol, Dimension::Torque)).collect()
+        SYMBOLS
+            .iter()
+            .take(shape[0] as usize - 1)
+            .map(|symbol| ("position_friction_knot", *symbol, Dimension::Torque))
+            .collect()
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {

@@ -55,10 +55,7 @@ impl Hypothesis for PositionRipple {
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![
-            ("ripple_cosine_amplitude", "A", Dimension::Torque),
-            ("ripple_sine_amplitude", "B", Dimension::Torque),
-        ]
+        vec![("ripple_cosine_amplitude", "A", Dimension::Torque), ("ripple_sine_amplitude", "B", Dimension::Torque)]
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {

@@ -40,8 +40,7 @@ impl EvenClock {
             even.segments.push(begin..even.time.len());
         }
         for channel in recording.channels.iter().filter(|channel| channel.quantity != Some(Quantity::Time)) {
-            let values =
-                grid.segments.iter().flat_map(|segment| grid.values(segment, time, &channel.values)).collect();
+            let values = grid.segments.iter().flat_map(|segment| grid.values(segment, time, &channel.values)).collect();
             even.channels.push((channel.quantity, channel.name.clone(), values));
         }
         if let Some(trajectory) = even.named(TRAJECTORY).map(<[f64]>::to_vec) {

@@ -5,8 +5,8 @@
 
 mod bending;
 pub mod blocks;
-pub mod filter;
 mod even;
+pub mod filter;
 mod grid;
 pub mod plan;
 mod prepare;

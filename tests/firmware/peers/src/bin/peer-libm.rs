@@ -3,7 +3,7 @@
 #![no_main]
 
 use frikan_firmware_harness::{entry, serve};
-use frikan_firmware_peers::{Peer, Libm};
+use frikan_firmware_peers::{Libm, Peer};
 
 #[entry]
 fn main() -> ! {

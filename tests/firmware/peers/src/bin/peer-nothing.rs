@@ -3,7 +3,7 @@
 #![no_main]
 
 use frikan_firmware_harness::{entry, serve};
-use frikan_firmware_peers::{Peer, Nothing};
+use frikan_firmware_peers::{Nothing, Peer};
 
 #[entry]
 fn main() -> ! {
