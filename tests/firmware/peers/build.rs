@@ -5,6 +5,7 @@ use std::process::Command;
 
 fn main() {
     println!("cargo::rerun-if-changed=c/friction.c");
+    println!("cargo::rerun-if-changed=../targets");
     let mut build = cc::Build::new();
     build.file("c/friction.c").opt_level(2).warnings(true).flag("-mcpu=cortex-m4").flag("-ffunction-sections");
     build.compile("friction");
