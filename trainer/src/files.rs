@@ -18,6 +18,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
             Error::new(&codes::IS_A_DIRECTORY, "cannot write a file over a folder").in_file(path.display().to_string())
         );
     }
+    // A device or pipe (/dev/stdout, /dev/null) is written to, not replaced.
+    if path.exists() && !path.is_file() {
+        return fs::write(path, bytes).map_err(|error| Error::from_io(path, &error));
+    }
     let temporary = temporary_beside(path)?;
     let outcome = write_and_sync(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
     outcome.map_err(|error| {

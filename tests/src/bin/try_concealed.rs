@@ -1,7 +1,7 @@
 //! Scratch: try_concealed LAMBDA SEEDS EFFECT...
 use frikan_tests::concealed::*;
 use frikan_trainer::diagnose::BaseKind;
-use frikan_trainer::plant::{NoiseKind, CATALOGUE, OUTSIDE};
+use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -11,13 +11,26 @@ fn main() {
     let base = if std::env::var("SPLINE").is_ok() { BaseKind::Spline } else { BaseKind::CoulombViscous };
     let mut cases = Vec::new();
     if args[2] == "controls" {
-        for &seed in &seeds { for noise in NoiseKind::ALL { cases.push(Case { hidden: Hidden::Nothing, noise, base, seed }); } }
+        for &seed in &seeds {
+            for noise in NoiseKind::ALL {
+                cases.push(Case { hidden: Hidden::Nothing, noise, base, seed });
+            }
+        }
     } else {
         let mut names: Vec<&'static str> = Vec::new();
         for e in CATALOGUE.iter().chain(OUTSIDE.iter()) {
-            if args[2] == "all" && CATALOGUE.iter().any(|c| c.name == e.name) || args[2] == "outside" && OUTSIDE.iter().any(|c| c.name == e.name) || args[2..].iter().any(|n| n == e.name) { names.push(e.name); }
+            if args[2] == "all" && CATALOGUE.iter().any(|c| c.name == e.name)
+                || args[2] == "outside" && OUTSIDE.iter().any(|c| c.name == e.name)
+                || args[2..].iter().any(|n| n == e.name)
+            {
+                names.push(e.name);
+            }
         }
-        for &seed in &seeds { for name in &names { cases.push(Case { hidden: Hidden::Effect(name, lambda), noise: NoiseKind::Coloured, base, seed }); } }
+        for &seed in &seeds {
+            for name in &names {
+                cases.push(Case { hidden: Hidden::Effect(name, lambda), noise: NoiseKind::Coloured, base, seed });
+            }
+        }
     }
     let out: Vec<String> = cases.par_iter().map(|case| {
         let t = std::time::Instant::now();

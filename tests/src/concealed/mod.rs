@@ -48,7 +48,7 @@ pub fn signals(recording: &SimulatedRecording, joint: &plant::Joint) -> Signals 
     let owned = |name: &str| recording.column(name).map(<[f64]>::to_vec);
     let time = owned("time_s").unwrap_or_default();
     let position = owned("position_rad").unwrap_or_default();
-    let period = 1.0 / joint.drive.rate_Hz;
+    let period = 1.0 / joint.drive.rate_hz;
     let trajectory = owned("trajectory").unwrap_or_default();
     let mut segments = Vec::new();
     let mut begin = 0;
@@ -117,8 +117,14 @@ pub fn conceal(case: &Case) -> Result<(SimulatedRecording, plant::Joint, f64, f6
 }
 
 fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (f64, f64) {
-    strength(&signals(recording, joint), &recording.truth.effect_torque, &recording.truth.noise_torque, case.base, Lock::Spread)
-        .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
+    strength(
+        &signals(recording, joint),
+        &recording.truth.effect_torque,
+        &recording.truth.noise_torque,
+        case.base,
+        Lock::Spread,
+    )
+    .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
 }
 
 fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {
@@ -138,7 +144,11 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
 /// Runs a case.
 pub fn run(case: &Case) -> Result<Outcome, String> {
     let (recording, joint, lambda, effect_to_noise) = conceal(case).map_err(|e| e.to_string())?;
-    let options = Options { base: case.base, settings: Settings { seed: case.seed, ..Settings::default() }, ..Options::default() };
+    let options = Options {
+        base: case.base,
+        settings: Settings { seed: case.seed, ..Settings::default() },
+        ..Options::default()
+    };
     let diagnosis = diagnose(&signals(&recording, &joint), "N m", &options).map_err(|e| e.to_string())?;
     Ok(Outcome { case: case.clone(), lambda, effect_to_noise, diagnosis })
 }

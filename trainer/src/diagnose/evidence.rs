@@ -71,6 +71,11 @@ impl Bench {
 
     /// Evidence of the base with the given whitened columns; `None` where they depend on the base.
     pub fn evidence(&self, columns: &[Vec<f64>]) -> Option<VariantEvidence> {
+        self.weigh(columns, true)
+    }
+
+    /// As [`Self::evidence`], with the held-out folds only where asked for.
+    pub fn weigh(&self, columns: &[Vec<f64>], folds: bool) -> Option<VariantEvidence> {
         let (p, d) = (self.base.len(), columns.len());
         let blocks: Vec<(DMatrix<f64>, DVector<f64>)> = self
             .blocks
@@ -108,7 +113,7 @@ impl Bench {
         let rows = self.rows();
         let mut fold_train = Vec::with_capacity(blocks.len());
         let mut fold_likelihood = Vec::with_capacity(blocks.len());
-        for ((block_normal, block_right), sums) in blocks.iter().zip(&self.sums) {
+        for ((block_normal, block_right), sums) in blocks.iter().zip(&self.sums).filter(|_| folds) {
             let (train_normal, train_right) = (&normal - block_normal, &right - block_right);
             let solution = solve_symmetric(&train_normal, &train_right)?;
             let train = (energy - sums.target - solution.dot(&train_right)).max(f64::MIN_POSITIVE);

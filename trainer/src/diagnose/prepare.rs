@@ -52,6 +52,8 @@ const ROWS_PER_CUT_OFF: f64 = 2.5;
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
 /// Share of the residual's deviation that encoder noise may reach through the inertia.
 const ENCODER_SHARE: f64 = 0.1;
+/// Width of the smoothed sign at least, as a share of the top speed.
+const SIGN_SHARE: f64 = 0.001;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 
@@ -128,8 +130,8 @@ impl Prepared {
             rotary: signals.rotary,
             resolution: signals.position_resolution,
         };
-        state.sign_velocity = (4.0 * velocity_noise).max(0.004 * state.top_speed()).max(f64::MIN_POSITIVE);
-        state.sign = state.velocity.iter().map(|v| (v / state.sign_velocity).tanh()).collect();
+        state.sign_velocity = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed()).max(f64::MIN_POSITIVE);
+        state.sign = state.averaged_sign(&state.velocity, state.sign_velocity);
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
         let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());

@@ -51,10 +51,14 @@ pub struct Scored {
     pub shape: Shape,
     /// Score in nats.
     pub score: f64,
-    /// Family-wise probability under the null.
+    /// Family-wise probability under the null; 1 in a round in which nothing reached the least score.
     pub family_wise: f64,
     /// Evidence behind the score.
     pub evidence: GroupEvidence,
+    /// Place of the group in the design.
+    pub(crate) group: usize,
+    /// -log p of its best variant by chi-square.
+    pub(crate) surprise: f64,
 }
 
 /// An accepted finding.
@@ -106,11 +110,7 @@ impl<'a> Search<'a> {
         settings: Settings,
     ) -> Self {
         let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
-        let t0 = std::time::Instant::now();
         let design = Design::new(prepared, hypotheses, left_out);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("design {:?} columns {} rows {}", t0.elapsed(), design.columns.len(), prepared.rows.len());
-        }
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
     }
@@ -138,13 +138,16 @@ impl<'a> Search<'a> {
     /// Runs the search.
     pub fn run(&self) -> SearchOutcome {
         let mut accepted: Vec<Accepted> = Vec::new();
+        let mut null = None;
         loop {
-            let base = self.base_with(&accepted, None);
-            let round = Round::new(self, base, self.settings.seed.wrapping_add(accepted.len() as u64));
-            let t0 = std::time::Instant::now();
-            let table = round.score_table(&accepted);
-            if std::env::var("DBG").is_ok() {
-                eprintln!("score {:?}", t0.elapsed());
+            let round = Round::new(self, self.base_with(&accepted, None));
+            let mut table = round.score_table(&accepted);
+            if table.first().is_some_and(|best| best.score > self.settings.least_score) {
+                // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
+                let null = null.get_or_insert_with(|| round.draw_null());
+                table
+                    .iter_mut()
+                    .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
             }
             let finding = choose(&table, &self.settings);
             match finding {
@@ -299,33 +302,28 @@ struct Round<'s, 'a> {
     bench: Bench,
     alone: Option<VariantEvidence>,
     variants: Vec<Vec<Option<VariantEvidence>>>,
-    null: NullDraws,
+    white: Vec<Vec<f64>>,
 }
 
 impl<'s, 'a> Round<'s, 'a> {
-    fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>, seed: u64) -> Self {
+    fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
-        let t0 = std::time::Instant::now();
         let mut noise = Noise::white(search.prepared.rows.len());
         for _ in 0..2 {
-            let (_, bench, variants) = weigh_all(search, base.clone(), &noise);
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
             let mut generous = base.clone();
             generous.extend(best_two(search, &bench, &variants));
             noise = search.noise_after(&generous, Some(&noise));
         }
-        let (white, bench, variants) = weigh_all(search, base, &noise);
-        let t1 = t0.elapsed();
+        let (white, bench, variants) = weigh_all(search, base, &noise, true);
         let alone = bench.alone();
-        if std::env::var("DBG").is_ok() {
-            eprintln!("AR {:?} rms {}", noise.autoregression, noise.rms);
-        }
-        let best: Vec<Vec<f64>> = best_two(search, &bench, &variants);
-        let null = draw_null(search, &bench, &white, &variants, &search.whitened(&best, &noise), seed);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("round: weigh {t1:?} null {:?}", t0.elapsed() - t1);
-        }
-        Self { search, noise, bench, alone, variants, null }
+        Self { search, noise, bench, alone, variants, white }
+    }
+
+    fn draw_null(&self) -> NullDraws {
+        let best = best_two(self.search, &self.bench, &self.variants);
+        draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
     }
 
     fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
@@ -350,8 +348,10 @@ impl<'s, 'a> Round<'s, 'a> {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
                     score: score_of(&group.label, &evidence, grid),
-                    family_wise: self.null.family_wise(index, surprise),
+                    family_wise: 1.0,
                     evidence,
+                    group: index,
+                    surprise,
                 };
                 Some((index, scored))
             })
@@ -398,11 +398,12 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 }
 
-/// Whitens the design and weighs every variant.
+/// Whitens the design and weighs every variant, held-out folds only where asked for.
 fn weigh_all(
     search: &Search,
     base: Vec<Vec<f64>>,
     noise: &Noise,
+    folds: bool,
 ) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
     let bench = search.bench(base, noise);
     let runs = search.prepared.open_runs();
@@ -420,7 +421,7 @@ fn weigh_all(
         .design
         .groups
         .par_iter()
-        .map(|group| group.variants.iter().map(|variant| bench.evidence(&white[variant.columns.clone()])).collect())
+        .map(|group| group.variants.iter().map(|variant| bench.weigh(&white[variant.columns.clone()], folds)).collect())
         .collect();
     (white, bench, variants)
 }
@@ -455,7 +456,6 @@ fn draw_null(
     white: &[Vec<f64>],
     variants: &[Vec<Option<VariantEvidence>>],
     best: &[Vec<f64>],
-    seed: u64,
 ) -> NullDraws {
     let runs = bench.runs();
     let base_directions = orthonormal(&bench.base, &runs);
@@ -483,7 +483,7 @@ fn draw_null(
     let mut extended = base_directions.clone();
     extended.extend(best.to_vec());
     project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
-    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, seed)
+    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, search.settings.seed)
 }
 
 /// Decides a round: the best passing hypothesis with its ambiguity set, or nothing.

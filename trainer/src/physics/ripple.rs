@@ -11,7 +11,7 @@ pub(crate) const FRICTION: f64 = 1.0;
 
 /// Orders (rad of phase per unit of position) between one period a travel and what the sampling can follow.
 ///
-/// Steps are fine enough that an order between two steps keeps nine tenths of its power; whole orders where the joint
+/// Steps are fine enough that an order between two steps keeps most of its power; whole orders where the joint
 /// turns through more than one turn.
 pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
     let (low, high) = state.travel();
@@ -21,7 +21,7 @@ pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
     }
     let turn = std::f64::consts::TAU;
     let lowest = 1.5 * turn / travel;
-    let step = if state.rotary && travel > turn { 1.0 } else { 0.35 * turn / travel };
+    let step = if state.rotary && travel > turn { 1.0 } else { 0.5 * turn / travel };
     let typical_speed = super::state::quantile(state.velocity.iter().map(|v| v.abs()), 0.7).max(f64::MIN_POSITIVE);
     // Ten samples a period at a typical speed, or the encoder's own grain.
     let highest = (turn / (10.0 * state.period * typical_speed)).min(turn / (8.0 * state.resolution.max(1e-12)));

@@ -1,5 +1,4 @@
 //! A campaign: the list of trajectories that make one recording.
-#![allow(non_snake_case, reason = "keys carry their unit, spelled as in the columns of a recording")]
 
 use super::motion::Motion;
 use serde::{Deserialize, Serialize};
@@ -26,8 +25,8 @@ pub struct Trajectory {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// Amplitude of the gravity torque of this payload, N m; the joint's list in turn when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gravity_torque_Nm: Option<f64>,
+    #[serde(rename = "gravity_torque_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub gravity_torque_nm: Option<f64>,
     /// Rest before this trajectory that is not recorded but in which the joint cools, s.
     #[serde(default)]
     pub pause_before_s: f64,
@@ -35,7 +34,7 @@ pub struct Trajectory {
 
 impl From<Motion> for Trajectory {
     fn from(motion: Motion) -> Self {
-        Self { motion, duration_s: None, gravity_torque_Nm: None, pause_before_s: 0.0 }
+        Self { motion, duration_s: None, gravity_torque_nm: None, pause_before_s: 0.0 }
     }
 }
 
@@ -56,13 +55,14 @@ impl Campaign {
         self.all().map(|trajectory| trajectory.duration_s.unwrap_or(self.trajectory_s)).sum()
     }
 
-    /// The same motions stretched over another total length, s (> 0).
+    /// As many of the trajectories, in turn, as fill another total length, s (> 0): cut, repeated with fresh random
+    /// details, and stretched or shortened a little so that they fit.
     pub fn with_duration(mut self, duration_s: f64) -> Self {
-        let factor = duration_s / self.duration_s();
-        self.trajectory_s *= factor;
-        for trajectory in &mut self.trajectories {
-            trajectory.duration_s = trajectory.duration_s.map(|length| length * factor);
-        }
+        let count = (duration_s / self.trajectory_s).round().max(1.0);
+        let in_turn = self.trajectories.iter().cycle().take(count as usize);
+        self.trajectories = in_turn.map(|trajectory| Trajectory { duration_s: None, ..trajectory.clone() }).collect();
+        self.trajectory_s = duration_s / count;
+        self.sets = 1;
         self
     }
 
@@ -78,10 +78,10 @@ impl Campaign {
 
 /// Twelve motions that between them excite every effect of the catalogue.
 fn twelve() -> [Motion; 12] {
-    let multisine = |amplitude_rad, lowest_Hz, highest_Hz| Motion::Multisine {
+    let multisine = |amplitude_rad, lowest_hz, highest_hz| Motion::Multisine {
         amplitude_rad,
-        lowest_Hz,
-        highest_Hz,
+        lowest_hz,
+        highest_hz,
         speed_rad_s: 3.5,
         lines: 7,
     };
@@ -89,13 +89,13 @@ fn twelve() -> [Motion; 12] {
         multisine(1.4, 0.17, 0.9),
         Motion::StopAndGo { step_rad: 0.25, speed_rad_s: 1.1, dwells_s: vec![0.05, 0.15, 0.4, 0.9] },
         Motion::Triangles { amplitude_rad: 1.1, speed_rad_s: 2.3 },
-        Motion::SmallReversals { smallest_rad: 0.002, largest_rad: 0.08, frequency_Hz: 2.0 },
+        Motion::SmallReversals { smallest_rad: 0.002, largest_rad: 0.08, frequency_hz: 2.0 },
         multisine(0.7, 0.3, 3.2),
         Motion::Plateaus { speeds_rad_s: vec![0.06, 0.35, 1.3, 0.15, 0.7], hold_s: 0.5 },
         Motion::Trapezoids { amplitude_rad: 1.3, speed_rad_s: 2.8, dwells_s: vec![0.1, 0.3, 0.8] },
-        Motion::Sweep { amplitude_rad: 0.9, lowest_Hz: 0.3, highest_Hz: 6.0 },
+        Motion::Sweep { amplitude_rad: 0.9, lowest_hz: 0.3, highest_hz: 6.0 },
         Motion::Triangles { amplitude_rad: 0.35, speed_rad_s: 0.5 },
-        Motion::UnidirectionalSwing { speed_rad_s: 0.45, swing: 0.8, frequency_Hz: 1.7 },
+        Motion::UnidirectionalSwing { speed_rad_s: 0.45, swing: 0.8, frequency_hz: 1.7 },
         Motion::StopAndGo { step_rad: 0.12, speed_rad_s: 0.4, dwells_s: vec![0.08, 0.25, 0.7] },
         multisine(1.6, 0.14, 1.4),
     ]
@@ -109,6 +109,10 @@ mod tests {
     fn default_campaign_is_twelve_times_six_seconds() {
         assert_eq!(Campaign::default().trajectories.len(), 12);
         assert!((Campaign::default().duration_s() - 72.0).abs() < 1e-9);
-        assert!((Campaign::default().with_duration(10.0).duration_s() - 10.0).abs() < 1e-9);
+        for (duration, count) in [(2.0, 1), (10.0, 2), (600.0, 100)] {
+            let campaign = Campaign::default().with_duration(duration);
+            assert_eq!(campaign.trajectories.len(), count);
+            assert!((campaign.duration_s() - duration).abs() < 1e-9);
+        }
     }
 }

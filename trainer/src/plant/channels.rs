@@ -12,12 +12,12 @@ pub(crate) struct Housing {
 
 impl Housing {
     pub(crate) fn new(thermal: &Thermal) -> Self {
-        Self { thermal: thermal.clone(), temperature: thermal.ambient_C }
+        Self { thermal: thermal.clone(), temperature: thermal.ambient_c }
     }
 
     /// Exact step under constant dissipated `power`, W.
     pub(crate) fn advance(&mut self, power: f64, step_s: f64) {
-        let settled = self.thermal.ambient_C + self.thermal.idle_rise_K + self.thermal.rise_K_W * power;
+        let settled = self.thermal.ambient_c + self.thermal.idle_rise_k + self.thermal.rise_k_w * power;
         self.temperature += (settled - self.temperature) * -(-step_s / self.thermal.time_constant_s).exp_m1();
     }
 }
@@ -56,8 +56,8 @@ impl NeighbourMotion {
         let tones = (0..count)
             .map(|i| {
                 let frequency =
-                    config.highest_Hz * 0.1_f64.powf(1.0 - (i as f64 + draws.between(0.1, 0.9)) / count as f64);
-                let size = config.amplitude_rad * 0.1 * config.highest_Hz / frequency;
+                    config.highest_hz * 0.1_f64.powf(1.0 - (i as f64 + draws.between(0.1, 0.9)) / count as f64);
+                let size = config.amplitude_rad * 0.1 * config.highest_hz / frequency;
                 (TAU * frequency, size, draws.between(0.0, TAU))
             })
             .collect();

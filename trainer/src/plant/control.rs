@@ -33,19 +33,19 @@ const FEED_FORWARD_WIDTH_RAD_S: f64 = 0.02;
 
 impl Controller {
     pub(crate) fn new(joint: &Joint) -> Self {
-        let omega = TAU * joint.control.bandwidth_Hz;
+        let omega = TAU * joint.control.bandwidth_hz;
         Self {
             stiffness: joint.inertia_kgm2 * omega * omega,
             damping: 2.0 * joint.control.damping_ratio * omega * joint.inertia_kgm2,
-            smoothing: 1.0 - (-TAU * joint.control.velocity_corner_Hz / joint.drive.rate_Hz).exp(),
+            smoothing: 1.0 - (-TAU * joint.control.velocity_corner_hz / joint.drive.rate_hz).exp(),
             feed_forward: joint.control.feed_forward,
             inertia: joint.inertia_kgm2,
-            coulomb: joint.friction.coulomb_torque_Nm,
-            viscous: joint.friction.viscous_Nm_s_rad,
+            coulomb: joint.friction.coulomb_torque_nm,
+            viscous: joint.friction.viscous_nm_s_rad,
             gravity_phase: joint.gravity_phase_rad,
-            limit: joint.drive.torque_limit_Nm,
-            resolution: joint.drive.torque_resolution_Nm,
-            rate: joint.drive.rate_Hz,
+            limit: joint.drive.torque_limit_nm,
+            resolution: joint.drive.torque_resolution_nm,
+            rate: joint.drive.rate_hz,
             previous: None,
             velocity: 0.0,
         }

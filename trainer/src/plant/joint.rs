@@ -1,5 +1,4 @@
 //! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
-#![allow(non_snake_case, reason = "keys carry their unit, spelled as in the columns of a recording")]
 
 use super::campaign::Campaign;
 use serde::{Deserialize, Serialize};
@@ -16,7 +15,8 @@ pub struct Joint {
     /// Share of the inertia on the motor side of the gear, (0, 1); matters to compliant transmissions only.
     pub motor_inertia_share: f64,
     /// Amplitudes of the gravity torque, N m, one a payload; trajectories take them in turn unless they say otherwise.
-    pub gravity_torque_Nm: Vec<f64>,
+    #[serde(rename = "gravity_torque_Nm")]
+    pub gravity_torque_nm: Vec<f64>,
     /// Phase of the gravity torque, rad.
     pub gravity_phase_rad: f64,
     /// The velocity-only friction law.
@@ -46,11 +46,14 @@ pub struct Joint {
 #[serde(default, deny_unknown_fields)]
 pub struct Friction {
     /// Coulomb torque, N m (>= 0).
-    pub coulomb_torque_Nm: f64,
+    #[serde(rename = "coulomb_torque_Nm")]
+    pub coulomb_torque_nm: f64,
     /// Viscous coefficient, N m s/rad (>= 0).
-    pub viscous_Nm_s_rad: f64,
+    #[serde(rename = "viscous_Nm_s_rad")]
+    pub viscous_nm_s_rad: f64,
     /// Torque above Coulomb at rest, N m; 0 switches the Stribeck effect off.
-    pub stribeck_torque_Nm: f64,
+    #[serde(rename = "stribeck_torque_Nm")]
+    pub stribeck_torque_nm: f64,
     /// Stribeck velocity, rad/s (> 0).
     pub stribeck_velocity_rad_s: f64,
 }
@@ -60,11 +63,13 @@ pub struct Friction {
 #[serde(default, deny_unknown_fields)]
 pub struct Control {
     /// Closed-loop bandwidth, Hz (> 0).
-    pub bandwidth_Hz: f64,
+    #[serde(rename = "bandwidth_Hz")]
+    pub bandwidth_hz: f64,
     /// Damping ratio of the closed loop (> 0).
     pub damping_ratio: f64,
     /// Corner of the low-pass behind the differentiated encoder, Hz (> 0).
-    pub velocity_corner_Hz: f64,
+    #[serde(rename = "velocity_corner_Hz")]
+    pub velocity_corner_hz: f64,
     /// Share of the nominal rigid-body torque and friction that is fed forward, [0, 1].
     pub feed_forward: f64,
 }
@@ -74,15 +79,18 @@ pub struct Control {
 #[serde(default, deny_unknown_fields)]
 pub struct Drive {
     /// Sample rate of control and recording, Hz (> 0).
-    pub rate_Hz: f64,
+    #[serde(rename = "rate_Hz")]
+    pub rate_hz: f64,
     /// Integration steps within one sample (>= 1).
     pub steps_per_sample: usize,
     /// Encoder counts a joint turn (> 0).
     pub counts_per_turn: f64,
     /// Step of the torque signal, N m; 0 for none.
-    pub torque_resolution_Nm: f64,
+    #[serde(rename = "torque_resolution_Nm")]
+    pub torque_resolution_nm: f64,
     /// Largest torque of the drive, N m; 0 for no limit.
-    pub torque_limit_Nm: f64,
+    #[serde(rename = "torque_limit_Nm")]
+    pub torque_limit_nm: f64,
     /// Gear ratio: rotor turns a joint turn (> 0).
     pub gear_ratio: f64,
 }
@@ -116,9 +124,11 @@ pub struct Noise {
     /// Kind of noise.
     pub kind: NoiseKind,
     /// Standard deviation of the white part at the sample rate, N m.
-    pub white_torque_Nm: f64,
+    #[serde(rename = "white_torque_Nm")]
+    pub white_torque_nm: f64,
     /// Standard deviation of the coloured part, N m.
-    pub coloured_torque_Nm: f64,
+    #[serde(rename = "coloured_torque_Nm")]
+    pub coloured_torque_nm: f64,
     /// Correlation time of the coloured part, s (> 0).
     pub correlation_time_s: f64,
     /// The vibrating base of [`NoiseKind::FlexibleBase`].
@@ -130,11 +140,13 @@ pub struct Noise {
 #[serde(default, deny_unknown_fields)]
 pub struct Base {
     /// Natural frequency, Hz (> 0).
-    pub frequency_Hz: f64,
+    #[serde(rename = "frequency_Hz")]
+    pub frequency_hz: f64,
     /// Damping ratio (> 0).
     pub damping_ratio: f64,
     /// Standard deviation of the inertial torque that floor vibration causes, N m.
-    pub vibration_torque_Nm: f64,
+    #[serde(rename = "vibration_torque_Nm")]
+    pub vibration_torque_nm: f64,
     /// Inertia of the base over that of the joint; the reaction torque excites the base through it. 0: no reaction.
     pub inertia_ratio: f64,
 }
@@ -146,17 +158,22 @@ pub struct Thermal {
     /// Whether `temperature_C` is recorded.
     pub sensor: bool,
     /// Ambient and initial temperature, degC.
-    pub ambient_C: f64,
+    #[serde(rename = "ambient_C")]
+    pub ambient_c: f64,
     /// Steady rise a watt of friction and motor loss, K/W.
-    pub rise_K_W: f64,
+    #[serde(rename = "rise_K_W")]
+    pub rise_k_w: f64,
     /// Steady rise from everything else that is switched on, K.
-    pub idle_rise_K: f64,
+    #[serde(rename = "idle_rise_K")]
+    pub idle_rise_k: f64,
     /// Time constant, s (> 0).
     pub time_constant_s: f64,
     /// Standard deviation of the sensor noise, K.
-    pub sensor_noise_K: f64,
+    #[serde(rename = "sensor_noise_K")]
+    pub sensor_noise_k: f64,
     /// Step of the sensor, K; 0 for none.
-    pub sensor_resolution_K: f64,
+    #[serde(rename = "sensor_resolution_K")]
+    pub sensor_resolution_k: f64,
 }
 
 /// What the `load_torque_Nm` column carries.
@@ -179,7 +196,8 @@ pub struct OtherJoint {
     /// Amplitude of its multisine, rad.
     pub amplitude_rad: f64,
     /// Highest frequency of its multisine, Hz.
-    pub highest_Hz: f64,
+    #[serde(rename = "highest_Hz")]
+    pub highest_hz: f64,
 }
 
 /// An effect to hide in the joint.
@@ -197,7 +215,7 @@ impl Default for Joint {
         Self {
             inertia_kgm2: 0.5,
             motor_inertia_share: 0.6,
-            gravity_torque_Nm: vec![4.0, 6.0, 8.0],
+            gravity_torque_nm: vec![4.0, 6.0, 8.0],
             gravity_phase_rad: 0.0,
             friction: Friction::default(),
             control: Control::default(),
@@ -215,34 +233,34 @@ impl Default for Joint {
 
 impl Default for Friction {
     fn default() -> Self {
-        Self { coulomb_torque_Nm: 2.0, viscous_Nm_s_rad: 1.2, stribeck_torque_Nm: 0.0, stribeck_velocity_rad_s: 0.05 }
+        Self { coulomb_torque_nm: 2.0, viscous_nm_s_rad: 1.2, stribeck_torque_nm: 0.0, stribeck_velocity_rad_s: 0.05 }
     }
 }
 
 impl Friction {
     /// Dry level at a speed, N m: Coulomb plus Stribeck (Tustin 1947, exponent 1).
     pub(crate) fn dry_level(&self, speed: f64) -> f64 {
-        if self.stribeck_torque_Nm == 0.0 {
-            return self.coulomb_torque_Nm;
+        if self.stribeck_torque_nm == 0.0 {
+            return self.coulomb_torque_nm;
         }
-        self.coulomb_torque_Nm + self.stribeck_torque_Nm * (-speed / self.stribeck_velocity_rad_s).exp()
+        self.coulomb_torque_nm + self.stribeck_torque_nm * (-speed / self.stribeck_velocity_rad_s).exp()
     }
 }
 
 impl Default for Control {
     fn default() -> Self {
-        Self { bandwidth_Hz: 8.0, damping_ratio: 0.8, velocity_corner_Hz: 120.0, feed_forward: 1.0 }
+        Self { bandwidth_hz: 8.0, damping_ratio: 0.8, velocity_corner_hz: 120.0, feed_forward: 1.0 }
     }
 }
 
 impl Default for Drive {
     fn default() -> Self {
         Self {
-            rate_Hz: 1000.0,
+            rate_hz: 1000.0,
             steps_per_sample: 4,
             counts_per_turn: 2_097_152.0,
-            torque_resolution_Nm: 0.01,
-            torque_limit_Nm: 0.0,
+            torque_resolution_nm: 0.01,
+            torque_limit_nm: 0.0,
             gear_ratio: 30.0,
         }
     }
@@ -252,8 +270,8 @@ impl Default for Noise {
     fn default() -> Self {
         Self {
             kind: NoiseKind::Coloured,
-            white_torque_Nm: 0.37,
-            coloured_torque_Nm: 0.06,
+            white_torque_nm: 0.37,
+            coloured_torque_nm: 0.06,
             correlation_time_s: 0.076,
             base: Base::default(),
         }
@@ -262,7 +280,7 @@ impl Default for Noise {
 
 impl Default for Base {
     fn default() -> Self {
-        Self { frequency_Hz: 14.0, damping_ratio: 0.05, vibration_torque_Nm: 0.1, inertia_ratio: 0.0 }
+        Self { frequency_hz: 14.0, damping_ratio: 0.05, vibration_torque_nm: 0.1, inertia_ratio: 0.0 }
     }
 }
 
@@ -270,18 +288,18 @@ impl Default for Thermal {
     fn default() -> Self {
         Self {
             sensor: true,
-            ambient_C: 25.0,
-            rise_K_W: 2.5,
-            idle_rise_K: 4.0,
+            ambient_c: 25.0,
+            rise_k_w: 2.5,
+            idle_rise_k: 4.0,
             time_constant_s: 60.0,
-            sensor_noise_K: 0.05,
-            sensor_resolution_K: 0.1,
+            sensor_noise_k: 0.05,
+            sensor_resolution_k: 0.1,
         }
     }
 }
 
 impl Default for OtherJoint {
     fn default() -> Self {
-        Self { recorded: true, amplitude_rad: 0.8, highest_Hz: 1.1 }
+        Self { recorded: true, amplitude_rad: 0.8, highest_hz: 1.1 }
     }
 }

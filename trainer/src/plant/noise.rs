@@ -13,11 +13,11 @@ pub(crate) fn torque_noise(
     seed: u64,
 ) -> Vec<f64> {
     let noise = &joint.noise;
-    let step = 1.0 / joint.drive.rate_Hz;
+    let step = 1.0 / joint.drive.rate_hz;
     let mut draws = Draws::new(seed, Purpose::Noise, 0);
     let (white, coloured) = match noise.kind {
-        NoiseKind::White => (noise.white_torque_Nm.hypot(noise.coloured_torque_Nm), 0.0),
-        _ => (noise.white_torque_Nm, noise.coloured_torque_Nm),
+        NoiseKind::White => (noise.white_torque_nm.hypot(noise.coloured_torque_nm), 0.0),
+        _ => (noise.white_torque_nm, noise.coloured_torque_nm),
     };
     let memory = (-step / noise.correlation_time_s).exp();
     let refresh = coloured * (1.0 - memory * memory).sqrt();
@@ -46,12 +46,12 @@ pub(crate) fn torque_noise(
 /// `inertia_ratio`, by the reaction to the joint's own torque.
 fn base_vibration(joint: &Joint, torque: &[f64], draws: &mut Draws) -> Vec<f64> {
     let base = &joint.noise.base;
-    let omega = TAU * base.frequency_Hz;
-    let step = 1.0 / joint.drive.rate_Hz;
+    let omega = TAU * base.frequency_hz;
+    let step = 1.0 / joint.drive.rate_hz;
     let drag = 2.0 * base.damping_ratio * omega;
     // Under white acceleration of density S the oscillator's own part of its acceleration has the
     // variance omega^4 x^2 with x^2 = S / (4 zeta omega^3).
-    let floor = base.vibration_torque_Nm / joint.inertia_kgm2 * (4.0 * base.damping_ratio / (omega * step)).sqrt();
+    let floor = base.vibration_torque_nm / joint.inertia_kgm2 * (4.0 * base.damping_ratio / (omega * step)).sqrt();
     let reaction = if base.inertia_ratio > 0.0 { 1.0 / (base.inertia_ratio * joint.inertia_kgm2) } else { 0.0 };
     let (mut position, mut velocity) = (0.0, 0.0);
     torque

@@ -1,9 +1,5 @@
 //! What a simulated drive hands over, and the truth behind it.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::Path;
-
 /// A simulated recording: columns as a drive would log them, and the truth that only a simulator knows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRecording {
@@ -39,6 +35,21 @@ pub struct Truth {
     pub acceleration: Vec<f64>,
     /// Name of every drawn parameter (`effect.parameter_unit`) and its value, before the amplitude multiplies.
     pub parameters: Vec<(String, f64)>,
+}
+
+impl Truth {
+    /// Root mean square of `effect_torque`, N m.
+    pub fn effect_rms(&self) -> f64 {
+        root_mean_square(&self.effect_torque)
+    }
+
+    /// Root mean square of the moving average of `effect_torque` over `samples` (>= 1), N m: the part a filter of that
+    /// length leaves. A compliant gear rings after every reversal far above the band in which it can be recognised.
+    pub fn effect_rms_over(&self, samples: usize) -> f64 {
+        let averages: Vec<f64> =
+            self.effect_torque.windows(samples.max(1)).map(|w| w.iter().sum::<f64>() / w.len() as f64).collect();
+        root_mean_square(&averages)
+    }
 }
 
 impl SimulatedRecording {
@@ -92,46 +103,40 @@ impl SimulatedRecording {
         Self { columns, truth }
     }
 
-    /// Writes the columns as CSV; numbers are the shortest that read back exactly.
-    ///
-    /// # Errors
-    /// Whatever the writer reports.
-    pub fn write_csv(&self, mut writer: impl Write) -> io::Result<()> {
-        let names: Vec<&str> = self.columns.iter().map(|column| column.name).collect();
-        writeln!(writer, "{}", names.join(","))?;
-        for row in 0..self.len() {
-            for (i, column) in self.columns.iter().enumerate() {
-                let separator = if i == 0 { "" } else { "," };
-                write!(writer, "{separator}{}", column.values[row])?;
-            }
-            writeln!(writer)?;
-        }
-        writer.flush()
+    /// The columns as CSV text; numbers are the shortest that read back exactly.
+    pub fn to_csv(&self) -> String {
+        csv(&self.columns)
     }
 
-    /// Writes the CSV whole or not at all: into a new file beside it that is renamed at the end.
-    ///
-    /// # Errors
-    /// What the file system reports; then nothing is left behind.
-    pub fn save_csv(&self, path: &Path) -> io::Result<()> {
-        let name = path.file_name().ok_or_else(|| io::Error::other("not a file name"))?;
-        let mut temporary_name = std::ffi::OsString::from(".");
-        temporary_name.push(name);
-        temporary_name.push(format!(".{}.partial", std::process::id()));
-        let temporary = path.with_file_name(temporary_name);
-        let written = File::create(&temporary)
-            .and_then(|file| {
-                let mut writer = BufWriter::new(file);
-                self.write_csv(&mut writer)?;
-                writer.into_inner()?.sync_all()
-            })
-            .and_then(|()| std::fs::rename(&temporary, path));
-        if written.is_err() {
-            // Nothing more can be done about a file that cannot be removed either.
-            let _ = std::fs::remove_file(&temporary);
-        }
-        written
+    /// The truth as CSV text, row by row beside [`to_csv`](Self::to_csv).
+    pub fn truth_to_csv(&self) -> String {
+        let truth = &self.truth;
+        let column = |name, values: &[f64]| Column { name, values: values.to_vec() };
+        csv(&[
+            column("time_s", self.column("time_s").unwrap_or_default()),
+            column("true_position_rad", &truth.position),
+            column("true_velocity_rad_s", &truth.velocity),
+            column("true_acceleration_rad_s2", &truth.acceleration),
+            column("effect_torque_Nm", &truth.effect_torque),
+            column("noise_torque_Nm", &truth.noise_torque),
+        ])
     }
+}
+
+fn csv(columns: &[Column]) -> String {
+    use std::fmt::Write;
+    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let mut text = names.join(",") + "\n";
+    let rows = columns.first().map_or(0, |column| column.values.len());
+    for row in 0..rows {
+        for (i, column) in columns.iter().enumerate() {
+            let separator = if i == 0 { "" } else { "," };
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{separator}{}", column.values[row]);
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// Root mean square; 0 for no values.

@@ -64,7 +64,7 @@ pub(crate) fn record(
 ) -> SimulatedRecording {
     let mut torque = history.torque.clone();
     for fault in faults {
-        distort_torque(&mut torque, fault, joint.drive.rate_Hz);
+        distort_torque(&mut torque, fault, joint.drive.rate_hz);
     }
     let mut effect = history.effect_torque;
     for (effect, (recorded, true_torque)) in effect.iter_mut().zip(torque.iter().zip(&history.torque)) {
@@ -72,7 +72,7 @@ pub(crate) fn record(
     }
     let noise = torque_noise(joint, &history.velocity, &history.acceleration, &history.torque, seed);
     let mut recorded: Vec<f64> =
-        torque.iter().zip(&noise).map(|(t, n)| round_to(t + n, joint.drive.torque_resolution_Nm)).collect();
+        torque.iter().zip(&noise).map(|(t, n)| round_to(t + n, joint.drive.torque_resolution_nm)).collect();
     let mut position = history.encoder.clone();
     for fault in faults {
         match fault {
@@ -119,7 +119,7 @@ pub(crate) fn record(
     };
     for fault in faults {
         if let SensorFault::LostSamples(gaps) = fault {
-            lose_samples(&mut columns, &mut truth, gaps, joint.drive.rate_Hz);
+            lose_samples(&mut columns, &mut truth, gaps, joint.drive.rate_hz);
         }
     }
     truth.noise_rms = root_mean_square(&truth.noise_torque);
@@ -149,7 +149,7 @@ fn thermometer(joint: &Joint, temperature: &[f64], seed: u64) -> Vec<f64> {
     let thermal = &joint.thermal;
     temperature
         .iter()
-        .map(|t| round_to(t + thermal.sensor_noise_K * draws.normal(), thermal.sensor_resolution_K))
+        .map(|t| round_to(t + thermal.sensor_noise_k * draws.normal(), thermal.sensor_resolution_k))
         .collect()
 }
 

@@ -5,10 +5,10 @@ use crate::plant::random::Draws;
 
 /// Friction over housing temperature: dry part linear, viscous part exponential (Bittencourt & Gunnarsson 2012).
 pub(super) fn temperature(draws: &mut Draws, setting: &Setting) -> Mechanism {
-    let dry = setting.joint.friction.coulomb_torque_Nm * draws.uniform("coulomb_change_1_K", -0.02, 0.005);
-    let viscous = setting.joint.friction.viscous_Nm_s_rad;
+    let dry = setting.joint.friction.coulomb_torque_nm * draws.uniform("coulomb_change_1_K", -0.02, 0.005);
+    let viscous = setting.joint.friction.viscous_nm_s_rad;
     let decay = draws.uniform("viscous_decay_1_K", 0.02, 0.05);
-    let reference = setting.joint.thermal.ambient_C;
+    let reference = setting.joint.thermal.ambient_c;
     Mechanism::torque(move |m: &Moment, _| {
         let rise = m.temperature - reference;
         Resistance::dry(dry * rise).with_smooth(viscous * (-decay * rise).exp_m1() * m.velocity)
@@ -18,8 +18,8 @@ pub(super) fn temperature(draws: &mut Draws, setting: &Setting) -> Mechanism {
 /// Heat of the contact itself, fed by dissipated power, unseen by any sensor (Simoni et al. 2015).
 pub(super) fn warm_up(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let time_constant = draws.log_uniform("time_constant_s", 12.0, 90.0);
-    let dry = -setting.joint.friction.coulomb_torque_Nm * draws.uniform("coulomb_fall_1_W", 0.03, 0.08);
-    let viscous = -setting.joint.friction.viscous_Nm_s_rad * draws.uniform("viscous_fall_1_W", 0.08, 0.15);
+    let dry = -setting.joint.friction.coulomb_torque_nm * draws.uniform("coulomb_fall_1_W", 0.03, 0.08);
+    let viscous = -setting.joint.friction.viscous_nm_s_rad * draws.uniform("viscous_fall_1_W", 0.08, 0.15);
     let mut heat = 0.0;
     Mechanism::torque(move |m: &Moment, step_s: f64| {
         heat += (m.power - heat) * -(-step_s / time_constant).exp_m1();

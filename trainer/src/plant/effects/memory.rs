@@ -58,7 +58,7 @@ fn maxwell_slip(draws: &mut Draws, level: f64) -> Mechanism {
 pub(super) fn frictional_lag(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let lag = draws.log_uniform("lag_s", 0.01, 0.06);
     let width = draws.uniform("sign_width_rad_s", 0.03, 0.08);
-    let (coulomb, viscous) = (setting.joint.friction.coulomb_torque_Nm, setting.joint.friction.viscous_Nm_s_rad);
+    let (coulomb, viscous) = (setting.joint.friction.coulomb_torque_nm, setting.joint.friction.viscous_nm_s_rad);
     let mut lagged = 0.0;
     Mechanism::torque(move |m: &Moment, step_s: f64| {
         lagged += (m.velocity - lagged) * -(-step_s / lag).exp_m1();

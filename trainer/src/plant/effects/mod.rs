@@ -156,3 +156,6 @@ pub const CATALOGUE: &[Entry] = &[
 pub fn find(name: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().chain(OUTSIDE).find(|entry| entry.name == name)
 }
+
+#[cfg(test)]
+mod tests;

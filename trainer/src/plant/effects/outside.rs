@@ -59,7 +59,7 @@ fn acceleration_sign(draws: &mut Draws, _: &Setting) -> Mechanism {
 /// Load-dependent friction that only a warm gear has.
 fn load_temperature(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let share = draws.uniform("coefficient_1_K", 0.008, 0.02);
-    let reference = setting.joint.thermal.ambient_C + draws.uniform("reference_K", 2.0, 5.0);
+    let reference = setting.joint.thermal.ambient_c + draws.uniform("reference_K", 2.0, 5.0);
     Mechanism::torque(move |m: &Moment, _| {
         let warm = m.temperature - reference;
         Resistance::dry(share * m.load.abs() * warm)
@@ -83,7 +83,7 @@ fn load_squared_viscous(draws: &mut Draws, _: &Setting) -> Mechanism {
 /// Friction that peaks at one temperature (a grease in transition).
 fn temperature_bump(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let thermal = &setting.joint.thermal;
-    let peak = thermal.ambient_C + draws.uniform("peak_above_ambient_K", 3.0, 6.0);
+    let peak = thermal.ambient_c + draws.uniform("peak_above_ambient_K", 3.0, 6.0);
     let width = draws.uniform("width_K", 0.8, 1.8);
     let level = draws.uniform("level_Nm", 0.5, 1.0);
     Mechanism::torque(move |m: &Moment, _| Resistance::dry(level * (-((m.temperature - peak) / width).powi(2)).exp()))

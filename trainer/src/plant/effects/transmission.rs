@@ -16,25 +16,26 @@ pub(super) fn kinematic_error(draws: &mut Draws, setting: &Setting) -> Mechanism
     Mechanism::Transmission(Transmission::Kinematic(KinematicError { waves }))
 }
 
-fn compliant(stiffness: f64, setting: &Setting) -> Compliant {
-    // A twentieth of critical damping of the two masses against each other.
+/// A gear of this stiffness, damped at a ratio of the two masses swinging against each other.
+fn compliant(stiffness: f64, damping_ratio: f64, setting: &Setting) -> Compliant {
     let (motor, link) = (setting.joint.motor_inertia_share, 1.0 - setting.joint.motor_inertia_share);
     let reduced = setting.joint.inertia_kgm2 * motor * link;
-    let damping = 0.1 * (stiffness * reduced).sqrt();
+    let damping = 2.0 * damping_ratio * (stiffness * reduced).sqrt();
     Compliant { stiffness, damping, half_gap: 0.0, hysteresis: (0.0, 1.0), link: None, hysteresis_state: 0.0 }
 }
 
 /// A spring between motor and link (Spong 1987); the amplitude multiplies its compliance.
 pub(super) fn elasticity(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let stiffness = draws.log_uniform("stiffness_Nm_rad", 1500.0, 4000.0) / setting.amplitude.max(1e-3);
-    Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, setting)))
+    Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, 0.1, setting)))
 }
 
-/// A gap between motor and link; the amplitude multiplies its width.
+/// A gap between motor and link; the amplitude multiplies its width. The flanks are stiff, so that what is left of a
+/// narrow gap is next to nothing.
 pub(super) fn backlash(draws: &mut Draws, setting: &Setting) -> Mechanism {
-    let stiffness = draws.log_uniform("stiffness_Nm_rad", 8_000.0, 20_000.0);
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 20_000.0, 50_000.0);
     let half_gap = setting.amplitude * draws.log_uniform("half_gap_rad", 5e-4, 2e-3);
-    let gear = Compliant { half_gap, ..compliant(stiffness, setting) };
+    let gear = Compliant { half_gap, ..compliant(stiffness, 0.3, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))
 }
 
@@ -43,6 +44,6 @@ pub(super) fn windup_hysteresis(draws: &mut Draws, setting: &Setting) -> Mechani
     let stiffness = draws.log_uniform("stiffness_Nm_rad", 2_000.0, 6_000.0) / setting.amplitude.max(1e-3);
     let level = draws.uniform("loop_torque_Nm", 0.8, 2.0);
     let twist = setting.amplitude.max(1e-3) * draws.log_uniform("loop_twist_rad", 5e-4, 2e-3);
-    let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, setting) };
+    let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, 0.1, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))
 }
