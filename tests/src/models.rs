@@ -99,21 +99,21 @@ fn model(reaches: &[f32], law: Law, cells: &[Cell]) -> TestModel {
 #[must_use]
 pub fn symmetric_table() -> TestModel {
     let (table, cells) = geometric_table(stribeck_friction, Symmetry::Odd, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// Asymmetric friction in a geometric table.
 #[must_use]
 pub fn sided_table() -> TestModel {
     let (table, cells) = geometric_table(asymmetric_friction, Symmetry::Sided, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// A smooth law in a uniform table.
 #[must_use]
 pub fn uniform() -> TestModel {
     let (table, cells) = uniform_table(|velocity| 20.0 * (2.0 * velocity).tanh(), 64, -2.0, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// The formula of [`stribeck_friction`].

@@ -26,10 +26,23 @@ const F32_ROUNDOFF: f64 = 1.0 / 16_777_216.0;
 /// certificate speaks of these and not of what they were rounded from.
 pub type Cubic = [f64; 4];
 
-/// The coefficients rounded to `f32`; what is too small to matter is zero, so that no coefficient is subnormal.
+/// The coefficients of the drive's coordinate `t = 1 + x`, rounded to `f32`.
+///
+/// What is too small to matter is zero, so that no coefficient is subnormal. The constant is chosen last, against the rounded others, so
+/// that the near end keeps its value: exactly where that is 0.
 #[must_use]
-pub fn to_f32(cubic: Cubic) -> [f32; 4] {
-    cubic.map(|c| if c.abs() < 1.0e-30 { 0.0 } else { c as f32 })
+pub fn to_drive(cubic: Cubic) -> [f32; 4] {
+    let [near, c1, c2, c3] = cubic;
+    let round = |c: f64| if c.abs() < 1.0e-30 { 0.0 } else { c as f32 };
+    let (d1, d2, d3) = (round(c1 - 2.0 * c2 + 3.0 * c3), round(c2 - 3.0 * c3), round(c3));
+    let others = (d3 + d2) + d1;
+    [round(near - f64::from(others)), d1, d2, d3]
+}
+
+/// The cubic in `x` of the drive's coefficients.
+fn from_drive(cell: &[f32; 4]) -> Cubic {
+    let [c0, c1, c2, c3] = cell.map(f64::from);
+    [c0 + c1 + c2 + c3, c1 + 2.0 * c2 + 3.0 * c3, c2 + 3.0 * c3, c3]
 }
 
 /// The cubic, not yet rounded, through the function at the stretched Chebyshev points of `[low, high]`, where `high` may lie below `low`: the local
@@ -139,9 +152,15 @@ pub fn bound_cell(curve: &dyn Curve, low: f64, high: f64, cubic: &Cubic, coordin
 /// Certifies a cell of `f32` coefficients, whose local coordinate the drive computes to within `coordinate_error`.
 #[must_use]
 pub fn certify(curve: &dyn Curve, low: f64, high: f64, cell: &[f32; 4], coordinate_error: f64) -> Certificate {
-    let cubic = cell.map(f64::from);
-    let (approximation, moved) = bound_cell(curve, low, high, &cubic, coordinate_error);
-    let [a0, a1, a2, a3] = cubic.map(f64::abs);
-    let horner = F32_ROUNDOFF * 1.001 * (2.0 * a3 + 2.0 * (a2 + a3) + 2.0 * (a1 + a2 + a3) + (a0 + a1 + a2 + a3));
-    Certificate { approximation, rounding: horner + moved }
+    let (approximation, moved) = bound_cell(curve, low, high, &from_drive(cell), coordinate_error);
+    // Horner at t <= 2: every product and every sum adds a roundoff of its own magnitude, and the products double what was there.
+    let [a0, a1, a2, a3] = cell.map(|c| f64::from(c.abs()));
+    let (mut sum, mut error) = (a3, 0.0);
+    for coefficient in [a2, a1, a0] {
+        sum *= 2.0;
+        error = 2.0 * error + sum;
+        sum += coefficient;
+        error += sum;
+    }
+    Certificate { approximation, rounding: 1.001 * F32_ROUNDOFF * error + moved }
 }

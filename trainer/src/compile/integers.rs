@@ -140,6 +140,7 @@ mod tests {
     use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
     use crate::compile::reference::integer_value;
     use frikan_runtime::integer_table::{evaluate_integer, evaluate_steps};
+    use frikan_shared::pool::Pool;
 
     #[test]
     fn the_law_of_the_paper_fits_a_thousandth_of_its_range_in_integers() {
@@ -153,9 +154,10 @@ mod tests {
                 compiled.cells.len(),
                 100.0 * compiled.certificate.total() / range
             );
+            let pool = Pool::<128>::from_slice(&compiled.cells).unwrap();
             for i in -300_000..=300_000 {
                 let v = i as f32 / 100_000.0;
-                let value = f64::from(evaluate_steps(&compiled.table, &compiled.cells, v));
+                let value = f64::from(evaluate_steps(&compiled.table, &pool, v));
                 let want = law.value(f64::from(v.clamp(-2.0, 2.0)));
                 assert!((value - want).abs() <= compiled.certificate.total(), "{v}: {value} {want}");
             }
@@ -168,10 +170,11 @@ mod tests {
         for law in [stribeck_law(), sided] {
             let compiled = compile_integer_table(&law, -2.0, 2.0, 5.0e-2, 0).unwrap();
             let shape = compiled.table.shape();
+            let pool = Pool::<128>::from_slice(&compiled.cells).unwrap();
             let around_the_ends = [i32::MIN, i32::MIN + 1, i32::MAX, -1, 0, 1];
             for steps in (-300_000..300_000).chain((i32::MIN..i32::MAX).step_by(40_009)).chain(around_the_ends) {
                 assert_eq!(
-                    evaluate_integer(&compiled.table, &compiled.cells, steps),
+                    evaluate_integer(&compiled.table, &pool, steps),
                     integer_value(&shape, &compiled.cells, steps),
                     "{steps}"
                 );

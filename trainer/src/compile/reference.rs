@@ -25,7 +25,8 @@ pub fn evaluate_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX
         return 0.0;
     }
     let value = match &model.law {
-        Law::Table(table) => single_table(table, &model.cells, inputs[0]),
+        Law::Geometric(layout) => single_table(&Table::Geometric(*layout), &model.cells, inputs[0]),
+        Law::Uniform(layout) => single_table(&Table::Uniform(*layout), &model.cells, inputs[0]),
         Law::Network(network) => network_value(network, &model.cells, &inputs[..count]),
         Law::Expression(program) => {
             let held: Vec<f32> =
@@ -77,8 +78,8 @@ fn find_geometric(layout: &Geometric, input: f32) -> Found {
     if negative && shape.symmetry == Symmetry::Sided {
         row += (steps(shape.reach).max(1) - 1) / steps_per_cell + 1;
     }
-    let x = ((position % steps_per_cell) as f64 / steps_per_cell as f64) as f32;
-    (row as usize, x, negative && shape.symmetry == Symmetry::Odd)
+    let t = (1.0 + (position % steps_per_cell) as f64 / steps_per_cell as f64) as f32;
+    (row as usize, t, negative && shape.symmetry == Symmetry::Odd)
 }
 
 fn find_uniform(layout: &Uniform, input: f32) -> Found {
@@ -88,15 +89,15 @@ fn find_uniform(layout: &Uniform, input: f32) -> Found {
     let fraction = f64::from(scaled).clamp(0.0, f64::from(u32::MAX)).floor() as u128;
     let product = fraction * u128::from(shape.cells);
     let cell = product / 2u128.pow(32);
-    let x = ((product % 2u128.pow(32)) / 256) as f32 / 2.0f32.powi(24);
-    (usize::from(shape.first_cell) + cell as usize, x, false)
+    let t = 1.0 + ((product % 2u128.pow(32)) / 512) as f32 / 2.0f32.powi(23);
+    (usize::from(shape.first_cell) + cell as usize, t, false)
 }
 
-fn cubic(cell: Cell, (_, x, turned): Found) -> f32 {
+fn cubic(cell: Cell, (_, t, turned): Found) -> f32 {
     let [c0, c1, c2, c3] = cell.floats();
     let mut value = c3;
     for coefficient in [c2, c1, c0] {
-        value = value * x + coefficient;
+        value = value * t + coefficient;
     }
     if turned { -value } else { value }
 }
