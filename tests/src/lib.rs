@@ -2,5 +2,6 @@
 
 pub mod concealed;
 pub mod fixtures;
+pub mod cost;
 pub mod models;
 pub mod vectors;

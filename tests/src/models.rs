@@ -2,6 +2,7 @@
 
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::image::{Image, encode};
+use frikan_runtime::shared::integer_table::{IntegerShape, IntegerTable};
 use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_runtime::shared::network::{Layer, Network, Outer, Source};
 use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
@@ -136,6 +137,30 @@ pub fn stribeck_expression() -> TestModel {
         Add,
     ];
     model(&[2.0], Law::Expression(Program { operations: operations.into_iter().collect() }), &[])
+}
+
+/// Symmetric friction in an integer table: 2^-16 rad/s a step in, 1/1000 N m a step out.
+#[must_use]
+pub fn integer_table() -> TestModel {
+    let shape = IntegerShape {
+        first_cell: 0,
+        inner_shift: 9,
+        outer_shift: 13,
+        split_shift: 13,
+        symmetry: Symmetry::Odd,
+        reach: 1 << 17,
+        input_step: 1.0 / 65_536.0,
+        output_step: 1e-3,
+    };
+    let steps = |step: f64| stribeck_friction(step / 65_536.0) / 1e-3;
+    let narrow = (0..16).map(|index| (f64::from(index) * 512.0, 512.0));
+    let wide = (1..16).map(|index| (f64::from(index) * 8192.0, 8192.0));
+    let cells = narrow.chain(wide).map(|(start, width)| {
+        let [c0, c1, c2, c3] = hermite(steps, start, start + width).floats();
+        Cell::from_integers([c0, c1, c2, c3].map(|coefficient| coefficient.round() as i32))
+    });
+    let cells: Vec<_> = cells.collect();
+    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &cells)
 }
 
 /// A network [1,5,1] whose inner edges are shifted sigmoids.
