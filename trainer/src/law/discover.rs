@@ -268,8 +268,9 @@ fn allow_for_viscous(
     uncertainty: &mut Uncertainty,
     remarks: &mut Vec<String>,
 ) {
-    let sees_speed =
-        |t: &Term| matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::SignPower);
+    let sees_speed = |t: &Term| {
+        matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::OddRoot | Shape::SignPower)
+    };
     let exact = uncertainty.noise <= EXACT * (problem.total() / problem.rows() as f64).sqrt();
     if exact || fit.structure.terms().is_empty() || fit.structure.terms().iter().any(sees_speed) {
         return;

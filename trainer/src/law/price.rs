@@ -25,7 +25,7 @@ fn of_term(term: Term) -> f64 {
         Shape::Sign | Shape::Viscous | Shape::StribeckExponential => 0.0,
         Shape::Offset | Shape::AbsViscous => 0.5,
         Shape::StribeckGaussian | Shape::Quadratic => 1.0,
-        Shape::AbsSign | Shape::OddPower => 1.5,
+        Shape::AbsSign | Shape::OddPower | Shape::OddRoot => 1.5,
         Shape::SignPower | Shape::StribeckPower | Shape::Breakaway => 2.0,
     };
     let modulation = match term.modulation {

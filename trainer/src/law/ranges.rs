@@ -107,7 +107,7 @@ impl Extents {
             Nonlinear::StribeckVelocity => Range::logarithmic((2.0 * slow).min(0.02 * fast), 1.5 * fast, 7),
             Nonlinear::BreakawayVelocity => Range::logarithmic(slow, 0.5 * fast, 7),
             Nonlinear::StribeckExponent => Range::listed(0.3, 4.0, &[0.5, 1.0, 2.0]),
-            Nonlinear::Exponent => Range::listed(0.15, 4.0, &[0.4, 0.7, 1.5, 2.5]),
+            Nonlinear::Exponent => Range::listed(0.1, 4.0, &[0.2, 0.4, 0.7, 1.5, 2.5]),
             Nonlinear::Rate(i) => {
                 let span = self.spans[i];
                 let starts = [-2.0, -0.5, 0.3, 1.0, 3.0].map(|x| x / span);

@@ -57,14 +57,21 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
             .par_iter()
             .flat_map_iter(|parent| promising(problem, parent, &library, beam.refits, evidence))
             .collect();
-        children.retain(|c| !explored.contains_key(&c.structure));
+        // A structure known from a worse start is worth another fit.
+        children.retain(|c| explored.get(&c.structure).is_none_or(|known| c.rss < 0.999 * known.rss));
         children.sort_by(|a, b| a.structure.cmp(&b.structure).then(a.rss.total_cmp(&b.rss)));
         children.dedup_by(|a, b| a.structure == b.structure);
         let fits: Vec<Fit> = children
             .par_iter()
             .map(|c| problem.fit_grid(&c.structure, &c.start, Held::default(), 1, Effort::SEARCH))
             .collect();
-        explored.extend(fits.into_iter().map(|f| (f.structure.clone(), f)));
+        for fit in fits {
+            let better = explored.get(&fit.structure).is_none_or(|known| fit.rss < known.rss);
+            if better {
+                expanded.retain(|s| *s != fit.structure);
+                explored.insert(fit.structure.clone(), fit);
+            }
+        }
     }
     explored
 }
@@ -103,7 +110,13 @@ fn promising(
         let structure = change.apply(&parent.structure);
         let mut start = change.carry_over(parent);
         if change.added.is_empty() {
-            sure.push(Child { structure, start, rss: f64::INFINITY });
+            let psi: Vec<f64> = structure
+                .nonlinear()
+                .iter()
+                .filter_map(|n| start.iter().find(|(k, _)| k == n).map(|(_, x)| *x))
+                .collect();
+            let rss = problem.rss_at(&structure, &psi);
+            sure.push(Child { structure, start, rss });
             continue;
         }
         let base = reduced(parent, &change);

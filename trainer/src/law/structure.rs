@@ -5,6 +5,9 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::expression::{Expr, Unary};
 
+/// Keeps a power of the speed with a negative exponent finite at rest, velocity unit.
+const OFF_ZERO: f64 = 1e-9;
+
 /// How the sign of the velocity is smoothed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SignForm {
@@ -39,8 +42,10 @@ pub enum Shape {
     Viscous,
     /// `v |v|`: churning, windage.
     Quadratic,
-    /// `v |v|^n`.
+    /// `v |v|^n`, faster than linear.
     OddPower,
+    /// `v / |v|^m`, slower than linear; a nano-unit keeps the divisor off zero.
+    OddRoot,
     /// `|S|`: difference of the Coulomb torque between the directions.
     AbsSign,
     /// `|v|`: difference of the viscous friction between the directions.
@@ -88,7 +93,7 @@ pub enum Nonlinear {
     StribeckExponent,
     /// Breakaway velocity `v_b`.
     BreakawayVelocity,
-    /// Exponent `p` of `S |v|^p`, or `n` of `v |v|^n`.
+    /// Exponent `p` of `S |v|^p`, `n` of `v |v|^n` or `m` of `v / |v|^m`.
     Exponent,
     /// Rate `κ` of a decay with a channel.
     Rate(usize),
@@ -116,7 +121,7 @@ impl Shape {
 
     /// Whether it has a free exponent over the speed.
     pub fn is_power(self) -> bool {
-        matches!(self, Self::SignPower | Self::OddPower)
+        matches!(self, Self::SignPower | Self::OddPower | Self::OddRoot)
     }
 
     fn nonlinear(self) -> &'static [Nonlinear] {
@@ -126,7 +131,7 @@ impl Shape {
             Self::StribeckPower => &[Nonlinear::Smoothing, Nonlinear::StribeckVelocity, Nonlinear::StribeckExponent],
             Self::Breakaway => &[Nonlinear::Smoothing, Nonlinear::BreakawayVelocity],
             Self::SignPower => &[Nonlinear::Smoothing, Nonlinear::Exponent],
-            Self::OddPower => &[Nonlinear::Exponent],
+            Self::OddPower | Self::OddRoot => &[Nonlinear::Exponent],
             Self::Viscous | Self::Quadratic | Self::AbsViscous | Self::Offset => &[],
         }
     }
@@ -319,6 +324,10 @@ impl Builder<'_> {
             Shape::Viscous => Some(self.v()),
             Shape::Quadratic => Some(self.v() * self.v().abs()),
             Shape::OddPower => Some(self.v() * self.v().pow(self.param(Nonlinear::Exponent))),
+            Shape::OddRoot => {
+                let speed = self.v().abs() + Expr::Const(OFF_ZERO);
+                Some(self.v() / speed.pow(self.param(Nonlinear::Exponent)))
+            }
             Shape::AbsSign => Some(self.sign().abs()),
             Shape::AbsViscous => Some(self.v().abs()),
         }

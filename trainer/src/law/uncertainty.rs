@@ -157,7 +157,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             &fit.structure,
             &psi,
             Held { nonlinear: &kept, coefficient },
-            Effort { iterations: 30, tolerance: 1e-7 },
+            Effort { iterations: 12, tolerance: 1e-4 },
         )
     };
     let end = |direction: f64| -> f64 {
@@ -166,7 +166,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
         let mut inside = 0.0;
         let mut outside = f64::INFINITY;
         let mut psi = fit.params[..names.len()].to_vec();
-        for _ in 0..14 {
+        for _ in 0..10 {
             let mut value = best + direction * distance;
             if let Some((lower, upper)) = limits {
                 // Half-way in the ratio to a bound that the linearised step would pass.
@@ -189,7 +189,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             } else {
                 outside = distance;
             }
-            if (rise - 1.0).abs() < 0.01 {
+            if (rise - 1.0).abs() < 0.02 {
                 return best + direction * distance;
             }
             let guess = distance / rise.max(1e-3);
