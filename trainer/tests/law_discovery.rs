@@ -168,6 +168,7 @@ fn known_form_is_recovered_to_rounding_from_any_share_of_the_data() {
 #[test]
 fn under_heavy_noise_constants_of_the_known_form_stay_within_two_standard_errors() {
     let seeds = if exhaustive() { 200 } else { 20 };
+    let mut enough = true;
     let names = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient"];
     for (j, k) in JOINTS.into_iter().enumerate() {
         let mut inside = [0; 4];
@@ -184,8 +185,9 @@ fn under_heavy_noise_constants_of_the_known_form_stay_within_two_standard_errors
         }
         println!("{:.3} s a fit", start.elapsed().as_secs_f64() / seeds as f64);
         println!("joint {}: within two standard errors {inside:?}, inside ci95 {profiled:?} of {seeds}", j + 1);
-        assert!(inside.iter().all(|n| n * 100 >= seeds as usize * if exhaustive() { 93 } else { 80 }));
+        enough &= inside.iter().all(|n| n * 100 >= seeds as usize * if exhaustive() { 93 } else { 80 });
     }
+    assert!(enough);
 }
 
 /// A generated law, its channels and the structures that are right answers.

@@ -381,6 +381,17 @@ impl<'a> Problem<'a> {
         self.nuisance.coefficients(&products)
     }
 
+    /// Standard errors of the coefficients for unit noise, the non-linear constants being given.
+    pub fn coefficient_errors(&self, fit: &Fit) -> Vec<f64> {
+        let tape = self.tape(&fit.structure);
+        let mut basis = Basis::default();
+        for mut column in tape.run(&self.channels, self.rows(), &fit.params, false).values {
+            self.nuisance.remove_from(&mut column);
+            basis.push(&column);
+        }
+        basis.errors()
+    }
+
     /// The law at every sample, without the nuisance columns.
     pub fn law_values(&self, fit: &Fit) -> Vec<f64> {
         let template = fit.structure.template(self.extents.layout());
