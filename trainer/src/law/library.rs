@@ -4,6 +4,9 @@ use super::data::{ChannelRole, LawData};
 use super::fit::{Fit, Problem};
 use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
+/// Most terms of a law.
+const MOST_TERMS: usize = 6;
+
 /// A change of a fitted structure: terms taken out, terms put in, the sign form afterwards.
 #[derive(Clone, Debug)]
 pub struct Move {
@@ -107,7 +110,10 @@ pub fn moves(structure: &Structure, library: &[Vec<Term>]) -> Vec<Move> {
             sign: f,
         }));
     }
-    all.retain(|m| admissible(&m.apply(structure)));
+    all.retain(|m| {
+        let after = m.apply(structure);
+        after.terms().len() <= MOST_TERMS && admissible(&after)
+    });
     all
 }
 
@@ -119,8 +125,9 @@ fn related(a: Term, b: Term) -> bool {
         Shape::AbsSign | Shape::AbsViscous | Shape::Offset => 2,
         Shape::Sign => 3,
     };
+    let ripple = |t: Term| matches!(t.modulation, Modulation::Sine(_) | Modulation::Cosine(_));
     (a.modulation == b.modulation && family(a.shape) == family(b.shape))
-        || (a.shape == b.shape && a.modulation != b.modulation)
+        || (a.shape == b.shape && a.modulation != b.modulation && !ripple(b))
 }
 
 impl Move {

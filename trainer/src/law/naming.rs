@@ -26,7 +26,10 @@ pub fn name_all(structure: &Structure, data: &LawData, layout: &Layout, values: 
         structure,
         data,
         layout,
-        exponent: names.iter().position(|n| *n == Nonlinear::Exponent).map(|k| values[k]),
+        exponent: names
+            .iter()
+            .position(|n| matches!(n, Nonlinear::Exponent | Nonlinear::RootExponent))
+            .map(|k| values[k]),
     };
     names.iter().map(|n| context.nonlinear(*n)).chain(structure.terms().iter().map(|t| context.term(*t))).collect()
 }
@@ -63,17 +66,8 @@ impl Context<'_> {
             Nonlinear::StribeckVelocity => naming("stribeck_velocity", "v_s", self.speed()),
             Nonlinear::StribeckExponent => naming("stribeck_exponent", "α", "1"),
             Nonlinear::BreakawayVelocity => naming("breakaway_velocity", "v_b", self.speed()),
-            Nonlinear::Exponent => {
-                let has = |shape| self.structure.terms().iter().any(|t| t.shape == shape);
-                let symbol = if has(Shape::OddPower) {
-                    "n"
-                } else if has(Shape::OddRoot) {
-                    "m"
-                } else {
-                    "p"
-                };
-                naming("velocity_exponent", symbol, "1")
-            }
+            Nonlinear::Exponent => naming("velocity_exponent", "p", "1"),
+            Nonlinear::RootExponent => naming("velocity_exponent", "m", "1"),
             Nonlinear::Rate(i) => naming(format!("{}_rate", channel(i).name), "κ", divided("", &channel(i).unit, 1.0)),
             Nonlinear::Order(i) => {
                 naming(format!("{}_ripple_order", channel(i).name), "n", divided("", &channel(i).unit, 1.0))

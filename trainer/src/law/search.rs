@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::fit::{Effort, Fit, Held, Problem};
 use super::library::{self, Move};
 use super::price::Evidence;
-use super::structure::{Shape, SignForm, Structure, Term};
+use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// How far the search goes.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +47,10 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
     let mut explored: Explored = fits.into_iter().map(|f| (f.structure.clone(), f)).collect();
     let mut expanded: Vec<Structure> = Vec::new();
     for _ in 0..beam.rounds {
-        let parents: Vec<&Fit> =
-            best(&explored, evidence, beam.width).into_iter().filter(|f| !expanded.contains(&f.structure)).collect();
+        let parents: Vec<&Fit> = best(problem, &explored, evidence, beam.width)
+            .into_iter()
+            .filter(|f| !expanded.contains(&f.structure))
+            .collect();
         if parents.is_empty() {
             break;
         }
@@ -77,21 +79,24 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
 }
 
 /// The structures of best score, best first.
-pub fn best(explored: &Explored, evidence: Evidence, count: usize) -> Vec<&Fit> {
+pub fn best<'a>(problem: &Problem<'_>, explored: &'a Explored, evidence: Evidence, count: usize) -> Vec<&'a Fit> {
     let mut ranked: Vec<(f64, &Fit)> =
-        explored.values().filter(|f| usable(f)).map(|f| (evidence.score(f), f)).collect();
+        explored.values().filter(|f| usable(problem, f)).map(|f| (evidence.score(f), f)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.structure.cmp(&b.1.structure)));
     ranked.into_iter().take(count).map(|(_, f)| f).collect()
 }
 
-/// Whether every term adds something and every number is finite.
-fn usable(fit: &Fit) -> bool {
-    fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
+/// Whether every term adds something, every number is finite and no constant has run to the end of its range (the
+/// smoothing of the sign may: then it is a step).
+fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
+    let ranges = problem.ranges(&fit.structure);
+    let inside = fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x));
+    inside && fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
 }
 
 struct Child {
     structure: Structure,
-    start: Vec<(super::structure::Nonlinear, f64)>,
+    start: Vec<(Nonlinear, f64)>,
     rss: f64,
 }
 

@@ -93,8 +93,10 @@ pub enum Nonlinear {
     StribeckExponent,
     /// Breakaway velocity `v_b`.
     BreakawayVelocity,
-    /// Exponent `p` of `S |v|^p`, `n` of `v |v|^n` or `m` of `v / |v|^m`.
+    /// Exponent `p` of `S |v|^p`, or `n` of `v |v|^n`.
     Exponent,
+    /// Exponent `m` of `v / |v|^m`, below 1.
+    RootExponent,
     /// Rate `κ` of a decay with a channel.
     Rate(usize),
     /// Order `n` of a ripple over a channel.
@@ -131,7 +133,8 @@ impl Shape {
             Self::StribeckPower => &[Nonlinear::Smoothing, Nonlinear::StribeckVelocity, Nonlinear::StribeckExponent],
             Self::Breakaway => &[Nonlinear::Smoothing, Nonlinear::BreakawayVelocity],
             Self::SignPower => &[Nonlinear::Smoothing, Nonlinear::Exponent],
-            Self::OddPower | Self::OddRoot => &[Nonlinear::Exponent],
+            Self::OddPower => &[Nonlinear::Exponent],
+            Self::OddRoot => &[Nonlinear::RootExponent],
             Self::Viscous | Self::Quadratic | Self::AbsViscous | Self::Offset => &[],
         }
     }
@@ -326,7 +329,7 @@ impl Builder<'_> {
             Shape::OddPower => Some(self.v() * self.v().pow(self.param(Nonlinear::Exponent))),
             Shape::OddRoot => {
                 let speed = self.v().abs() + Expr::Const(OFF_ZERO);
-                Some(self.v() / speed.pow(self.param(Nonlinear::Exponent)))
+                Some(self.v() / speed.pow(self.param(Nonlinear::RootExponent)))
             }
             Shape::AbsSign => Some(self.sign().abs()),
             Shape::AbsViscous => Some(self.v().abs()),

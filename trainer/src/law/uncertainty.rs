@@ -7,7 +7,7 @@ use super::structure::Nonlinear;
 use super::tape::Tape;
 
 /// Two-sided 95 % point of the normal distribution.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
+pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// A non-linear constant whose standard error exceeds this share of it may have other optima that are nearly as good.
 const VAGUE: f64 = 0.15;
@@ -53,7 +53,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let free: Vec<usize> = (0..count).filter(|&k| names.get(k).is_none_or(|n| !held.contains(n))).collect();
     let rows = problem.rows();
     let template = fit.structure.template(problem.extents().layout());
-    let mut columns = Tape::new(&[template], count).run(problem.channels(), rows, &fit.params, true);
+    let mut columns = Tape::new(&[template], count, problem.channels(), rows).run(&fit.params, true);
     let slopes = columns.slopes.swap_remove(0);
     let nuisance = &problem.data().nuisance;
     let jacobian: Vec<&[f64]> = nuisance
