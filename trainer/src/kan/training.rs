@@ -121,7 +121,7 @@ impl<'a> Watch<'a> {
             step.validation_loss = Some(model.physical_loss(model.residual_sum(dataset, &self.validation), rows));
         }
         self.history.push(step);
-        if step.step % self.stride == 0 {
+        if step.step.is_multiple_of(self.stride) {
             self.snapshots.push((step.step, model.network.clone()));
             if self.snapshots.len() > SNAPSHOTS {
                 self.stride *= 2;
