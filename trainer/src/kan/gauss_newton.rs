@@ -38,7 +38,7 @@ pub(super) fn minimise(
     let start = match settings.smoothing {
         Smoothing::None => 0.0,
         Smoothing::Fixed(strength) => strength * samples as f64,
-        Smoothing::Estimated => 1e-4 * samples as f64,
+        Smoothing::Estimated => std::env::var("C").map_or(10.0,|v| v.parse().unwrap()) * settings.noise_variance,
     };
     let mut penalties = Penalty::smoothness(model, &unknowns, start);
     let mut values = unknowns.read(model);

@@ -62,6 +62,8 @@ const MINIMUM_CELL: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub(super) struct Pilot {
     pub(super) placements: Vec<Placement>,
+    /// Residual variance beside the main effects, by generalised cross-validation, normalised target.
+    pub(super) noise_variance: f64,
     model: Model,
 }
 
@@ -96,6 +98,7 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
         optimiser: Optimiser::GaussNewton,
         steps: 12,
         smoothing: Smoothing::Estimated,
+        noise_variance: 1e-2,
         tolerance: 1e-3,
         with_base: false,
     };
@@ -106,7 +109,7 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
         model.network.set_bases(bases.iter().cloned());
         let (_, score) =
             minimise(&mut model, dataset, rows, &settings, &mut Watch::new(&|_| {}, 0, &[], settings.steps));
-        let found = Pilot { placements: placements.clone(), model: model.clone() };
+        let found = Pilot { placements: placements.clone(), noise_variance: score, model: model.clone() };
         let moved: Vec<Placement> = (0..inputs).map(|i| equidistributed(&found, i, &bases[i], &samples[i])).collect();
         if best.as_ref().is_none_or(|(least, _)| score < *least) {
             // The knots for the network come from the best curve, not from those that it was fitted with.
@@ -114,7 +117,7 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
         }
         placements = moved;
     }
-    Ok(best.map_or_else(|| Pilot { placements, model }, |(_, pilot)| pilot))
+    Ok(best.map_or_else(|| Pilot { placements, noise_variance: 1.0, model }, |(_, pilot)| pilot))
 }
 
 /// Cells of the pilot per input.

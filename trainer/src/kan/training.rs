@@ -44,6 +44,8 @@ pub(super) struct Settings {
     pub(super) optimiser: Optimiser,
     pub(super) steps: usize,
     pub(super) smoothing: Smoothing,
+    /// First guess of the residual variance, normalised target; where estimated smoothing starts from.
+    pub(super) noise_variance: f64,
     /// Relative fall of the penalised loss below which a step counts as no progress.
     pub(super) tolerance: f64,
     pub(super) with_base: bool,
