@@ -18,6 +18,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
             Error::new(&codes::IS_A_DIRECTORY, "cannot write a file over a folder").in_file(path.display().to_string())
         );
     }
+    // A device or pipe (/dev/stdout, /dev/null) is written to, not replaced.
+    if path.exists() && !path.is_file() {
+        return fs::write(path, bytes).map_err(|error| Error::from_io(path, &error));
+    }
     let temporary = temporary_beside(path)?;
     let outcome = write_and_sync(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
     outcome.map_err(|error| {
@@ -25,6 +29,42 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&temporary);
         Error::from_io(path, &error)
     })
+}
+
+/// Writes several files, all or none: each is written beside its place first, then all are renamed. Files that were
+/// there before are kept when a rename fails on the way only as far as they had not been replaced yet.
+///
+/// # Errors
+/// As [`write_whole`], for the first file that fails; nothing that this call created is left then.
+pub fn write_together(files: &[(&Path, &[u8])]) -> Result<()> {
+    if let [(path, bytes)] = files {
+        return write_whole(path, bytes);
+    }
+    let mut staged: Vec<(PathBuf, &Path)> = Vec::new();
+    let outcome = files.iter().try_for_each(|(path, bytes)| {
+        if path.is_dir() {
+            return write_whole(path, bytes);
+        }
+        let temporary = temporary_beside(path)?;
+        staged.push((temporary.clone(), path));
+        write_and_sync(&temporary, bytes).map_err(|error| Error::from_io(path, &error))
+    });
+    let outcome = outcome.and_then(|()| {
+        let mut created: Vec<&Path> = Vec::new();
+        for (temporary, path) in &staged {
+            let is_new = !path.exists();
+            if let Err(error) = fs::rename(temporary, path) {
+                created.iter().for_each(|path| drop(fs::remove_file(path)));
+                return Err(Error::from_io(path, &error));
+            }
+            created.extend(is_new.then_some(*path));
+        }
+        Ok(())
+    });
+    if outcome.is_err() {
+        staged.iter().for_each(|(temporary, _)| drop(fs::remove_file(temporary)));
+    }
+    outcome
 }
 
 /// Reads a whole file that is known to be small, such as `joint.toml` or a model image.

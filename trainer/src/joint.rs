@@ -1,5 +1,7 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
+mod urdf;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -10,6 +12,9 @@ use crate::files;
 
 /// Largest `joint.toml` that is read, in bytes.
 const SIZE_LIMIT_BYTES: u64 = 1 << 20;
+
+/// Largest URDF file that is read, in bytes.
+const URDF_LIMIT_BYTES: u64 = 64 << 20;
 
 /// What is known of a joint before a recording is read.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -68,9 +73,9 @@ pub struct RigidBody {
     pub gravity_torque_nm: Option<f64>,
     /// Phase of the gravity torque, rad; zero when absent.
     pub gravity_phase_rad: Option<f64>,
-    /// URDF file with the rigid body, relative to `joint.toml`.
+    /// URDF file with the rigid body, relative to `joint.toml`; all other joints are taken to stand at zero.
     pub urdf: Option<String>,
-    /// Name of this joint in the URDF file.
+    /// Name of this joint in the URDF file; may be absent where the file has a single moving joint.
     pub joint: Option<String>,
 }
 
@@ -102,7 +107,7 @@ impl Drive {
 }
 
 impl Joint {
-    /// Reads `joint.toml`.
+    /// Reads `joint.toml` and the URDF file that it names.
     ///
     /// # Errors
     /// `FRK-I...` when it cannot be read, `FRK-D015` with its row when a key or value is not understood.
@@ -111,7 +116,27 @@ impl Joint {
         let bytes = files::read_whole(path, SIZE_LIMIT_BYTES)?;
         let text = String::from_utf8(bytes)
             .map_err(|_| Error::new(&codes::NOT_UTF8, "joint.toml has to be UTF-8 text").in_file(&label))?;
-        Self::parse(&text).map_err(|error| error.in_file(label))
+        let mut joint = Self::parse(&text).map_err(|error| error.in_file(label))?;
+        if let Some(urdf) = joint.rigid_body.urdf.clone() {
+            joint.take_from_urdf(&path.with_file_name(urdf))?;
+        }
+        Ok(joint)
+    }
+
+    /// Fills in what `joint.toml` leaves open from the body that moves with the joint in a URDF file.
+    fn take_from_urdf(&mut self, path: &Path) -> Result<()> {
+        let label = path.display().to_string();
+        let bytes = files::read_whole(path, URDF_LIMIT_BYTES)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Error::new(&codes::NOT_UTF8, "a URDF file has to be UTF-8 text").in_file(&label))?;
+        let body = &mut self.rigid_body;
+        let moved = urdf::moved_body(&text, body.joint.as_deref()).map_err(|error| error.in_file(label))?;
+        body.inertia_kgm2.get_or_insert(moved.inertia);
+        if let (Some((torque, phase)), None) = (moved.gravity, body.gravity_torque_nm) {
+            body.gravity_torque_nm = Some(torque);
+            body.gravity_phase_rad = Some(phase);
+        }
+        Ok(())
     }
 
     /// Parses the text of a `joint.toml`.
@@ -224,5 +249,22 @@ mod tests {
             assert_eq!(error.code(), &codes::BAD_JOINT_FILE);
             assert!(error.column().is_some() && error.value().is_some());
         }
+    }
+
+    #[test]
+    fn a_urdf_beside_joint_toml_fills_in_what_is_left_open() {
+        let folder = tempfile::tempdir().unwrap();
+        let urdf = r#"<robot name="r"><link name="a"/><link name="b"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+            </inertial></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/></joint>
+            </robot>"#;
+        std::fs::write(folder.path().join("arm.urdf"), urdf).unwrap();
+        let path = folder.path().join("joint.toml");
+        std::fs::write(&path, "[rigid_body]\nurdf = \"arm.urdf\"\njoint = \"j\"").unwrap();
+        let body = Joint::load(&path).unwrap().rigid_body;
+        assert!((body.inertia_kgm2.unwrap() - 0.5).abs() < 1e-12);
+        assert!((body.gravity_torque_nm.unwrap() - 9.806_65).abs() < 1e-9);
+        assert!(body.gravity_phase_rad.unwrap().abs() < 1e-9);
+        std::fs::write(&path, "[rigid_body]\nurdf = \"absent.urdf\"").unwrap();
+        assert_eq!(Joint::load(&path).unwrap_err().code(), &codes::FILE_NOT_FOUND);
     }
 }

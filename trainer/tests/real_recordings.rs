@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use frikan_trainer::joint::Joint;
 use frikan_trainer::recording::{self, Recording};
 use frikan_trainer::samples::regression::least_squares;
+use frikan_trainer::samples::relevance::relevance;
 use frikan_trainer::samples::rigid_body::{TermKind, separate};
 use frikan_trainer::samples::{Preparation, Request, Samples, prepare, prepare_every_row};
 
@@ -119,9 +120,41 @@ fn every_recording_loads() {
             if is_recording {
                 let recording = load(&path, &joint);
                 assert!(recording.len() > 1000 && recording.content_hash != 0);
+                look(&recording, &joint);
                 loaded += 1;
             }
         }
     }
     assert!(loaded > 40, "{loaded}");
+}
+
+/// Walks a recording as far as its columns allow, and says what comes out.
+fn look(recording: &Recording, joint: &Joint) {
+    let label = &recording.label;
+    let preparation = match Preparation::plan(&[recording], joint, &Request::default()) {
+        Ok(preparation) => preparation,
+        Err(error) => {
+            assert_eq!(error.exit_status(), 3);
+            return println!("{error}");
+        }
+    };
+    let samples = prepare(recording, &preparation).unwrap();
+    assert_eq!(samples.segments.last().unwrap().end, samples.len());
+    println!("{label}: {preparation}; {} samples at {:?} Hz", samples.len(), samples.rate_hz);
+    let friction = match (&samples.friction, separate(&samples, joint)) {
+        (Some(friction), _) => friction.clone(),
+        (None, Ok(separation)) => {
+            for p in &separation.parameters {
+                print!(" {} {:.4} +- {:.4};", p.kind.name(), p.value, p.standard_error);
+            }
+            println!(" rmse {:.4} lost rank {}", separation.rmse, separation.rank_deficiency);
+            separation.friction
+        }
+        (None, Err(error)) => return println!(" {error}"),
+    };
+    for row in relevance(&samples, &friction).unwrap() {
+        let mark = if row.picked { '*' } else { ' ' };
+        println!("  {mark} {:<22} {:>8.4} {:>8.4} {:>8.4}", row.input, row.correlation, row.explained, row.added);
+        assert!(row.correlation.abs() <= 1.0 + 1e-9 && row.explained <= 1.0 && row.added <= 1.0);
+    }
 }

@@ -2,6 +2,8 @@
 //!
 //! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
 
+pub mod summary;
+
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
@@ -48,7 +50,7 @@ pub fn signals(recording: &SimulatedRecording, joint: &plant::Joint) -> Signals 
     let owned = |name: &str| recording.column(name).map(<[f64]>::to_vec);
     let time = owned("time_s").unwrap_or_default();
     let position = owned("position_rad").unwrap_or_default();
-    let period = 1.0 / joint.drive.rate_Hz;
+    let period = 1.0 / joint.drive.rate_hz;
     let trajectory = owned("trajectory").unwrap_or_default();
     let mut segments = Vec::new();
     let mut begin = 0;
@@ -127,7 +129,13 @@ fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (
     .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
 }
 
+/// Faults of the measurement that have no torque of their own: their amplitude is taken as it is.
+const WITHOUT_TORQUE: [&str; 3] = ["quantisation", "unit_or_sign", "clock_gaps"];
+
 fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {
+    if WITHOUT_TORQUE.contains(&name) {
+        return Ok(1.0);
+    }
     let mut amplitude = 0.3;
     for _ in 0..PASSES {
         let recording = plant::conceal(joint, name, amplitude, case.seed)?;
@@ -157,6 +165,19 @@ impl Outcome {
     /// Names of the findings in the order in which they were accepted.
     pub fn named(&self) -> Vec<EffectId> {
         self.diagnosis.findings.iter().map(|finding| finding.effect).collect()
+    }
+
+    /// Channels of the first unnamed finding.
+    pub fn unknown_channels(&self) -> Vec<String> {
+        use frikan_trainer::diagnose::Label;
+        self.diagnosis
+            .findings
+            .iter()
+            .find_map(|finding| match finding.fitted.label {
+                Label::Generic(rival) => Some(vec![rival.factor.text().to_string(), rival.channel.name().to_string()]),
+                Label::Named(_) => None,
+            })
+            .unwrap_or_default()
     }
 
     /// The first finding with its ambiguity set.

@@ -3,7 +3,9 @@
 use crate::diagnose::sentence::{Story, Units, tell};
 use crate::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose};
 use crate::error::{Error, Result, codes};
-use crate::files::write_whole;
+use crate::commands::output::Outputs;
+use crate::diagnose::{Reference, model, simulation};
+use crate::fit;
 use crate::joint::Joint;
 use crate::recording::{self, Axis, Recording};
 use clap::{Args, ValueEnum};
@@ -67,7 +69,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let begin = Instant::now();
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let real = recording::load(&arguments.recording, &joint)?;
-    let signals = Signals::of(&real, &joint)?;
+    let signals = compared_signals(arguments, &real, &joint)?;
     let units = units(&real);
     let options = Options {
         base: base_kind(arguments),
@@ -78,20 +80,69 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let story = tell(&diagnosis, units);
     let seconds = begin.elapsed().as_secs_f64();
     let summary = arguments.json.as_ref().map(|_| summary(&diagnosis, &story, seconds, arguments.seed).to_string());
-    if let (Some(path), Some(text)) = (&arguments.json, &summary)
-        && path != Path::new("-")
-    {
-        write_whole(path, text.as_bytes())?;
+    let mut outputs = Outputs::default();
+    if let (Some(path), Some(text)) = (&arguments.json, summary) {
+        outputs.add(path, text + "\n");
     }
-    match &summary {
-        Some(text) if arguments.json.as_deref() == Some(Path::new("-")) => println!("{text}"),
-        _ => print_story(&story),
+    if arguments.json.as_deref() != Some(Path::new("-")) {
+        outputs.add(Path::new("-"), text_of(&story));
     }
+    let inputs = [Some(&arguments.recording), arguments.simulation.as_ref(), arguments.model.as_ref()];
+    outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.write()?;
     if !arguments.quiet {
         let rows = diagnosis.rows;
         eprintln!("{}: {rows} rows behind {:.0} Hz in {seconds:.1} s", real.label, diagnosis.cut_off_hz);
     }
     Ok(exit_status(diagnosis.verdict))
+}
+
+/// Signals of the real recording beside what they are compared with.
+fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Result<Signals> {
+    let in_real = |error: Error| error.in_file(real.file());
+    if let Some(path) = &arguments.simulation {
+        let simulated = recording::load(path, joint)?;
+        same_units(real, &simulated)?;
+        let mut signals = Signals::of(real, joint)?;
+        let simulation = Signals::of(&simulated, joint)?;
+        let law = simulation::learn(&simulation, signals.rigid_body.is_some())
+            .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
+        let reference = law.at(&states(&signals, real)?);
+        signals.compare_with(reference);
+        Ok(signals)
+    } else if let Some(path) = &arguments.model {
+        let (_, image) = fit::model::load(path)?;
+        // The image carries the rigid body of the joint file already; what is recorded is handed to it.
+        let bare = Joint { rigid_body: Default::default(), ..joint.clone() };
+        let mut signals = Signals::of(real, &bare)?;
+        let state = states(&signals, real)?;
+        let reference: Reference = model::at(&image.model, &state, state.rigid_body.as_deref()).map_err(in_real)?;
+        signals.compare_with(reference);
+        Ok(signals)
+    } else {
+        Signals::of(real, joint)
+    }
+}
+
+/// The states of the recording, which need a segment longer than its filter.
+fn states(signals: &Signals, real: &Recording) -> Result<crate::physics::JointState> {
+    let moving = signals.position.iter().any(|q| *q != signals.position[0]);
+    if moving {
+        return Ok(signals.states());
+    }
+    Err(Error::new(&codes::NO_MOTION, "the joint does not move in this recording").in_file(real.file()))
+}
+
+fn same_units(real: &Recording, simulated: &Recording) -> Result<()> {
+    if units(real) == units(simulated) {
+        return Ok(());
+    }
+    let message = format!(
+        "the simulation gives {}, the real recording {}; both have to be of one axis and one actuator quantity",
+        units(simulated).actuator,
+        units(real).actuator
+    );
+    Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(simulated.file()))
 }
 
 fn base_kind(arguments: &Diagnose) -> BaseKind {
@@ -129,14 +180,10 @@ fn exit_status(verdict: Verdict) -> u8 {
     }
 }
 
-fn print_story(story: &Story) {
-    println!("{}", story.headline);
-    for sentence in story.health.iter().chain(&story.findings) {
-        println!("  * {sentence}");
-    }
-    for sentence in [&story.proof, &story.withdrawn, &story.limits].into_iter().flatten() {
-        println!("{sentence}");
-    }
+fn text_of(story: &Story) -> String {
+    let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
+    let rest = [&story.proof, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
+    std::iter::once(format!("{}\n", story.headline)).chain(bullets).chain(rest).collect()
 }
 
 fn summary(diagnosis: &Diagnosis, story: &Story, seconds: f64, seed: u64) -> Value {

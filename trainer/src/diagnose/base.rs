@@ -37,8 +37,8 @@ pub struct Base {
 const SPLINE_KNOTS: usize = 9;
 
 /// The friction columns of a base kind at one velocity.
-pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign_velocity: f64, top_speed: f64) -> Vec<f64> {
-    let sign = (velocity / sign_velocity).tanh();
+/// `sign` is the smoothed sign at that velocity.
+pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed: f64) -> Vec<f64> {
     match kind {
         BaseKind::CoulombViscous => vec![sign, velocity],
         BaseKind::Spline => {
@@ -88,13 +88,13 @@ impl Base {
 fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'static str, Vec<f64>)> {
     let top_speed = state.top_speed();
     let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
-    let count = friction_basis(kind, 1.0, state.sign_velocity, top_speed).len();
+    let count = friction_basis(kind, 1.0, 1.0, top_speed).len();
     let names = match kind {
         BaseKind::CoulombViscous => &["coulomb_torque", "viscous_coefficient"][..],
         _ => &["friction_knot"; SPLINE_KNOTS][..],
     };
     for (j, name) in names.iter().enumerate().take(count) {
-        columns.push((name, state.map(|i| friction_basis(kind, state.velocity[i], state.sign_velocity, top_speed)[j])));
+        columns.push((name, state.map(|i| friction_basis(kind, state.velocity[i], state.sign[i], top_speed)[j])));
     }
     if kind == BaseKind::Reference {
         columns.extend(signals.reference_jacobian.iter().map(|column| ("model_parameter", column.clone())));
@@ -108,10 +108,12 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
 fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
-    let sign = state.map(|i| (prepared.narrow_velocity[i] / state.sign_velocity).tanh() - state.sign[i]);
+    let narrow_sign = state.averaged_sign(&prepared.narrow_velocity, state.sign_velocity);
+    let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
     let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
     // The smoothed sign stands for a jump: its width is a nuisance too.
-    let width = state.map(|i| (state.velocity[i] / (3.0 * state.sign_velocity)).tanh() - state.sign[i]);
+    let wide_sign = state.averaged_sign(&state.velocity, 3.0 * state.sign_velocity);
+    let width = state.map(|i| wide_sign[i] - state.sign[i]);
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }
 
@@ -137,7 +139,7 @@ fn predict(
                 // Finer steps towards zero, where the sign turns.
                 let x = f64::from(k) / 120.0;
                 let velocity = reach * x * x.abs() * x.abs();
-                let basis = friction_basis(kind, velocity, state.sign_velocity, top_speed);
+                let basis = friction_basis(kind, velocity, (velocity / state.sign_velocity).tanh(), top_speed);
                 (velocity, basis.iter().zip(coefficients).map(|(b, c)| b * c).sum())
             })
             .collect()

@@ -32,6 +32,22 @@ pub struct Generic {
     pub channel: Channel,
 }
 
+impl Generic {
+    /// Orders of its cosine series.
+    fn orders(self) -> [usize; 2] {
+        match (self.factor, self.channel) {
+            (Factor::Sign, Channel::Position) => [GENERIC_ORDERS[0], NARROW_ORDER],
+            _ => GENERIC_ORDERS,
+        }
+    }
+
+    /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
+    /// position-dependent friction.
+    fn has_a_name(self, order: usize) -> bool {
+        self.factor == Factor::Sign && self.channel == Channel::Position && order == GENERIC_ORDERS[0]
+    }
+}
+
 /// Factor of velocity in a generic rival.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
@@ -41,6 +57,8 @@ pub enum Factor {
     Velocity,
     /// One: a torque that does not turn with the direction.
     One,
+    /// The square of velocity: a centrifugal torque.
+    VelocitySquared,
 }
 
 impl Factor {
@@ -50,6 +68,7 @@ impl Factor {
             Factor::Sign => "tanh(v/v_eps)",
             Factor::Velocity => "v",
             Factor::One => "1",
+            Factor::VelocitySquared => "v^2",
         }
     }
 }
@@ -77,6 +96,8 @@ pub enum Channel {
     Dwell,
     /// Velocity of another joint.
     OtherJoint(usize),
+    /// Position of another joint.
+    OtherPosition(usize),
 }
 
 impl Channel {
@@ -92,7 +113,8 @@ impl Channel {
             Channel::DistanceSinceReversal => "distance_since_reversal",
             Channel::TimeSinceReversal => "time_since_reversal",
             Channel::Dwell => "dwell",
-            Channel::OtherJoint(_) => "other_joint",
+            Channel::OtherJoint(_) => "other_velocity",
+            Channel::OtherPosition(_) => "other_position",
         }
     }
 
@@ -125,12 +147,15 @@ impl Channel {
             Channel::TimeSinceReversal => Some(state.memory.elapsed.clone()),
             Channel::Dwell => Some(state.memory.dwell.clone()),
             Channel::OtherJoint(joint) => state.other_joints.get(joint).map(|other| other.velocity.clone()),
+            Channel::OtherPosition(joint) => state.other_joints.get(joint).map(|other| other.position.clone()),
         }
     }
 }
 
 /// Orders of the cosine series of a generic rival.
-pub(crate) const GENERIC_ORDERS: [usize; 2] = [3, 12];
+const GENERIC_ORDERS: [usize; 2] = [3, 12];
+/// Order for position, where a narrow place matters.
+const NARROW_ORDER: usize = 20;
 
 /// One shape of a group and the columns that it occupies.
 #[derive(Clone, Debug)]
@@ -208,15 +233,19 @@ impl Design {
         let built: Vec<Vec<Vec<f64>>> = rivals
             .par_iter()
             .map(|rival| {
-                let longest = GENERIC_ORDERS[GENERIC_ORDERS.len() - 1];
-                generic_columns(&prepared.state, *rival, longest).iter().map(|raw| prepared.filtered(raw)).collect()
+                generic_columns(&prepared.state, *rival, rival.orders()[1])
+                    .iter()
+                    .map(|raw| prepared.filtered(raw))
+                    .collect()
             })
             .collect();
         for (rival, columns) in rivals.into_iter().zip(built) {
             let begin = self.columns.len();
             self.columns.extend(columns);
-            let variants = GENERIC_ORDERS
+            let variants = rival
+                .orders()
                 .into_iter()
+                .filter(|order| !rival.has_a_name(*order))
                 .map(|order| Variant { shape: vec![order as f64], columns: begin..begin + order })
                 .collect();
             self.groups.push(Group { label: Label::Generic(rival), variants });
@@ -238,11 +267,13 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
     for channel in [Channel::Position, Channel::Load, Channel::Temperature, Channel::Time, Channel::Acceleration] {
         add(&all, channel);
     }
+    add(&[Factor::VelocitySquared], Channel::Position);
     add(&[Factor::Sign, Factor::One], Channel::Speed);
     add(&[Factor::Sign], Channel::DistanceSinceReversal);
     add(&[Factor::Sign], Channel::TimeSinceReversal);
     for joint in 0..state.other_joints.len() {
         add(&all, Channel::OtherJoint(joint));
+        add(&all, Channel::OtherPosition(joint));
     }
     rivals
 }
@@ -255,6 +286,7 @@ pub(crate) fn generic_columns(state: &JointState, rival: Generic, order: usize) 
         Factor::Sign => state.sign.clone(),
         Factor::Velocity => state.velocity.clone(),
         Factor::One => vec![1.0; state.len()],
+        Factor::VelocitySquared => state.velocity.iter().map(|v| v * v).collect(),
     };
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();

@@ -137,7 +137,7 @@ impl Search<'_> {
         effect: &Fitted,
     ) -> Vec<(usize, Vec<f64>)> {
         (0..effect.shape.len())
-            .filter(|&slot| hypothesis.bounds(state, slot).is_some())
+            .filter(|&slot| hypothesis.bounds(state, slot, &effect.shape).is_some())
             .map(|slot| {
                 let step = 0.05 * hypothesis.step(state, slot, &effect.shape);
                 let torque = |by: f64| {
@@ -177,6 +177,7 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
             _ => format!("{actuator} s2/{position}"),
         },
         Dimension::TorquePerSecond => format!("{actuator}/s"),
+        Dimension::TorquePerSecondSquared => format!("{actuator}/s2"),
         Dimension::TorquePerWatt => format!("{actuator}/W"),
         Dimension::TorquePerWattVelocity => format!("{actuator} s/({position} W)"),
         Dimension::PerTorque => format!("1/({actuator})"),

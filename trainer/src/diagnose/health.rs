@@ -19,6 +19,10 @@ pub struct HealthNote {
 
 /// Share of samples at one extreme torque from which it counts as clipped.
 const CLIPPED_SHARE: f64 = 0.02;
+/// A torque step of this share of the usual torque hides friction.
+const COARSE_TORQUE_SHARE: f64 = 0.05;
+/// Time in s that one step of the position may take at top speed.
+const COARSE_POSITION_S: f64 = 3e-4;
 /// Factors that a wrong unit leaves: degrees for radians, turns for radians, milli for whole, and their inverses.
 const UNIT_FACTORS: [(f64, &str); 6] = [
     (57.295_78, "deg taken for rad"),
@@ -34,7 +38,52 @@ pub fn examine(signals: &Signals) -> Vec<HealthNote> {
     let mut notes = Vec::new();
     notes.extend(clipped_torque(signals));
     notes.extend(wrong_sign_or_unit(signals));
+    notes.extend(coarse_torque(signals));
+    notes.extend(coarse_position(signals));
     notes
+}
+
+/// Torque steps of more than the noise hide what happens between them.
+fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
+    let mut steps: Vec<f64> =
+        signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
+    let changes = steps.len();
+    let typical = median(&mut steps)?;
+    let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let spread = crate::physics::quantile(signals.torque.iter().map(|t| t.abs()), 0.9);
+    // Most changes are a single step, and the step is a sizeable share of the torque.
+    let coarse = typical < 1.5 * smallest && smallest > COARSE_TORQUE_SHARE * spread && changes > 20;
+    coarse.then(|| HealthNote {
+        effect: EffectId::Quantisation,
+        blocking: true,
+        sentence: format!("the torque is recorded in steps of {smallest:.4}, coarser than its own noise"),
+    })
+}
+
+/// An encoder that stands still for most samples of a moving joint.
+fn coarse_position(signals: &Signals) -> Option<HealthNote> {
+    let step = signals.position_resolution;
+    let speeds: Vec<f64> = signals.position.windows(2).map(|pair| (pair[1] - pair[0]).abs() / signals.period).collect();
+    let top = crate::physics::quantile(
+        signals.position.windows(51).map(|w| (w[50] - w[0]).abs() / (50.0 * signals.period)),
+        0.95,
+    );
+    let still = speeds.iter().filter(|speed| **speed == 0.0).count() as f64 / speeds.len().max(1) as f64;
+    // At top speed the encoder should step in at least a good share of the samples.
+    let coarse = step > COARSE_POSITION_S * top && still > 0.5;
+    coarse.then(|| HealthNote {
+        effect: EffectId::Quantisation,
+        blocking: true,
+        sentence: format!(
+            "the position is recorded in steps of {step:.2e}: at top speed one step takes {:.1} ms",
+            1e3 * step / top
+        ),
+    })
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
@@ -71,54 +120,45 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
         .map(|s| (s.start + filter.reach()).min(s.end)..s.end.saturating_sub(filter.reach()).max(s.start))
         .filter(|r| r.start < r.end)
         .collect();
-    let rigid = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
-    let given = rigid.is_some();
-    let main = rigid.map_or(acceleration, |torque| filter.over(torque, segments));
-    let columns = vec![main, sign, velocity, vec![1.0; position.len()]];
+    // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
+    let smooth = |series: &[f64]| filter.over(series, segments);
+    let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+    let mut bodies: Vec<(&str, Vec<f64>)> =
+        match (known, signals.load.as_ref().filter(|_| signals.rigid_body.is_some())) {
+            (Some(body), Some(load)) => {
+                let inertial: Vec<f64> = body.iter().zip(load).map(|(b, l)| b - l).collect();
+                vec![("inertial torque", smooth(&inertial)), ("load torque", smooth(load))]
+            }
+            (Some(body), None) => vec![("rigid-body torque", smooth(body))],
+            (None, _) => vec![("acceleration", acceleration)],
+        };
+    bodies.retain(|(_, column)| column.iter().any(|v| *v != 0.0));
+    let given = known.is_some();
+    let mut columns: Vec<Vec<f64>> = bodies.iter().map(|(_, column)| column.clone()).collect();
+    let friction = columns.len();
+    columns.extend([sign, velocity, vec![1.0; position.len()]]);
     let coefficients = least_squares(&columns, &torque, &runs)?;
     let rest = residual(&columns, &torque, &coefficients);
     let energy = |series: &[f64]| runs.iter().flat_map(|r| &series[r.clone()]).map(|v| v * v).sum::<f64>();
-    let rows: usize = runs.iter().map(|r| r.len()).sum();
-    let explains = 1.0 - energy(&rest) / energy(&torque).max(f64::MIN_POSITIVE);
-    let power_share =
-        coefficients[0].abs() * (energy(&columns[0]) / rows as f64).sqrt() / (energy(&torque) / rows as f64).sqrt();
-    if explains < 0.5 {
+    let total = energy(&torque).max(f64::MIN_POSITIVE);
+    if 1.0 - energy(&rest) / total < 0.5 {
         return None;
     }
-    let friction_drives =
-        coefficients[1] < 0.0 && coefficients[1].abs() * (energy(&columns[1]) / energy(&torque)).sqrt() > 0.1;
-    let flipped = coefficients[0] < 0.0 && power_share > 0.3;
-    if flipped && friction_drives {
-        return Some(HealthNote {
-            effect: EffectId::UnitOrSign,
-            blocking: true,
-            sentence: "torque and motion have opposite signs: both the rigid body and the friction come out negative"
-                .into(),
-        });
+    let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
+    let wrong = |sentence: String| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, sentence });
+    if coefficients[friction] < 0.0 && share(friction) > 0.1 {
+        return wrong("friction comes out as driving the joint: torque and motion have opposite signs".into());
     }
-    if flipped && given {
-        return Some(HealthNote {
-            effect: EffectId::UnitOrSign,
-            blocking: true,
-            sentence: format!(
-                "the given rigid-body torque enters with factor {:.3}: its sign is opposite to the recording's",
-                coefficients[0]
-            ),
-        });
-    }
-    if given && power_share > 0.3 {
-        for (factor, story) in UNIT_FACTORS {
-            let ratio = coefficients[0] / factor;
-            if (0.8..1.25).contains(&ratio) {
-                return Some(HealthNote {
-                    effect: EffectId::UnitOrSign,
-                    blocking: true,
-                    sentence: format!(
-                        "the given rigid-body torque enters with factor {:.4}, as with {story}",
-                        coefficients[0]
-                    ),
-                });
-            }
+    for (column, (name, _)) in bodies.iter().enumerate().filter(|(column, _)| share(*column) > 0.1) {
+        let factor = coefficients[column];
+        if factor < 0.0 {
+            return wrong(format!(
+                "the {name} enters with factor {factor:.3}: its sign is opposite to the recording's"
+            ));
+        }
+        let story = UNIT_FACTORS.iter().find(|(wanted, _)| given && (0.8..1.25).contains(&(factor / wanted)));
+        if let Some((_, story)) = story {
+            return wrong(format!("the {name} enters with factor {factor:.4}, as with {story}"));
         }
     }
     None

@@ -8,7 +8,7 @@ use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
 use frikan_shared::expression::Operation;
 use frikan_shared::model::{Input, Law, Model};
-use frikan_shared::table::{Symmetry, Table};
+use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
 /// Relative step of the central differences; far above the roundoff of `f32`.
@@ -102,7 +102,7 @@ fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
             })
             .filter(|column: &Vec<f64>| column.iter().all(|v| v.is_finite()) && column.iter().any(|v| *v != 0.0))
             .collect(),
-        Law::Table(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
+        Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
             let odd = is_odd(&model.law);
             let top = state.top_speed();
             let rows: Vec<Vec<f64>> =
@@ -126,7 +126,7 @@ pub(crate) fn hats(velocity: f64, sign_velocity: f64, top_speed: f64, odd: bool)
 /// Whether a law is odd in velocity by its layout.
 pub(crate) fn is_odd(law: &Law) -> bool {
     match law {
-        Law::Table(Table::Geometric(layout)) => layout.shape().symmetry == Symmetry::Odd,
+        Law::Geometric(layout) => layout.shape().symmetry == Symmetry::Odd,
         Law::IntegerTable(_) => true,
         _ => false,
     }

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Which blocks are locked away from all fitting and choosing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lock {
-    /// Every fifth block: about a fifth of the recording, spread over it.
+    /// A fifth of every block, spread over the recording.
     Spread,
     /// The last share (0..1) of the recording.
     Tail(f64),
@@ -52,6 +52,8 @@ const ROWS_PER_CUT_OFF: f64 = 2.5;
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
 /// Share of the residual's deviation that encoder noise may reach through the inertia.
 const ENCODER_SHARE: f64 = 0.1;
+/// Width of the smoothed sign at least, as a share of the top speed.
+const SIGN_SHARE: f64 = 0.001;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 
@@ -116,6 +118,7 @@ impl Prepared {
                     OtherJoint {
                         velocity: first_derivative(&smooth, segments, period),
                         acceleration: second_derivative(&smooth, segments, period),
+                        position: smooth,
                     }
                 })
                 .collect(),
@@ -128,8 +131,8 @@ impl Prepared {
             rotary: signals.rotary,
             resolution: signals.position_resolution,
         };
-        state.sign_velocity = (4.0 * velocity_noise).max(0.004 * state.top_speed()).max(f64::MIN_POSITIVE);
-        state.sign = state.velocity.iter().map(|v| (v / state.sign_velocity).tanh()).collect();
+        state.sign_velocity = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed()).max(f64::MIN_POSITIVE);
+        state.sign = state.averaged_sign(&state.velocity, state.sign_velocity);
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
         let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
@@ -225,38 +228,77 @@ fn rows_and_blocks(state: &JointState, stuck: &[bool], filter: &ZeroPhase, lock:
     let step = ((1.0 / (ROWS_PER_CUT_OFF * filter.cut_off_hz * state.period)).round() as usize).max(1);
     let reach = filter.reach();
     let pieces = pieces(state, reach, step);
+    let duration: usize = pieces.iter().map(Range::len).sum();
     let mut rows = Vec::new();
     let mut blocks = Vec::new();
-    let duration: usize = pieces.iter().map(Range::len).sum();
     let mut before = 0;
     for (index, piece) in pieces.into_iter().enumerate() {
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        let mut begin = rows.len();
-        let span = piece.len();
-        for i in piece.step_by(step) {
-            // A row that sees standstill sees a torque that no law of motion can predict.
-            let near_rest = (i - reach / 2..=i + reach / 2).any(|j| stuck[j] || state.memory.at_rest[j]);
-            if near_rest {
-                if rows.len() > begin {
-                    runs.push(begin..rows.len());
-                }
-                begin = rows.len();
-            } else {
-                rows.push(i);
-            }
+        let mut open = Block { runs: Vec::new(), locked: false };
+        let mut shut = Block { runs: Vec::new(), locked: true };
+        for (part, locked) in split_for_lock(&piece, index, before, duration, lock) {
+            // What the filter sees across the border of a locked part belongs to neither side.
+            let inner = part.start + if part.start > piece.start { reach } else { 0 }..part.end;
+            let runs = runs_of_motion(state, stuck, reach, inner.step_by(step), &mut rows);
+            if locked { &mut shut } else { &mut open }.runs.extend(runs);
+        }
+        blocks.extend([open, shut].into_iter().filter(|block| !block.runs.is_empty()));
+        before += piece.len();
+    }
+    (rows, blocks)
+}
+
+/// Parts of a block's samples with whether each is locked.
+fn split_for_lock(
+    piece: &Range<usize>,
+    index: usize,
+    before: usize,
+    duration: usize,
+    lock: Lock,
+) -> Vec<(Range<usize>, bool)> {
+    match lock {
+        Lock::Nothing => vec![(piece.clone(), false)],
+        Lock::Tail(share) => {
+            let border = ((1.0 - share) * duration as f64) as usize;
+            if before + piece.len() / 2 >= border { vec![(piece.clone(), true)] } else { vec![(piece.clone(), false)] }
+        }
+        Lock::Spread => {
+            // One fifth of every block, another one in each, so that every kind of motion is proved.
+            let at = |k: usize| piece.start + piece.len() * k / 5;
+            let fifth = (2 * index + 1) % 5;
+            [(piece.start..at(fifth), false), (at(fifth)..at(fifth + 1), true), (at(fifth + 1)..piece.end, false)]
+                .into_iter()
+                .filter(|(part, _)| !part.is_empty())
+                .collect()
+        }
+    }
+}
+
+/// Adds the samples of a part that see no standstill to the rows and returns their runs.
+fn runs_of_motion(
+    state: &JointState,
+    stuck: &[bool],
+    reach: usize,
+    samples: impl Iterator<Item = usize>,
+    rows: &mut Vec<usize>,
+) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    let mut begin = rows.len();
+    for i in samples {
+        // A row that sees standstill sees a torque that no law of motion can predict.
+        let near_rest = (i - reach / 2..=i + reach / 2).any(|j| stuck[j] || state.memory.at_rest[j]);
+        if !near_rest {
+            rows.push(i);
+            continue;
         }
         if rows.len() > begin {
             runs.push(begin..rows.len());
         }
-        let locked = match lock {
-            Lock::Spread => index % 5 == 3,
-            Lock::Tail(share) => before as f64 >= (1.0 - share) * duration as f64 - 1.0,
-            Lock::Nothing => false,
-        };
-        before += span;
-        blocks.push(Block { runs, locked });
+        begin = rows.len();
     }
-    (rows, blocks)
+    if rows.len() > begin {
+        runs.push(begin..rows.len());
+    }
+    runs
 }
 
 /// Samples at which the encoder shows no motion over four milliseconds: the joint sticks, if only for a moment.

@@ -14,7 +14,7 @@ pub(crate) fn refine(
     statistic: impl Fn(&[f64]) -> Option<f64>,
 ) -> Shape {
     let free: Vec<(usize, f64, f64)> =
-        (0..start.len()).filter_map(|i| hypothesis.bounds(state, i).map(|(low, high)| (i, low, high))).collect();
+        (0..start.len()).filter_map(|i| hypothesis.bounds(state, i, start).map(|(low, high)| (i, low, high))).collect();
     let mut best = start.to_vec();
     let Some(mut value) = statistic(&best) else { return best };
     if free.is_empty() {

@@ -6,7 +6,7 @@ use super::candidates::Label;
 use super::conclude::{Fitted, Refit, refit, unit_text};
 use super::confidence::{alternatives, probability};
 use super::health::{HealthNote, examine};
-use super::localise::locate;
+use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
@@ -72,7 +72,9 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let base = Base::fit(&mut prepared, signals, options.base).ok_or(Refusal::Undetermined)?;
     let hypotheses = catalogue();
     let search = Search::new(&prepared, &base, &hypotheses, options.settings);
-    let SearchOutcome { accepted, last_round, noise } = search.run();
+    // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
+    let blocked = health.iter().any(|note| note.blocking);
+    let SearchOutcome { accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
     let baseline = refit(&search, &[], &noise).ok_or(Refusal::Undetermined)?;
     let (accepted, withdrawn) = withdraw_unproven(&search, accepted, &baseline);
     let improved = refit(&search, &accepted, &noise).ok_or(Refusal::Undetermined)?;
@@ -82,7 +84,8 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
         .enumerate()
         .map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator))
         .collect();
-    let verdict = verdict(&findings, &health);
+    let findings = if blocked { health.iter().map(measurement_finding).collect() } else { findings };
+    let verdict = verdict(&findings, blocked);
     let score = |refit: &Refit| score(&search, refit);
     Ok(Diagnosis {
         verdict,
@@ -230,8 +233,33 @@ fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, actuator: &str
         .collect()
 }
 
-fn verdict(findings: &[Finding], health: &[HealthNote]) -> Verdict {
-    if health.iter().any(|note| note.blocking) {
+/// A fault of the measurement as a finding, without a fitted term.
+fn measurement_finding(note: &HealthNote) -> Finding {
+    Finding {
+        effect: note.effect,
+        probability: if note.blocking { 0.99 } else { 0.5 },
+        alternatives: Vec::new(),
+        action: Action::Measurement,
+        equation: String::new(),
+        parameters: Vec::new(),
+        location: Location::default(),
+        evidence: note.sentence.clone(),
+        separate_by: Advice { sentence: separation(note.effect).to_string() },
+        fitted: Fitted {
+            label: Label::Named(note.effect),
+            shape: Vec::new(),
+            shape_deviation: Vec::new(),
+            coefficients: Vec::new(),
+            deviation: Vec::new(),
+        },
+        score: 0.0,
+        margin: f64::INFINITY,
+        locked_gain_nats: None,
+    }
+}
+
+fn verdict(findings: &[Finding], blocked: bool) -> Verdict {
+    if blocked {
         return Verdict::BadData;
     }
     if findings.is_empty() {

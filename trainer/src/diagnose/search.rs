@@ -115,6 +115,16 @@ impl<'a> Search<'a> {
         Self { prepared, base, design, hypotheses, settings, features }
     }
 
+    /// Shapes that a group was allowed to choose from.
+    fn grid_size(&self, group: usize) -> f64 {
+        let group = &self.design.groups[group];
+        let scanned = match group.label {
+            Label::Named(effect) => self.hypothesis(effect).and_then(|h| h.scanned(&self.prepared.state)),
+            Label::Generic(_) => None,
+        };
+        scanned.unwrap_or(group.variants.len() as f64)
+    }
+
     /// The hypothesis of an effect.
     pub(crate) fn hypothesis(&self, effect: EffectId) -> Option<&dyn Hypothesis> {
         self.hypotheses.iter().find(|h| h.id() == effect).map(|h| h.as_ref() as &dyn Hypothesis)
@@ -135,10 +145,21 @@ impl<'a> Search<'a> {
         self.raw_columns(label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
     }
 
+    /// The outcome of a search that was not made: no findings, noise of the base alone.
+    pub fn nothing(&self) -> SearchOutcome {
+        SearchOutcome {
+            accepted: Vec::new(),
+            last_round: Vec::new(),
+            noise: self.noise_after(&self.base.columns, None),
+        }
+    }
+
     /// Runs the search.
     pub fn run(&self) -> SearchOutcome {
         let mut accepted: Vec<Accepted> = Vec::new();
         let mut null = None;
+        let (low, high) = self.prepared.state.travel();
+        let travel = high - low;
         loop {
             let round = Round::new(self, self.base_with(&accepted, None));
             let mut table = round.score_table(&accepted);
@@ -149,7 +170,7 @@ impl<'a> Search<'a> {
                     .iter_mut()
                     .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
             }
-            let finding = choose(&table, &self.settings);
+            let finding = choose(&table, &self.settings, travel);
             match finding {
                 Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
                 _ => {
@@ -180,7 +201,7 @@ impl<'a> Search<'a> {
         let state = &self.prepared.state;
         let mut tangents = Vec::new();
         for index in 0..shape.len() {
-            if hypothesis.bounds(state, index).is_none() {
+            if hypothesis.bounds(state, index, shape).is_none() {
                 continue;
             }
             let step = 0.05 * hypothesis.step(state, index, shape);
@@ -337,7 +358,7 @@ impl<'s, 'a> Round<'s, 'a> {
             .enumerate()
             .filter(|(_, group)| accepted.iter().all(|found| found.label != group.label))
             .filter_map(|(index, group)| {
-                let grid = group.variants.len() as f64;
+                let grid = self.search.grid_size(index);
                 let evidence = GroupEvidence::weigh(alone, &self.variants[index], rows, grid)?;
                 let surprise = self.variants[index]
                     .iter()
@@ -385,7 +406,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 self.bench.evidence(&self.search.whitened(&columns, &self.noise))
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
-            let grid = self.search.design.groups[*index].variants.len() as f64;
+            let grid = self.search.grid_size(*index);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
                 let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
@@ -487,12 +508,15 @@ fn draw_null(
 }
 
 /// Decides a round: the best passing hypothesis with its ambiguity set, or nothing.
-fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
+fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted> {
     let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
-    let named = table.iter().filter(|s| matches!(s.label, Label::Named(_))).find(passes);
-    let generic = table.iter().filter(|s| matches!(s.label, Label::Generic(_))).find(passes);
+    let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
+    let named = table.iter().filter(is_named).find(passes);
+    let generic = table.iter().filter(|s| !is_named(s)).find(passes);
+    // An unnamed structure is measured against every name by the same held-out evidence.
+    let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
     let best = match (named, generic) {
-        (Some(named), Some(generic)) if generic.score > named.score + settings.ambiguity_margin => generic,
+        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => generic,
         (Some(named), _) => named,
         (None, Some(generic)) => generic,
         (None, None) => return None,
@@ -510,7 +534,7 @@ fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
         }
     }
     if let Label::Named(effect) = best.label
-        && let Some(twin) = algebraic_twin(effect)
+        && let Some(twin) = twin(effect, &best.shape, travel)
         && table.iter().any(|s| s.label == Label::Named(twin))
         && rivals.iter().all(|(rival, _)| *rival != twin)
     {
@@ -527,11 +551,15 @@ fn choose(table: &[Scored], settings: &Settings) -> Option<Accepted> {
     })
 }
 
-/// Effects whose equations coincide wherever the joint moves faster than the smoothing of its sign.
-fn algebraic_twin(effect: EffectId) -> Option<EffectId> {
+/// The effect whose equation coincides with another's: driving losses and torque scale wherever the joint moves faster
+/// than the smoothing of its sign; a friction ripple that shows fewer than three periods and any function of position.
+fn twin(effect: EffectId, shape: &[f64], travel: f64) -> Option<EffectId> {
     match effect {
         EffectId::DriveBackdrive => Some(EffectId::TorqueScale),
         EffectId::TorqueScale => Some(EffectId::DriveBackdrive),
+        EffectId::PositionRipple if shape[1] == 1.0 && shape[0] * travel < 3.0 * std::f64::consts::TAU => {
+            Some(EffectId::PositionFriction)
+        }
         _ => None,
     }
 }

@@ -123,6 +123,10 @@ registry! {
         "The `.frk` file is truncated, corrupted, of another version, too large or inconsistent.",
         "An interrupted copy, a text-mode transfer, or a newer trainer.",
         "Copy or fit the image again; `trainer show` prints the header of a good one.";
+    BAD_URDF = "FRK-D021" Data "URDF cannot be used",
+        "The URDF file is not valid XML, lacks the joint, or its links have no mass.",
+        "A xacro file that has not been expanded, a joint of another name, or links for display only.",
+        "Expand xacro first; name the joint under `[rigid_body] joint`; or give inertia and gravity yourself.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",

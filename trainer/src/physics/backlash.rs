@@ -42,7 +42,7 @@ impl Hypothesis for Backlash {
         vec![ShapeName::new("contact_torque", "tau_w", Dimension::Torque)]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let typical = quantile(state.load.as_ref()?.iter().map(|l| l.abs()), 0.7);
         Some((0.005 * typical, typical))
     }

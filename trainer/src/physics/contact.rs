@@ -39,8 +39,10 @@ impl Hypothesis for Contact {
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
-        (index == 0).then(|| state.travel())
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        // A stop stands towards an end of the travel: in the middle it would pass for a spring.
+        let at = |share| quantile(state.position.iter().copied(), share);
+        (index == 0).then(|| if shape[1] > 0.0 { (at(0.65), at(0.995)) } else { (at(0.005), at(0.35)) })
     }
 
     fn step(&self, state: &JointState, _index: usize, _shape: &[f64]) -> f64 {

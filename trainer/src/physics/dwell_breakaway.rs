@@ -52,7 +52,7 @@ impl Hypothesis for DwellBreakaway {
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
         Some(if index == 0 { (1e-4 * (high - low), 0.5 * (high - low)) } else { (0.01, 5.0) })
     }

@@ -42,7 +42,7 @@ impl Hypothesis for KinematicError {
         vec![ShapeName::new("kinematic_order", "k", Dimension::Order)]
     }
 
-    fn bounds(&self, _state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         Some((0.0, f64::INFINITY))
     }
 

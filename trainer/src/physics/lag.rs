@@ -45,7 +45,7 @@ impl Hypothesis for FrictionalLag {
         vec![ShapeName::new("friction_lag", "tau_L", Dimension::Second)]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         Some((state.period, 0.3))
     }
 }

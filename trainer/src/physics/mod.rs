@@ -31,6 +31,7 @@ mod warm_up;
 mod windup;
 
 pub use identity::{Action, EffectId};
+pub(crate) use state::quantile;
 pub use state::{JointState, MemoryAxes, OtherJoint};
 
 /// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).
@@ -55,6 +56,8 @@ pub enum Dimension {
     Inertia,
     /// Torque per second.
     TorquePerSecond,
+    /// Torque per squared second.
+    TorquePerSecondSquared,
     /// Torque per watt of smoothed dissipated power.
     TorquePerWatt,
     /// Torque per watt and velocity.
@@ -102,7 +105,12 @@ pub trait Hypothesis: Sync {
     }
 
     /// Bounds of shape parameter `index` on this recording, for continuous refinement; `None` where it is discrete.
-    fn bounds(&self, _state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// How many shapes were looked at to propose [`Self::shapes`], where these were chosen by their residual.
+    fn scanned(&self, _state: &JointState) -> Option<f64> {
         None
     }
 

@@ -51,7 +51,7 @@ impl Hypothesis for Presliding {
         vec![ShapeName::new("breakaway_distance", "delta", Dimension::Position)]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
         Some((state.resolution.max(1e-9), 0.5 * (high - low)))
     }

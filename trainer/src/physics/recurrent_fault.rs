@@ -57,7 +57,7 @@ impl Hypothesis for RecurrentFault {
         ]
     }
 
-    fn bounds(&self, _state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         match index {
             1 => Some((-TAU, 2.0 * TAU)),
             2 => Some((0.003, 0.2)),

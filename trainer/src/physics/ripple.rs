@@ -26,7 +26,9 @@ pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
     // Ten samples a period at a typical speed, or the encoder's own grain.
     let highest = (turn / (10.0 * state.period * typical_speed)).min(turn / (8.0 * state.resolution.max(1e-12)));
     let first = if step == 1.0 { lowest.ceil() } else { lowest };
-    (0..most).map(|i| first + step * i as f64).take_while(|order| *order <= highest).collect()
+    // Bearings and the output turn once or twice a joint turn, also where the travel shows less than a period.
+    let slow = [1.0, 2.0].into_iter().filter(|order| state.rotary && *order < first);
+    slow.chain((0..most).map(|i| first + step * i as f64)).take_while(|order| *order <= highest).collect()
 }
 
 impl Hypothesis for PositionRipple {
@@ -65,7 +67,7 @@ impl Hypothesis for PositionRipple {
         ]
     }
 
-    fn bounds(&self, _state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         (index == 0).then_some((0.0, f64::INFINITY))
     }
 

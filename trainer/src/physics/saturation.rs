@@ -36,7 +36,7 @@ impl Hypothesis for Saturation {
         vec![ShapeName::new("torque_limit", "tau_max", Dimension::Torque)]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let at = |share| quantile(state.predicted.iter().map(|t| t.abs()), share);
         Some((at(0.5), at(0.995)))
     }

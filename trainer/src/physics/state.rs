@@ -50,6 +50,8 @@ pub struct JointState {
 /// Motion of another joint.
 #[derive(Clone, Debug)]
 pub struct OtherJoint {
+    /// Position in rad or m.
+    pub position: Vec<f64>,
     /// Velocity in rad/s or m/s.
     pub velocity: Vec<f64>,
     /// Acceleration in rad/s2 or m/s2.
@@ -178,6 +180,27 @@ impl JointState {
             }
         }
         rate
+    }
+
+    /// Smoothed sign of a velocity, averaged over each sample with the velocity linear in between: the mean of tanh, so
+    /// that a reversal between two samples is not rounded to one of them.
+    pub fn averaged_sign(&self, velocity: &[f64], width: f64) -> Vec<f64> {
+        let log_cosh = |x: f64| x.abs() + (-2.0 * x.abs()).exp().ln_1p();
+        let mut sign = vec![0.0; velocity.len()];
+        for segment in &self.segments {
+            let last = segment.end - 1;
+            for i in segment.clone() {
+                let before = 0.5 * (velocity[i] + velocity[i.saturating_sub(1).max(segment.start)]) / width;
+                let after = 0.5 * (velocity[i] + velocity[(i + 1).min(last)]) / width;
+                let change = after - before;
+                sign[i] = if change.abs() < 1e-4 {
+                    (velocity[i] / width).tanh()
+                } else {
+                    (log_cosh(after) - log_cosh(before)) / change
+                };
+            }
+        }
+        sign
     }
 
     /// One value a sample.

@@ -4,9 +4,12 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 
 pub(super) struct Stribeck;
 
+/// Stribeck velocity at most, as a share of the top speed: beyond it the law is a curved viscous one.
+const WIDEST: f64 = 0.3;
+
 /// Narrower than this it could not be told from the width of the smoothed sign.
 fn narrowest(state: &JointState) -> f64 {
-    (4.0 * state.sign_velocity).max(0.01 * state.top_speed())
+    (4.0 * state.sign_velocity).max(0.008 * state.top_speed()).min(0.1 * state.top_speed())
 }
 
 impl Hypothesis for Stribeck {
@@ -21,7 +24,7 @@ impl Hypothesis for Stribeck {
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let top = state.top_speed();
         let low = narrowest(state);
-        geometric_grid(low, (0.5 * top).max(low), 7).into_iter().flat_map(|v| [vec![v, 1.0], vec![v, 2.0]]).collect()
+        geometric_grid(low, WIDEST * top, 7).into_iter().flat_map(|v| [vec![v, 1.0], vec![v, 2.0]]).collect()
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
@@ -45,7 +48,7 @@ impl Hypothesis for Stribeck {
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
-        Some(if index == 0 { (narrowest(state), 2.0 * state.top_speed()) } else { (0.5, 2.5) })
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+        Some(if index == 0 { (narrowest(state), WIDEST * state.top_speed()) } else { (0.5, 2.5) })
     }
 }

@@ -1,4 +1,5 @@
-//! F3, Kulldorff 1997: a one-off event, found by scanning windows in time.
+//! F3, Kulldorff 1997: a one-off event, found by scanning windows in time. The windows are proposed by the residual itself,
+//! so their score pays for all that were looked at.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
@@ -6,6 +7,36 @@ pub(super) struct TransientEvent;
 
 /// Lengths of the scanned windows in s.
 const WINDOWS_S: [f64; 4] = [0.12, 0.35, 1.0, 3.0];
+
+/// Windows of a length that are proposed.
+const PROPOSED: usize = 10;
+
+/// Of all windows at half-window steps, those in which the residual of the base deviates most on one side. Slow samples
+/// do not count: near standstill the residual is that of stiction.
+fn most_deviating(state: &JointState, window: f64) -> Vec<Shape> {
+    let slow = 0.03 * state.top_speed();
+    let rest: Vec<f64> = state.torque.iter().zip(&state.predicted).map(|(t, p)| t - p).collect();
+    let moving: Vec<bool> = state.velocity.iter().map(|v| v.abs() > slow).collect();
+    let count = moving.iter().filter(|m| **m).count().max(1) as f64;
+    let mean = rest.iter().zip(&moving).filter(|(_, m)| **m).map(|(r, _)| r).sum::<f64>() / count;
+    let length = ((window / state.period) as usize).max(2);
+    let mut windows: Vec<(f64, usize, usize)> = Vec::new();
+    for segment in &state.segments {
+        let mut begin = segment.start;
+        while begin < segment.end {
+            let end = (begin + length).min(segment.end);
+            let sum: f64 = (begin..end).filter(|&i| moving[i]).map(|i| rest[i] - mean).sum();
+            windows.push((sum.abs(), begin, end));
+            begin += (length / 2).max(1);
+        }
+    }
+    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    windows
+        .iter()
+        .take(PROPOSED)
+        .map(|(_, begin, end)| vec![state.time[*begin], state.time[end - 1] + state.period])
+        .collect()
+}
 
 impl Hypothesis for TransientEvent {
     fn id(&self) -> EffectId {
@@ -17,15 +48,11 @@ impl Hypothesis for TransientEvent {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let (Some(&begin), Some(&end)) = (state.time.first(), state.time.last()) else { return Vec::new() };
-        let mut shapes = Vec::new();
-        for window in WINDOWS_S {
-            // At most eighty windows of a length: a long recording is scanned with longer steps, the ends are refined.
-            let step = (0.6 * window).max((end - begin) / 80.0);
-            let windows = ((end - begin - window) / step).floor().max(0.0) as usize;
-            shapes.extend((0..=windows).map(|k| begin + k as f64 * step).map(|start| vec![start, start + window]));
-        }
-        shapes
+        WINDOWS_S.into_iter().flat_map(|window| most_deviating(state, window)).collect()
+    }
+
+    fn scanned(&self, state: &JointState) -> Option<f64> {
+        Some(WINDOWS_S.into_iter().map(|window| state.duration() / (0.5 * window)).sum())
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
@@ -43,7 +70,7 @@ impl Hypothesis for TransientEvent {
         ]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         Some((*state.time.first()?, *state.time.last()?))
     }
 

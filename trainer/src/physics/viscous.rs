@@ -29,7 +29,7 @@ impl Hypothesis for ViscousNonlinearity {
         vec![ShapeName::new("viscous_exponent", "p", Dimension::One)]
     }
 
-    fn bounds(&self, _state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         Some((0.3, 4.0))
     }
 }

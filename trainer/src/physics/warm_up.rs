@@ -72,7 +72,7 @@ impl Hypothesis for WarmUp {
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         (index == 0).then(|| (0.02 * state.duration(), 20.0 * state.duration()))
     }
 }

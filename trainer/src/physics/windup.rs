@@ -61,7 +61,7 @@ impl Hypothesis for WindupHysteresis {
         vec![ShapeName::new("windup_reach", "w_h", Dimension::One)]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let winding = winding(state)?;
         let spread = |share| quantile(winding.iter().copied(), share);
         let travel = spread(0.98) - spread(0.02);

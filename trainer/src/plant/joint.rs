@@ -1,7 +1,6 @@
 //! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
 
 use super::campaign::Campaign;
-use crate::error::{Error, Result, codes};
 use serde::{Deserialize, Serialize};
 
 /// A joint, its drive, its sensors and what is hidden in it.
@@ -211,44 +210,6 @@ pub struct Hidden {
     pub amplitude: f64,
 }
 
-impl Joint {
-    /// The joint of a `joint.toml`: its `[plant]` table, and where that is silent what `[rigid_body]` and `[drive]` say.
-    ///
-    /// # Errors
-    /// `FRK-D015` when the table holds a key or value that is not understood.
-    pub fn described_by(file: &crate::joint::Joint) -> Result<Self> {
-        let mut table = match file.other.get("plant") {
-            None => toml::Table::new(),
-            Some(toml::Value::Table(table)) => table.clone(),
-            Some(_) => return Err(Error::new(&codes::BAD_JOINT_FILE, "`plant` has to be a table")),
-        };
-        let mut inherit = |key: &str, value: Option<toml::Value>| {
-            if let Some(value) = value {
-                table.entry(key).or_insert(value);
-            }
-        };
-        let body = &file.rigid_body;
-        inherit("inertia_kgm2", body.inertia_kgm2.map(Into::into));
-        inherit("gravity_phase_rad", body.gravity_phase_rad.map(Into::into));
-        inherit("gravity_torque_Nm", body.gravity_torque_nm.map(|torque| vec![torque].into()));
-        let drive = table.entry("drive").or_insert_with(|| toml::Table::new().into());
-        if let toml::Value::Table(drive) = drive {
-            let mut inherit = |key: &str, value: Option<f64>| {
-                if let Some(value) = value {
-                    drive.entry(key).or_insert(value.into());
-                }
-            };
-            inherit("gear_ratio", file.drive.gear_ratio.map(f64::abs));
-            inherit("torque_limit_Nm", file.drive.torque_limit_nm);
-            inherit("rate_Hz", file.drive.rate_hz);
-        }
-        Self::deserialize(table).map_err(|error| {
-            let message = format!("[plant]: {}", error.message().replace('\n', "; "));
-            Error::new(&codes::BAD_JOINT_FILE, message)
-        })
-    }
-}
-
 impl Default for Joint {
     fn default() -> Self {
         Self {
@@ -340,40 +301,5 @@ impl Default for Thermal {
 impl Default for OtherJoint {
     fn default() -> Self {
         Self { recorded: true, amplitude_rad: 0.8, highest_hz: 1.1 }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(text: &str) -> Result<Joint> {
-        Joint::described_by(&crate::joint::Joint::parse(text).unwrap())
-    }
-
-    #[test]
-    fn every_key_is_optional_and_the_default_survives_a_round_trip() {
-        assert_eq!(parse("").unwrap(), Joint::default());
-        let text = toml::to_string(&Joint::default()).unwrap();
-        assert_eq!(toml::from_str::<Joint>(&text).unwrap(), Joint::default());
-    }
-
-    #[test]
-    fn the_plant_inherits_what_the_rest_of_the_file_knows() {
-        let text = "[rigid_body]\ninertia_kgm2 = 0.7\ngravity_torque_Nm = 3.0\n[drive]\ngear_ratio = 50.0\n\
-                    [plant.drive]\nrate_Hz = 2000.0\n[plant.friction]\ncoulomb_torque_Nm = 1.0\n\
-                    [[plant.effects]]\nname = \"stribeck\"\namplitude = 0.5\n";
-        let joint = parse(text).unwrap();
-        assert_eq!(joint.inertia_kgm2, 0.7);
-        assert_eq!(joint.gravity_torque_nm, [3.0]);
-        assert_eq!((joint.drive.gear_ratio, joint.drive.rate_hz), (50.0, 2000.0));
-        assert_eq!(joint.friction, Friction { coulomb_torque_nm: 1.0, ..Friction::default() });
-        assert_eq!(joint.effects, [Hidden { name: "stribeck".into(), amplitude: 0.5 }]);
-    }
-
-    #[test]
-    fn a_misspelt_key_is_refused_by_name() {
-        let error = parse("[plant]\ninertia = 0.5\n").unwrap_err();
-        assert!(error.to_string().contains("inertia"), "{error}");
     }
 }

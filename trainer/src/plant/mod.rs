@@ -4,16 +4,20 @@
 //! `diagnose`, and they do not know it: a proof in which both sides share equations would prove nothing.
 //!
 //! A recording is made in one direction: a [`Campaign`] of motions becomes a reference, the drive (`control`) turns it
-//! into torque held over each sample, the joint (`friction`, `transmission`, `effects`) moves in continuous time, and the
+//! into torque held over each sample, the joint (`bench`, `friction`, `transmission`, `effects`) moves in continuous time, and the
 //! sensors (`noise`, `sensors`) write down what a drive would have seen.
 
+mod bench;
 mod campaign;
 mod channels;
+mod concealed;
 mod control;
+mod description;
 pub mod effects;
 mod friction;
 mod joint;
 mod motion;
+mod moves;
 mod noise;
 mod random;
 mod recording;

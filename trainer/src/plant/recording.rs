@@ -42,6 +42,14 @@ impl Truth {
     pub fn effect_rms(&self) -> f64 {
         root_mean_square(&self.effect_torque)
     }
+
+    /// Root mean square of the moving average of `effect_torque` over `samples` (>= 1), N m: the part a filter of that
+    /// length leaves. A compliant gear rings after every reversal far above the band in which it can be recognised.
+    pub fn effect_rms_over(&self, samples: usize) -> f64 {
+        let averages: Vec<f64> =
+            self.effect_torque.windows(samples.max(1)).map(|w| w.iter().sum::<f64>() / w.len() as f64).collect();
+        root_mean_square(&averages)
+    }
 }
 
 impl SimulatedRecording {

@@ -133,8 +133,11 @@ impl Compliant {
             dry_friction += advance(motor, push.torque - transmitted, push.dry, push.viscous, load.motor_inertia, h);
             link.velocity += h * (transmitted - load.gravity(link_middle)) / load.link_inertia;
             link.position = link_middle + 0.5 * h * link.velocity;
-            let acceleration = (motor.velocity - before) / h;
-            excess += transmitted - load.link_inertia * acceleration - load.gravity(motor_middle);
+            // While the motor sticks its friction carries whatever the link does.
+            if motor.velocity != 0.0 || before != 0.0 {
+                let acceleration = (motor.velocity - before) / h;
+                excess += transmitted - load.link_inertia * acceleration - load.gravity(motor_middle);
+            }
         }
         self.link = Some(link);
         Stepped { dry_friction: dry_friction / pieces, excess: excess / pieces }

@@ -4,6 +4,9 @@ use std::ops::Range;
 
 use crate::recording::Recording;
 
+/// Name of the channel that numbers the trajectories of a campaign; a change of it interrupts the motion.
+const TRAJECTORY: &str = "trajectory";
+
 /// Steps that deviate by less than this share of the period count as uniform: the text's rounding, not jitter.
 const UNIFORM_JITTER: f64 = 0.02;
 
@@ -29,12 +32,19 @@ pub(super) struct Segment {
 }
 
 impl Grid {
-    /// The grid of the median period; a gap of the clock begins a new segment.
+    /// The grid of the mean period; a gap of the clock and a new `trajectory` begin a new segment.
     pub(super) fn of(recording: &Recording, time: &[f64]) -> Self {
         let health = &recording.health;
         let resampled = health.jitter > UNIFORM_JITTER;
-        let bounds: Vec<usize> =
-            std::iter::once(0).chain(health.gaps.iter().copied()).chain(std::iter::once(time.len())).collect();
+        let mut bounds: Vec<usize> = std::iter::once(0).chain(health.gaps.iter().copied()).collect();
+        if let Some(trajectory) = recording.named(TRAJECTORY) {
+            let changes =
+                trajectory.values.windows(2).enumerate().filter(|(_, pair)| pair[0].round() != pair[1].round());
+            bounds.extend(changes.map(|(before, _)| before + 1));
+        }
+        bounds.push(time.len());
+        bounds.sort_unstable();
+        bounds.dedup();
         // The median of rounded time stamps is itself rounded; the mean over the uninterrupted stretches is not.
         let (mut span, mut steps) = (0.0, 0usize);
         for pair in bounds.windows(2) {

@@ -13,6 +13,8 @@ mod prepare;
 pub mod regression;
 pub mod relevance;
 pub mod rigid_body;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 

@@ -3,18 +3,20 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use super::bending::BendingLaw;
 use super::filter::{GaussianFilter, Order, sigma_for_acceleration_noise};
+use super::grid::Grid;
 use super::prepare::prepare;
 use super::regression::{dot, norm};
 use super::{Samples, rigid_body};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::joint::Joint;
 use crate::recording::{Quantity, Recording};
 
 /// Share of the torque residual that the noise of the acceleration may reach after the filter.
 const ACCELERATION_NOISE_SHARE: f64 = 0.1;
 /// Share of the root mean square velocity that the noise of the velocity may reach after the filter.
-const VELOCITY_NOISE_SHARE: f64 = 0.002;
+const VELOCITY_NOISE_SHARE: f64 = 0.01;
 /// The filter may not be wider than this share of the time scale of the motion, rms(q) / rms(v).
 const MOTION_SHARE: f64 = 0.15;
 /// Gain left at half the output rate, as the product of frequency and sigma: 10 dB below the passband.
@@ -58,15 +60,19 @@ impl Preparation {
     /// acceleration below a tenth of the torque residual in every recording.
     ///
     /// # Errors
-    /// `FRK-D009` when motion or actuator is missing, `FRK-D017` when a recording is too short.
+    /// `FRK-D009` when motion or actuator is missing, `FRK-D016` when the velocity hardly changes, `FRK-D017` when a
+    /// recording is too short.
     pub fn plan(recordings: &[&Recording], joint: &Joint, request: &Request) -> Result<Self> {
         if recordings.iter().all(|recording| is_static(recording)) {
+            let velocity = recordings.iter().filter_map(|recording| recording.values(Quantity::Velocity));
+            refuse_constant_velocity(recordings, velocity)?;
             return Ok(Self { sigma_s: None, rate_hz: None, velocity: VelocitySource::Recorded });
         }
         let mut motions = Vec::with_capacity(recordings.len());
         for recording in recordings {
             motions.push(Motion::of(recording)?);
         }
+        refuse_constant_velocity(recordings, motions.iter().map(|motion| motion.velocity.as_slice()))?;
         let recorded = motions.iter().all(|motion| motion.source == VelocitySource::Recorded);
         let velocity = if recorded { VelocitySource::Recorded } else { VelocitySource::Derived };
         let shortest = motions.iter().map(Motion::shortest_sigma_s).fold(0.0, f64::max);
@@ -112,6 +118,16 @@ impl fmt::Display for Preparation {
     }
 }
 
+/// A constant velocity cannot tell friction from an offset; positions alone (no velocity at all) may still be of use.
+fn refuse_constant_velocity<'a>(recordings: &[&Recording], velocity: impl Iterator<Item = &'a [f64]>) -> Result<()> {
+    let all: Vec<f64> = velocity.flatten().copied().collect();
+    if all.is_empty() {
+        return Ok(());
+    }
+    let named = |error: Error| recordings.first().map_or(error.clone(), |recording| error.in_file(recording.file()));
+    BendingLaw::over(&all).map(|_| ()).map_err(named)
+}
+
 /// Separated already, and nothing to differentiate.
 fn is_static(recording: &Recording) -> bool {
     recording.separated_friction().is_some()
@@ -122,6 +138,8 @@ fn is_static(recording: &Recording) -> bool {
 struct Motion {
     period_s: f64,
     noise: f64,
+    /// Coarse velocity at every row, over ten periods.
+    velocity: Vec<f64>,
     rms_velocity: f64,
     longest_sigma_s: f64,
     source: VelocitySource,
@@ -136,20 +154,24 @@ impl Motion {
         let Some(position) = recording.values(Quantity::Position) else {
             let rms_velocity = norm(&motion.values) / (motion.values.len() as f64).sqrt();
             let source = VelocitySource::Recorded;
-            return Ok(Self { period_s, noise: 0.0, rms_velocity, longest_sigma_s: 0.01 * span, source });
+            let velocity = motion.values.clone();
+            return Ok(Self { period_s, noise: 0.0, velocity, rms_velocity, longest_sigma_s: 0.01 * span, source });
         };
-        let noise = position_noise(position, recording.health.position_resolution);
+        // On the rows themselves an uneven clock would look like noise.
+        let grid = Grid::of(recording, time);
+        let longest = grid.segments.iter().max_by_key(|segment| segment.points);
+        let even = longest.map_or_else(Vec::new, |segment| grid.values(segment, time, position));
+        let noise = position_noise(&even, recording.health.position_resolution);
         let mean = position.iter().sum::<f64>() / position.len() as f64;
         let centred: Vec<f64> = position.iter().map(|q| q - mean).collect();
         let rms_position = norm(&centred) / (centred.len() as f64).sqrt();
-        // Differences over 1 % of the time scale of the recording would do; ten periods are robust to coarse encoders.
         let reach = 10.min(position.len() - 1);
         let rates: Vec<f64> =
             position.windows(reach + 1).map(|w| (w[reach] - w[0]) / (reach as f64 * period_s)).collect();
         let rms_velocity = norm(&rates) / (rates.len() as f64).sqrt();
         let time_scale = if rms_velocity > 0.0 { rms_position / rms_velocity } else { span };
         let source = velocity_source(recording, position, period_s, noise);
-        Ok(Self { period_s, noise, rms_velocity, longest_sigma_s: MOTION_SHARE * time_scale, source })
+        Ok(Self { period_s, noise, velocity: rates, rms_velocity, longest_sigma_s: MOTION_SHARE * time_scale, source })
     }
 
     /// Shortest filter that this motion allows without knowing the inertia: one period, and velocity noise in bounds,

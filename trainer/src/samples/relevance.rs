@@ -8,8 +8,10 @@ use super::blocks::{blocks, correlation_time};
 use super::regression::least_squares;
 use crate::error::Result;
 
-/// An input besides velocity is picked when it explains at least this share of the variance of friction more.
+/// An input besides velocity is picked when it explains at least this share of the variance of friction more...
 pub const LEAST_ADDED_SHARE: f64 = 0.02;
+/// ...and at least this share of the variance that velocity leaves.
+pub const LEAST_SHARE_OF_REST: f64 = 0.15;
 /// Quantile bins of an input, for each direction of motion.
 const BINS: usize = 12;
 /// Folds of blocks that are held out in turn.
@@ -30,7 +32,7 @@ pub struct Relevance {
     pub explained: f64,
     /// Share of the variance of friction that it explains, together with the direction, of what velocity leaves.
     pub added: f64,
-    /// Whether the rule picks it: velocity always, others from [`LEAST_ADDED_SHARE`] on.
+    /// Whether the rule picks it: velocity always, others from [`LEAST_ADDED_SHARE`] and [`LEAST_SHARE_OF_REST`] on.
     pub picked: bool,
 }
 
@@ -44,6 +46,7 @@ pub fn relevance(samples: &Samples, friction: &[f64]) -> Result<Vec<Relevance>> 
     let folds = folds(samples, friction);
     let left = least_squares(&law.columns(velocity), friction, &samples.segments).residuals;
     let total = variance(friction);
+    let least_added = LEAST_ADDED_SHARE.max(LEAST_SHARE_OF_REST * variance(&left) / total);
     let mut table: Vec<Relevance> = samples
         .input_names()
         .into_iter()
@@ -56,7 +59,7 @@ pub fn relevance(samples: &Samples, friction: &[f64]) -> Result<Vec<Relevance>> 
                 correlation: correlation(values, friction),
                 explained: held_out_gain(friction, values, None, &folds) / total,
                 added,
-                picked: name == "velocity" || (allowed && added >= LEAST_ADDED_SHARE),
+                picked: name == "velocity" || (allowed && added >= least_added),
             }
         })
         .collect();

@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 pub(super) fn saturation(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let peak = setting.joint.gravity_torque_nm.iter().fold(0.0_f64, |peak, g| peak.max(g.abs()))
         + setting.joint.friction.coulomb_torque_nm;
-    let threshold = peak * draws.uniform("threshold_share", 0.55, 0.75) / setting.amplitude.max(1.0);
+    let threshold = peak * draws.uniform("threshold_share", 0.55, 0.75);
     draws.note("threshold_Nm", threshold);
-    let lost = (setting.amplitude * draws.uniform("lost_share", 0.4, 0.6)).min(0.9);
+    let lost = (setting.amplitude * draws.uniform("lost_share", 0.4, 0.6)).min(0.75);
     Mechanism::Actuator(Box::new(move |torque: f64| {
         torque - lost * (torque.abs() - threshold).max(0.0).copysign(torque)
     }))

@@ -27,7 +27,7 @@ fn compliant(stiffness: f64, damping_ratio: f64, setting: &Setting) -> Compliant
 /// A spring between motor and link (Spong 1987); the amplitude multiplies its compliance.
 pub(super) fn elasticity(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let stiffness = draws.log_uniform("stiffness_Nm_rad", 1500.0, 4000.0) / setting.amplitude.max(1e-3);
-    Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, 0.05, setting)))
+    Mechanism::Transmission(Transmission::Compliant(compliant(stiffness, 0.1, setting)))
 }
 
 /// A gap between motor and link; the amplitude multiplies its width. The flanks are stiff, so that what is left of a
@@ -44,6 +44,6 @@ pub(super) fn windup_hysteresis(draws: &mut Draws, setting: &Setting) -> Mechani
     let stiffness = draws.log_uniform("stiffness_Nm_rad", 2_000.0, 6_000.0) / setting.amplitude.max(1e-3);
     let level = draws.uniform("loop_torque_Nm", 0.8, 2.0);
     let twist = setting.amplitude.max(1e-3) * draws.log_uniform("loop_twist_rad", 5e-4, 2e-3);
-    let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, 0.05, setting) };
+    let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, 0.1, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))
 }

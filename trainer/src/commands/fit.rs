@@ -1,0 +1,143 @@
+//! `trainer fit`: recordings in, a friction image out.
+
+mod json;
+mod text;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+use super::output::{Outputs, print};
+use super::progress::Reporter;
+use crate::error::{Error, Result, codes};
+use crate::fit::outcome::{Representation, Soundness};
+use crate::fit::{Options, Outcome, Progress, fit};
+use crate::joint::Joint;
+use crate::recording::{self, Recording};
+
+/// Fit a friction law to recordings of one joint and export it as an image.
+#[derive(Args, Clone, Debug)]
+pub struct Fit {
+    /// Recordings to learn from, CSV with columns `<quantity>_<unit>`
+    #[arg(required = true, value_name = "RECORDING")]
+    pub recordings: Vec<PathBuf>,
+    /// Recordings that are only scored
+    #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
+    pub tests: Vec<PathBuf>,
+    /// What is known of the joint
+    #[arg(long, value_name = "JOINT.toml")]
+    pub joint: Option<PathBuf>,
+    /// Inputs of the law by name; chosen by relevance when absent
+    #[arg(long, value_delimiter = ',', value_name = "NAME,...")]
+    pub inputs: Option<Vec<String>>,
+    /// Form of the law in the image; the better one on held-out blocks when absent
+    #[arg(long, value_enum)]
+    pub representation: Option<Form>,
+    /// Rate at which samples are fitted, Hz; follows the filter when absent
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+    /// Image to write
+    #[arg(short, long, value_name = "MODEL.frk")]
+    pub output: PathBuf,
+    /// Also write the result as JSON; `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Also write a report as a page
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Seed of the training: one seed, one image
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads to use; all when absent. The result does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Say nothing on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Form of a law, as the command line spells it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// Tables of cubic pieces made from the network
+    Table,
+    /// A formula
+    Expression,
+}
+
+/// Runs the command; the exit status is 0 or, for a fit that may not be relied upon, 4.
+///
+/// # Errors
+/// As [`fit()`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
+pub fn run(arguments: &Fit) -> Result<u8> {
+    let start = Instant::now();
+    if let Some(rate) = arguments.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        let message = "`--rate` has to be a finite number above zero";
+        return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
+    }
+    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let recordings = load_all(&arguments.recordings, &joint)?;
+    let tests = load_all(&arguments.tests, &joint)?;
+    let options = Options {
+        seed: arguments.seed,
+        inputs: arguments.inputs.clone(),
+        representation: arguments.representation.map(|form| match form {
+            Form::Table => Representation::Table,
+            Form::Expression => Representation::Expression,
+        }),
+        rate_hz: arguments.rate,
+    };
+    let reporter = Reporter::new(arguments.quiet);
+    let outcome = in_pool(arguments.threads, || {
+        fit(&recordings, &tests, &joint, &options, &|progress| reporter.say(&line(progress)))
+    })??;
+    drop(reporter);
+    write(arguments, &outcome, start.elapsed().as_secs_f64())?;
+    Ok(match &outcome.sound {
+        Soundness::Sound => 0,
+        Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
+        Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
+    })
+}
+
+fn load_all(paths: &[PathBuf], joint: &Joint) -> Result<Vec<Recording>> {
+    paths.iter().map(|path| recording::load(path, joint)).collect()
+}
+
+fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
+    let pool = pool.map_err(|error| Error::new(&codes::INPUT_OUTPUT, error.to_string()))?;
+    Ok(pool.install(work))
+}
+
+fn line(progress: &Progress) -> String {
+    let stage = progress.stage.name();
+    match progress.rmse {
+        Some(rmse) => format!("{stage}: step {}, rmse {rmse:.4}", progress.steps),
+        None => stage.to_owned(),
+    }
+}
+
+fn write(arguments: &Fit, outcome: &Outcome, seconds: f64) -> Result<()> {
+    let mut outputs = Outputs::default();
+    outputs.add(&arguments.output, outcome.image.clone());
+    if let Some(path) = &arguments.json {
+        outputs.add(path, format!("{}\n", json::summary(outcome, seconds)));
+    }
+    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);
+    outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.write()?;
+    // With JSON on standard output the text would get in its way.
+    if arguments.json.as_deref() == Some(Path::new("-")) {
+        return Ok(());
+    }
+    print(&text::summary(outcome, &arguments.output, seconds))
+}
+
+fn unsound(arguments: &Fit, error: &Error) -> u8 {
+    if !arguments.quiet {
+        eprintln!("{error}");
+    }
+    error.exit_status()
+}

@@ -1,0 +1,105 @@
+//! The result of a fit for a reader.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::fit::Outcome;
+use crate::fit::outcome::{Score, Trace};
+use crate::law::render::significant;
+use crate::parameter::Parameter;
+
+/// Significant digits of printed figures.
+const DIGITS: usize = 4;
+
+/// What `trainer fit` prints.
+pub(super) fn summary(outcome: &Outcome, image: &Path, seconds: f64) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_summary(&mut text, outcome, image, seconds);
+    text
+}
+
+fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64) -> std::fmt::Result {
+    let unit = outcome.unit;
+    writeln!(out, "samples     {}", outcome.filter)?;
+    writeln!(out, "\ninputs                 correlation  explained  beyond velocity")?;
+    for row in &outcome.relevance {
+        let mark = if row.picked { "used" } else { "" };
+        let (explained, added) = (100.0 * row.explained, 100.0 * row.added);
+        writeln!(
+            out,
+            "  {:<20} {:>+11.4} {explained:>8.1} % {added:>14.1} %  {mark}",
+            row.input, row.correlation
+        )?;
+    }
+    let network = &outcome.network;
+    let edges = |graph: &crate::kan::GraphSummary| graph.edges.iter().filter(|edge| edge.active).count();
+    let nodes = |graph: &crate::kan::GraphSummary| graph.nodes.iter().filter(|node| node.active).count();
+    writeln!(
+        out,
+        "\nnetwork     {}: {} of {} nodes and {} of {} edges kept, rmse {} {unit}",
+        network.architecture,
+        nodes(&network.after),
+        nodes(&network.before),
+        edges(&network.after),
+        edges(&network.before),
+        significant(network.rmse, DIGITS),
+    )?;
+    writeln!(
+        out,
+        "law         friction = {}\n            {} nodes, {} structures tried, rmse {} {unit}",
+        outcome.law.expression,
+        outcome.law.nodes,
+        outcome.law.explored,
+        significant(outcome.law.rmse, DIGITS)
+    )?;
+    writeln!(out, "\nparameters")?;
+    outcome.parameters.iter().try_for_each(|parameter| write_parameter(out, parameter))?;
+    writeln!(out, "\nclassical laws on the same samples")?;
+    for law in &outcome.classical {
+        writeln!(out, "  {:<32} rmse {:>10} {unit}", law.name, significant(law.rmse, DIGITS))?;
+    }
+    writeln!(out, "\nimage       {} of {} bytes: {}", image.display(), outcome.image.len(), outcome.choice)?;
+    for candidate in &outcome.candidates {
+        let mark = if candidate.chosen { "chosen" } else { "" };
+        writeln!(
+            out,
+            "  {:<11} {:<28} {:>6} bytes, held-out rmse {} {unit}  {mark}",
+            candidate.representation.name(),
+            candidate.description,
+            candidate.bytes,
+            significant(candidate.held_out_rmse, DIGITS)
+        )?;
+    }
+    writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error  (low-passed)")?;
+    outcome.train.iter().try_for_each(|trace| write_score(out, "train", trace, unit))?;
+    outcome.tests.iter().try_for_each(|trace| write_score(out, "test", trace, unit))?;
+    for remark in &outcome.remarks {
+        writeln!(out, "\nnote        {remark}")?;
+    }
+    writeln!(out, "\n{seconds:.1} s, seed {}", outcome.seed)
+}
+
+fn write_parameter(out: &mut String, parameter: &Parameter) -> std::fmt::Result {
+    let [low, high] = parameter.ci95.map(|bound| significant(bound, DIGITS));
+    writeln!(
+        out,
+        "  {:<30} {:<6} {:>11} {:<10} 95 % in [{low}, {high}]",
+        parameter.name,
+        parameter.symbol,
+        significant(parameter.value, DIGITS + 1),
+        parameter.unit,
+    )
+}
+
+fn write_score(out: &mut String, kind: &str, trace: &Trace, unit: &str) -> std::fmt::Result {
+    let Score { n, r2, rmse, relative_error } = trace.score;
+    writeln!(
+        out,
+        "  {kind:<5} {:<34} {n:>8} {r2:>9.6} {:>11} {unit} {:>6.2} %  {:>6.2} %",
+        trace.label,
+        significant(rmse, DIGITS + 1),
+        100.0 * relative_error,
+        100.0 * trace.filtered_score.relative_error,
+    )
+}

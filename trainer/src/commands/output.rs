@@ -1,0 +1,62 @@
+//! Where results go: standard output for a reader or a pipe, files that appear together or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result, codes};
+use crate::files::write_together;
+
+/// Files that one command writes, collected before the first of them is touched.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs {
+    files: Vec<(PathBuf, Vec<u8>)>,
+    console: String,
+}
+
+impl Outputs {
+    /// Adds a file; `-` is standard output.
+    pub(crate) fn add(&mut self, path: &Path, content: impl Into<Vec<u8>>) {
+        let content = content.into();
+        if path == Path::new("-") {
+            self.console.push_str(&String::from_utf8_lossy(&content));
+        } else {
+            self.files.push((path.to_owned(), content));
+        }
+    }
+
+    /// Refuses to write over what was read, and the same file twice.
+    pub(crate) fn refuse_overwriting(&self, inputs: &[&Path]) -> Result<()> {
+        let same = |a: &Path, b: &Path| a == b || a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+        for (index, (path, _)) in self.files.iter().enumerate() {
+            let read = inputs.iter().any(|input| same(path, input));
+            let written = self.files[..index].iter().any(|(other, _)| same(path, other));
+            if read || written {
+                let what = if read { "this file is also an input" } else { "two results go to this file" };
+                return Err(Error::new(&codes::USAGE, what).in_file(path.display().to_string()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all files, then standard output.
+    pub(crate) fn write(self) -> Result<()> {
+        let files: Vec<(&Path, &[u8])> =
+            self.files.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect();
+        write_together(&files)?;
+        print(&self.console)
+    }
+}
+
+/// Writes to standard output. A reader that has left early (`| head`) is no failure.
+///
+/// # Errors
+/// `FRK-I001` when it cannot be written.
+pub fn print(text: &str) -> Result<()> {
+    let mut console = std::io::stdout().lock();
+    match console.write_all(text.as_bytes()).and_then(|()| console.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::from_io(Path::new("standard output"), &error))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,145 @@
+//! `trainer show`: what an image holds, for a reader.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use frikan_shared::expression::{Operation, Program};
+use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
+use frikan_shared::model::Law;
+
+use super::output::print;
+use crate::error::Result;
+use crate::fit::{CELLS, model};
+use crate::law::render::significant;
+
+/// Significant digits of printed figures.
+const DIGITS: usize = 6;
+
+/// Show what an image holds: joint, inputs and ranges, law, rigid body, provenance.
+#[derive(Args, Clone, Debug)]
+pub struct Show {
+    /// Image to show
+    #[arg(value_name = "MODEL.frk")]
+    pub model: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// `FRK-D020` for what is no image, `FRK-I...` when it cannot be read.
+pub fn run(arguments: &Show) -> Result<()> {
+    let (bytes, image) = model::load(&arguments.model)?;
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = describe(&mut text, &bytes, &image);
+    print(&text)
+}
+
+fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::Result {
+    let (model, provenance) = (&image.model, &image.provenance);
+    let joint = if provenance.joint.is_empty() { "(unnamed)" } else { provenance.joint.as_str() };
+    writeln!(out, "joint       {joint}")?;
+    for input in &model.inputs {
+        let (low, high) = (significant(f64::from(input.low), DIGITS), significant(f64::from(input.high), DIGITS));
+        let name = input.quantity.name();
+        writeln!(out, "input       {name} from {low} to {high} {}, held at the nearer end outside", input.unit.symbol())?;
+    }
+    let unit = model.output_unit.symbol();
+    writeln!(out, "output      {unit}, at most {}", significant(f64::from(model.output_limit), DIGITS))?;
+    match &model.law {
+        Law::Geometric(table) => writeln!(out, "law         table of {} cubic cells that grow from zero", table.cells())?,
+        Law::Uniform(table) => writeln!(out, "law         table of {} equal cubic cells", table.cells)?,
+        Law::IntegerTable(table) => writeln!(out, "law         integer table of {} cubic cells", table.cells())?,
+        Law::Network(network) => writeln!(
+            out,
+            "law         network of {} layers and {} nodes with outgoing tables",
+            network.layers.len(),
+            network.sources.len()
+        )?,
+        Law::Expression(program) => {
+            let names: Vec<&str> = model.inputs.iter().map(|input| input.quantity.name()).collect();
+            writeln!(out, "law         {}", infix(program, &names))?;
+            writeln!(out, "            {} operations", program.operations.len())?;
+        }
+    }
+    for effect in &model.effects {
+        writeln!(out, "effect      {effect:?}")?;
+    }
+    let body = model.rigid_body;
+    for (name, value) in [
+        ("inertia", body.inertia),
+        ("gravity, sine", body.gravity_sin),
+        ("gravity, cosine", body.gravity_cos),
+        ("offset", body.offset),
+        ("scale of a given torque", body.given_scale),
+    ] {
+        if value != 0.0 {
+            writeln!(out, "rigid body  {name} {}", significant(f64::from(value), DIGITS))?;
+        }
+    }
+    writeln!(
+        out,
+        "provenance  trainer {}, seed {}, recordings {:016x}",
+        provenance.trainer_version, provenance.seed, provenance.recordings_hash
+    )?;
+    writeln!(
+        out,
+        "image       format {FORMAT_VERSION}, {} bytes, {} cells, CRC-32 {:08x}",
+        bytes.len(),
+        model.cells.len(),
+        image_crc32(bytes).unwrap_or(0)
+    )
+}
+
+/// The program in infix notation, from the very numbers of the image.
+fn infix(program: &Program, names: &[&str]) -> String {
+    let mut stack: Vec<String> = Vec::new();
+    let number = |x: f32| significant(f64::from(x), DIGITS);
+    let name = |index: u8| names.get(usize::from(index)).copied().unwrap_or("?");
+    for operation in &program.operations {
+        let mut pop = || stack.pop().unwrap_or_default();
+        let text = match *operation {
+            Operation::Input(index) => name(index).to_owned(),
+            Operation::ScaledInput(index, factor) => format!("{} {}", number(factor), name(index)),
+            Operation::Constant(value) => number(value),
+            Operation::Scale(factor) => format!("{} {}", number(factor), bracketed(&pop())),
+            Operation::Offset(summand) => format!("{} + {}", number(summand), pop()),
+            Operation::Add | Operation::Subtract | Operation::Multiply | Operation::Divide | Operation::Power => {
+                let (right, left) = (pop(), pop());
+                match operation {
+                    Operation::Add => format!("{left} + {right}"),
+                    Operation::Subtract => format!("{left} - {}", bracketed(&right)),
+                    Operation::Multiply => format!("{} {}", bracketed(&left), bracketed(&right)),
+                    Operation::Divide => format!("{} / {}", bracketed(&left), bracketed(&right)),
+                    _ => format!("|{left}|^{}", bracketed(&right)),
+                }
+            }
+            Operation::Minimum | Operation::Maximum => {
+                let (right, left) = (pop(), pop());
+                let function = if matches!(operation, Operation::Minimum) { "min" } else { "max" };
+                format!("{function}({left}, {right})")
+            }
+            Operation::PowerOf(exponent) => format!("|{}|^{}", pop(), number(exponent)),
+            Operation::Negate => format!("-{}", bracketed(&pop())),
+            Operation::Absolute => format!("|{}|", pop()),
+            Operation::Square => format!("{}^2", bracketed(&pop())),
+            Operation::Reciprocal => format!("1 / {}", bracketed(&pop())),
+            Operation::Exp => format!("exp({})", pop()),
+            Operation::Log => format!("ln|{}|", pop()),
+            Operation::Sign => format!("sign({})", pop()),
+            Operation::Tanh => format!("tanh({})", pop()),
+            Operation::Sin => format!("sin({})", pop()),
+            Operation::Cos => format!("cos({})", pop()),
+            Operation::Atan => format!("atan({})", pop()),
+            Operation::SquareRoot => format!("sqrt|{}|", pop()),
+        };
+        stack.push(text);
+    }
+    stack.pop().unwrap_or_default()
+}
+
+/// Brackets around what is more than one word.
+fn bracketed(text: &str) -> String {
+    if text.contains(' ') { format!("({text})") } else { text.to_owned() }
+}

@@ -1,0 +1,141 @@
+//! The formula: looked for on open blocks, then fitted to everything jointly with the rigid body.
+
+use rayon::prelude::*;
+
+use super::gather::Material;
+use super::inputs::{ChosenInput, symbol};
+use super::outcome::{ClassicalLaw, FrontLaw, LawStory};
+use super::rigid;
+use crate::error::{Error, Result, codes};
+use crate::law::known_forms::fit_structure;
+use crate::law::structure::Nonlinear;
+use crate::law::{
+    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, discover,
+    fit_form, render,
+};
+use crate::parameter::Parameter;
+
+/// Most samples that constants are fitted to; more would change no digit that is printed.
+const MOST_SAMPLES: usize = 12_000;
+
+/// Most samples that the classical laws are fitted to.
+const MOST_CLASSICAL_SAMPLES: usize = 4_000;
+
+/// The formula with what led to it.
+pub(super) struct Found {
+    pub(super) discovery: Discovery,
+    /// Fitted to the open blocks only; what candidates are compared by.
+    pub(super) open: FormFit,
+    /// Fitted to all samples.
+    pub(super) last: FormFit,
+}
+
+/// Samples as the law room takes them.
+pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
+    let axis = material.samples.axis;
+    let actuator = material.samples.actuator_unit;
+    let channel = |input: &ChosenInput| Channel {
+        name: input.name.clone(),
+        unit: input.unit.symbol().to_owned(),
+        role: input.role,
+        values: input.values.clone(),
+    };
+    let nuisance = material.columns.iter().map(|column| Nuisance {
+        name: column.kind.name().to_owned(),
+        unit: rigid::unit(column.kind, axis, actuator),
+        values: material.pick(&column.values),
+    });
+    LawData {
+        channels: inputs.iter().map(channel).collect(),
+        target: material.pick(&material.target),
+        target_unit: rigid::printed(actuator).to_owned(),
+        nuisance: nuisance.collect(),
+        blocks: material.labels.clone(),
+    }
+}
+
+/// Looks for the formula and fits it.
+pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
+    let open = data.select(&material.open());
+    let discovery = discover(&open, &SearchOptions::default()).map_err(|error| refused(&error))?;
+    let fixed = fixed_smoothing(&discovery);
+    let fit = |data: &LawData| {
+        fit_structure(&discovery.law.structure, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error))
+    };
+    let (open, last) = (fit(&open)?, fit(data)?);
+    Ok(Found { open, last, discovery })
+}
+
+/// The smoothing of the sign, where the search had to fix it.
+fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
+    let nonlinear = discovery.law.structure.nonlinear();
+    let at = nonlinear.iter().position(|n| *n == Nonlinear::Smoothing)?;
+    let parameter = &discovery.law.parameters[at];
+    (!parameter.determined).then_some(parameter.value)
+}
+
+/// Every `k`-th sample, so that at most `most` are left.
+fn thinned(data: &LawData, most: usize) -> LawData {
+    let stride = data.rows().div_ceil(most).max(1);
+    data.select(&(0..data.rows()).step_by(stride).collect::<Vec<_>>())
+}
+
+/// The laws of the literature on the same samples, those that can be fitted.
+pub(super) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw> {
+    let mut over_velocity = thinned(data, MOST_CLASSICAL_SAMPLES);
+    over_velocity.channels.truncate(1);
+    let fit = |form: &KnownForm| {
+        let fit = fit_form(*form, &over_velocity, None).ok()?;
+        let mut parameters = law_parameters(&fit.law.parameters);
+        parameters.extend(rigid::parameters(material, &fit.uncertainty.nuisance));
+        Some(ClassicalLaw { name: form.name(), rmse: fit.rmse, bic: fit.bic, parameters })
+    };
+    KnownForm::ALL.par_iter().map(fit).collect::<Vec<_>>().into_iter().flatten().collect()
+}
+
+/// Constants of a law as results carry them.
+pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
+    let carried = parameters.iter().map(|p| Parameter {
+        name: p.name.clone(),
+        symbol: p.symbol.clone(),
+        value: p.value,
+        unit: p.unit.clone(),
+        ci95: p.ci95,
+    });
+    carried.collect()
+}
+
+/// What a report shows of the search.
+pub(super) fn story(found: &Found, inputs: &[ChosenInput]) -> LawStory {
+    let front = found.discovery.front.iter().map(|entry| FrontLaw {
+        expression: text(&entry.expression, inputs),
+        nodes: entry.nodes,
+        rmse: entry.rmse,
+        held_out_rmse: entry.held_out_rmse,
+    });
+    let expression = &found.last.law.expression;
+    let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
+    LawStory {
+        expression: text(expression, inputs),
+        latex: render(expression, Language::Latex, "friction", &symbols),
+        nodes: expression.node_count(),
+        rmse: found.last.rmse,
+        front: front.collect(),
+        explored: found.discovery.explored,
+    }
+}
+
+fn text(expression: &Expr, inputs: &[ChosenInput]) -> String {
+    let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
+    render(expression, Language::Unicode, "friction", &symbols)
+}
+
+fn refused(error: &LawError) -> Error {
+    let code = match error {
+        LawError::TooFewSamples { .. } => &codes::TOO_FEW_ROWS,
+        LawError::NotFinite { .. } => &codes::NOT_FINITE,
+        LawError::ConstantVelocity => &codes::NO_MOTION,
+        _ => &codes::NOT_IDENTIFIABLE,
+    };
+    Error::new(code, error.to_string())
+}

@@ -1,0 +1,122 @@
+//! Recordings become what is learnt from: filtered samples, the rigid body's columns, the target, blocks to hold out.
+
+use std::ops::Range;
+
+use super::options::Options;
+use crate::error::{Error, Result, codes};
+use crate::joint::Joint;
+use crate::recording::Recording;
+use crate::samples::blocks::{Split, blocks, correlation_time, split};
+use crate::samples::rigid_body::{Separation, TermKind, separate};
+use crate::samples::{Preparation, Request, Samples, prepare};
+
+/// Below this share of the top speed friction is no function of velocity.
+const REST_SHARE: f64 = 0.001;
+
+/// A column of the rigid body whose coefficient is identified along with friction.
+#[derive(Clone, Debug)]
+pub(super) struct RigidColumn {
+    pub(super) kind: TermKind,
+    pub(super) values: Vec<f64>,
+}
+
+/// What a friction law is learnt from. All columns have one value for each row.
+#[derive(Clone, Debug)]
+pub(super) struct Material {
+    pub(super) samples: Samples,
+    /// Actuator less the rigid body given in `joint.toml`, or friction where it is recorded separated.
+    pub(super) target: Vec<f64>,
+    /// Friction after a preliminary separation; what inputs are judged by.
+    pub(super) friction: Vec<f64>,
+    pub(super) columns: Vec<RigidColumn>,
+    /// `None` where friction is recorded separated.
+    pub(super) separation: Option<Separation>,
+    /// Samples that are learnt from: those in motion.
+    pub(super) rows: Vec<usize>,
+    /// Blocks of those rows by role, as positions in `rows`.
+    pub(super) split: Split,
+    /// Block of each row.
+    pub(super) labels: Vec<usize>,
+}
+
+pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options) -> Result<Material> {
+    let borrowed: Vec<&Recording> = recordings.iter().collect();
+    for recording in recordings.iter().filter(|recording| recording.separated_friction().is_none()) {
+        require_actuator(recording)?;
+    }
+    let request = Request { rate_hz: options.rate_hz, ..Request::default() };
+    let preparation = Preparation::plan(&borrowed, joint, &request)?;
+    let parts = recordings.iter().map(|recording| prepare(recording, &preparation)).collect::<Result<Vec<_>>>()?;
+    let samples = Samples::join(parts)?;
+    let velocity = samples.require_velocity()?.to_vec();
+    let label = recordings.first().map_or("", |recording| recording.file());
+    let first = velocity.first().copied().unwrap_or(0.0);
+    if velocity.iter().all(|v| v.to_bits() == first.to_bits()) {
+        return Err(Error::new(&codes::NO_MOTION, "the velocity is constant, so friction cannot be told from an offset")
+            .in_file(label)
+            .in_column("velocity")
+            .with_value(first.to_string()));
+    }
+    let (separation, target, friction) = match &samples.friction {
+        Some(friction) => (None, friction.clone(), friction.clone()),
+        None => {
+            let separation = separate(&samples, joint).map_err(|error| error.in_file(label))?;
+            let actuator = samples.actuator.as_deref().unwrap_or_default();
+            let target = actuator.iter().zip(&separation.given).map(|(total, given)| total - given).collect();
+            let friction = separation.friction.clone();
+            (Some(separation), target, friction)
+        }
+    };
+    let columns = separation.iter().flat_map(|s| &s.terms);
+    let columns = columns.map(|term| RigidColumn { kind: term.kind, values: term.column.clone() }).collect();
+    let rows = if separation.is_some() { moving(&velocity) } else { (0..velocity.len()).collect() };
+    let correlation = correlation_time(&friction, &samples.segments);
+    let pieces = rows_of(&blocks(&samples, correlation), &rows);
+    let mut labels = vec![0; rows.len()];
+    for (label, piece) in pieces.iter().enumerate() {
+        labels[piece.clone()].fill(label);
+    }
+    let split = split(&pieces, correlation, options.seed);
+    Ok(Material { samples, target, friction, columns, separation, rows, split, labels })
+}
+
+fn require_actuator(recording: &Recording) -> Result<()> {
+    use crate::recording::Quantity::{Current, Force, FrictionForce, FrictionTorque, Torque};
+    recording
+        .require(&[Torque, Force, Current, FrictionTorque, FrictionForce], "fitting friction")
+        .map(|_| ())
+}
+
+fn moving(velocity: &[f64]) -> Vec<usize> {
+    let top = velocity.iter().fold(0.0_f64, |peak, v| peak.max(v.abs()));
+    (0..velocity.len()).filter(|&row| velocity[row].abs() > REST_SHARE * top).collect()
+}
+
+/// Ranges of samples as ranges of positions in `rows`; those without a row are left out.
+fn rows_of(pieces: &[Range<usize>], rows: &[usize]) -> Vec<Range<usize>> {
+    pieces
+        .iter()
+        .map(|piece| rows.partition_point(|row| *row < piece.start)..rows.partition_point(|row| *row < piece.end))
+        .filter(|range| !range.is_empty())
+        .collect()
+}
+
+impl Material {
+    /// The values of a column at the rows that are learnt from.
+    pub(super) fn pick(&self, column: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&row| column[row]).collect()
+    }
+
+    /// Positions in `rows` that nothing is held out of: training and validation.
+    pub(super) fn open(&self) -> Vec<usize> {
+        let mut open: Vec<usize> = self.split.train.iter().chain(&self.split.validation).cloned().flatten().collect();
+        open.sort_unstable();
+        open
+    }
+
+    /// Positions in `rows` that candidates are compared on; all of them where there are too few blocks to lock one.
+    pub(super) fn locked(&self) -> Vec<usize> {
+        let locked: Vec<usize> = self.split.locked.iter().cloned().flatten().collect();
+        if locked.is_empty() { (0..self.rows.len()).collect() } else { locked }
+    }
+}

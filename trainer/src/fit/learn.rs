@@ -1,0 +1,142 @@
+//! The network: trained, pruned, refitted on everything, and as the report shows it.
+
+use super::gather::Material;
+use super::inputs::ChosenInput;
+use super::options::{Progress, ProgressCallback, Stage};
+use super::outcome::NetworkStory;
+use crate::error::{Error, Result, codes};
+use crate::kan::{
+    self, Architecture, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, Smoothing,
+    prune,
+};
+use crate::samples::rigid_body::TermKind;
+
+/// Points of a drawn curve.
+pub(super) const CURVE_POINTS: usize = 241;
+
+/// The columns that a network learns from, at the rows of the material.
+pub(super) struct Lesson {
+    inputs: Vec<Vec<f64>>,
+    target: Vec<f64>,
+    linear: Vec<Vec<f64>>,
+    /// Offset taken off the target, where one was identified.
+    offset: Option<f64>,
+    options: FitOptions,
+}
+
+/// A network with the rigid body that was identified along with it.
+pub(super) struct Learnt {
+    pub(super) network: Network,
+    pub(super) graph: GraphSummary,
+    /// One coefficient for each column of the material.
+    pub(super) coefficients: Vec<f64>,
+    pub(super) settled: bool,
+}
+
+impl Lesson {
+    pub(super) fn new(material: &Material, inputs: &[ChosenInput], seed: u64) -> Self {
+        let is_offset = |kind: TermKind| kind == TermKind::TorqueOffset;
+        let parameters = material.separation.iter().flat_map(|separation| &separation.parameters);
+        // A network has a constant of its own, so the offset cannot be identified beside it.
+        let offset = parameters.clone().find(|p| is_offset(p.kind)).map(|p| p.value);
+        let own = material.columns.iter().filter(|column| !is_offset(column.kind));
+        let columns = inputs.len();
+        let text = if columns == 1 { "[1,5,1]".to_owned() } else { format!("[{columns},[5,2],1]") };
+        // The text is one of those above, which all parse.
+        let architecture = text.parse().unwrap_or_else(|_| Architecture::additive(columns, &[5]));
+        Self {
+            inputs: inputs.iter().map(|input| input.values.clone()).collect(),
+            target: material.pick(&material.target).iter().map(|total| total - offset.unwrap_or(0.0)).collect(),
+            linear: own.map(|column| material.pick(&column.values)).collect(),
+            offset,
+            options: FitOptions { seed, smoothing: Smoothing::Estimated, ..FitOptions::new(architecture) },
+        }
+    }
+
+    fn dataset<'a>(&'a self, blocks: &'a Blocks) -> Dataset<'a> {
+        Dataset { inputs: &self.inputs, target: &self.target, linear: &self.linear, blocks }
+    }
+
+    /// Trains on the training blocks and prunes as the validation blocks allow.
+    pub(super) fn train(&self, material: &Material, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
+        let blocks =
+            Blocks { train: material.split.train.clone(), validation: material.split.validation.clone() };
+        let dataset = self.dataset(&blocks);
+        let told = |stage| {
+            move |step: &kan::Progress| {
+                progress(&Progress { stage, steps: step.step.step, rmse: Some(step.step.loss.sqrt()) });
+            }
+        };
+        let fitted = kan::fit(&dataset, &self.options, &told(Stage::Training)).map_err(|error| refused(&error))?;
+        let pruned = prune(&fitted, &dataset, &self.options, &PruneOptions::default(), &told(Stage::Pruning))
+            .map_err(|error| refused(&error))?;
+        Ok((fitted, pruned))
+    }
+
+    /// Goes on training a pruned network, on all rows.
+    pub(super) fn refit(&self, result: &FitResult) -> Result<FitResult> {
+        let blocks = Blocks::default();
+        let dataset = self.dataset(&blocks);
+        kan::refit(&result.network, &result.linear_coefficients, &dataset, &self.options, &|_| ())
+            .map_err(|error| refused(&error))
+    }
+
+    /// A network with its scores and its rigid body.
+    pub(super) fn learnt(&self, result: &FitResult) -> Learnt {
+        let blocks = Blocks::default();
+        let mut coefficients = result.linear_coefficients.clone();
+        coefficients.extend(self.offset);
+        Learnt {
+            graph: GraphSummary::of(&result.network, &self.dataset(&blocks)),
+            network: result.network.clone(),
+            coefficients,
+            settled: result.convergence.status.is_settled(),
+        }
+    }
+
+    /// What a report shows of the training.
+    pub(super) fn story(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkStory {
+        let blocks = Blocks::default();
+        let dataset = self.dataset(&blocks);
+        let after = GraphSummary::of(&last.network, &dataset);
+        let curve = |index: usize, active: bool| {
+            if active { after.curve(&last.network, index, CURVE_POINTS) } else { Vec::new() }
+        };
+        let activations = after.edges.iter().enumerate().map(|(index, edge)| curve(index, edge.active)).collect();
+        let stages = [1.0 / 3.0, 2.0 / 3.0, 1.0].map(|share| (share, self.over_velocity(fitted.network_at(share))));
+        NetworkStory {
+            architecture: self.options.architecture.to_string(),
+            before: GraphSummary::of(&fitted.network, &dataset),
+            activations,
+            removed: pruned.removed.clone(),
+            history: fitted.history.clone(),
+            stages: stages.into(),
+            rmse: last.train_rmse,
+            after,
+        }
+    }
+
+    /// Points of a network over its first input, the others at their mean.
+    fn over_velocity(&self, network: &Network) -> Vec<[f64; 2]> {
+        let mut point: Vec<f64> =
+            self.inputs.iter().map(|column| column.iter().sum::<f64>() / column.len().max(1) as f64).collect();
+        let low = self.inputs[0].iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.inputs[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let at = |i: usize| low + (high - low) * i as f64 / (CURVE_POINTS - 1) as f64;
+        (0..CURVE_POINTS)
+            .map(|i| {
+                point[0] = at(i);
+                [at(i), network.evaluate(&point)]
+            })
+            .collect()
+    }
+}
+
+fn refused(error: &kan::KanError) -> Error {
+    let code = match error {
+        kan::KanError::TooFewRows { .. } => &codes::TOO_FEW_ROWS,
+        kan::KanError::NotFinite { .. } => &codes::NOT_FINITE,
+        _ => &codes::NOT_IDENTIFIABLE,
+    };
+    Error::new(code, error.to_string())
+}

@@ -1,0 +1,24 @@
+//! The whole way from recordings to an image: samples, separation, inputs, network, law, choice, model. Prints nothing.
+//!
+//! [`fit`] is the way, [`predict`](predict::predict) what a model makes of samples, [`Outcome`] all that is to be told.
+
+mod choose;
+mod formula;
+mod formula_search;
+mod gather;
+mod inputs;
+mod learn;
+pub mod model;
+mod options;
+pub mod outcome;
+mod piecewise;
+pub mod predict;
+mod rigid;
+mod run;
+mod tables;
+
+pub use formula::formula_of;
+pub use model::{CELLS, HostModel};
+pub use options::{Options, Progress, ProgressCallback, Stage};
+pub use outcome::Outcome;
+pub use run::fit;

@@ -1,0 +1,65 @@
+//! What a caller may ask of a fit, and what a fit tells while it works.
+
+use super::outcome::Representation;
+
+/// Settings of a fit.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// One seed, one image.
+    pub seed: u64,
+    /// Inputs by name, velocity included; chosen by relevance when absent.
+    pub inputs: Option<Vec<String>>,
+    /// Form of the law in the image; the better one when absent.
+    pub representation: Option<Representation>,
+    /// Rate of the samples, Hz; follows the filter when absent.
+    pub rate_hz: Option<f64>,
+}
+
+/// What a fit is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Filtering, and taking the rigid body off.
+    Separating,
+    /// Training the network.
+    Training,
+    /// Pruning the network.
+    Pruning,
+    /// Looking for the formula.
+    Searching,
+    /// Fitting the classical laws.
+    Comparing,
+    /// Refitting on all samples and compiling the image.
+    Compiling,
+    /// Scoring the exported image.
+    Scoring,
+}
+
+impl Stage {
+    /// As a line of progress says it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Separating => "separating friction",
+            Self::Training => "training the network",
+            Self::Pruning => "pruning the network",
+            Self::Searching => "looking for the formula",
+            Self::Comparing => "fitting classical laws",
+            Self::Compiling => "compiling the image",
+            Self::Scoring => "scoring the image",
+        }
+    }
+}
+
+/// A sign of life.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Steps done of this stage, where they are counted.
+    pub steps: usize,
+    /// Root mean square error at this point, where there is one.
+    pub rmse: Option<f64>,
+}
+
+/// Called from worker threads.
+pub type ProgressCallback<'a> = &'a (dyn Fn(&Progress) + Sync);

@@ -1,0 +1,214 @@
+//! What a fit brings back: everything that a terminal, a JSON file and a report show of it. Plain data.
+
+use crate::kan::{GraphSummary, Removed, Step};
+use crate::parameter::Parameter;
+use crate::recording::Axis;
+use crate::samples::relevance::Relevance;
+
+/// The form in which a law goes into the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Representation {
+    /// Tables of cubic pieces, made from the network.
+    Table,
+    /// A formula.
+    Expression,
+}
+
+impl Representation {
+    /// Name in JSON: `table` or `expression`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+            Self::Expression => "expression",
+        }
+    }
+}
+
+/// A finished fit. Torques are in `unit`, all else in SI.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Name of the joint; empty where none was given.
+    pub joint: String,
+    /// Rotary or linear.
+    pub axis: Axis,
+    /// Unit of actuator, rigid body and friction as printed: `N m`, `N` or `A`.
+    pub unit: &'static str,
+    /// Seed of the training.
+    pub seed: u64,
+    /// Filter and origin of the velocity, one sentence.
+    pub filter: String,
+    /// Inputs of the model in its order, velocity first.
+    pub inputs: Vec<InputRange>,
+    /// Relevance of every input that was offered, strongest first.
+    pub relevance: Vec<Relevance>,
+    /// The network and how it came about.
+    pub network: NetworkStory,
+    /// The formula that was found.
+    pub law: LawStory,
+    /// Classical friction laws fitted to the same samples, rigid body identified along with each.
+    pub classical: Vec<ClassicalLaw>,
+    /// Constants of the law in the image, then those of the rigid body identified along with it.
+    pub parameters: Vec<Parameter>,
+    /// What was compared for the image; exactly one is chosen.
+    pub candidates: Vec<Candidate>,
+    /// Form of the law in the image.
+    pub representation: Representation,
+    /// Why this form was chosen, one sentence.
+    pub choice: String,
+    /// What the data do not determine and what else was noticed, in sentences.
+    pub remarks: Vec<String>,
+    /// Whether every parameter is determined and every optimiser converged.
+    pub sound: Soundness,
+    /// Recordings that were fitted, as the exported image predicts them.
+    pub train: Vec<Trace>,
+    /// Score of the exported image over all training recordings together.
+    pub train_score: Score,
+    /// Recordings that were not fitted, as the exported image predicts them.
+    pub tests: Vec<Trace>,
+    /// Samples of training: velocity and separated friction, at most a few thousand, for a picture over velocity.
+    pub cloud: Vec<[f64; 2]>,
+    /// The exported friction law over velocity, other inputs at their mean.
+    pub law_curve: Vec<[f64; 2]>,
+    /// The image, as it is written to the file.
+    pub image: Vec<u8>,
+}
+
+/// Whether a fit may be relied upon; anything but `Sound` ends with exit status 4.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Soundness {
+    /// Determined and converged.
+    Sound,
+    /// Parameters cannot be told apart; which, in a sentence.
+    NotIdentifiable(String),
+    /// An optimiser ran out of steps; which, in a sentence.
+    NotConverged(String),
+}
+
+/// An input of the model with its trained range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputRange {
+    /// Name, such as `velocity`.
+    pub name: String,
+    /// Unit as printed, such as `rad/s`.
+    pub unit: &'static str,
+    /// Smallest trained value.
+    pub low: f64,
+    /// Largest trained value.
+    pub high: f64,
+}
+
+/// The network, before and after pruning.
+#[derive(Clone, Debug)]
+pub struct NetworkStory {
+    /// Shape that was trained, such as `[1,5,1]`.
+    pub architecture: String,
+    /// Nodes and edges with their attribution scores, as trained.
+    pub before: GraphSummary,
+    /// The same after pruning and refitting.
+    pub after: GraphSummary,
+    /// What pruning took away, in that order.
+    pub removed: Vec<Removed>,
+    /// Points of each edge's activation after pruning, in the order of `after.edges`; empty for pruned edges.
+    pub activations: Vec<Vec<[f64; 2]>>,
+    /// Steps of the training before pruning.
+    pub history: Vec<Step>,
+    /// The friction curve after a third, two thirds and all of the training: share of the steps, points over velocity.
+    pub stages: Vec<(f64, Vec<[f64; 2]>)>,
+    /// Root mean square error on training samples, unit of the target.
+    pub rmse: f64,
+}
+
+/// The formula.
+#[derive(Clone, Debug)]
+pub struct LawStory {
+    /// As text.
+    pub expression: String,
+    /// As LaTeX.
+    pub latex: String,
+    /// Operators, inputs and constants.
+    pub nodes: usize,
+    /// Root mean square of its residuals on the training samples.
+    pub rmse: f64,
+    /// Laws that no simpler one equals, by complexity.
+    pub front: Vec<FrontLaw>,
+    /// Number of structures that were fitted.
+    pub explored: usize,
+}
+
+/// A law on the front of error against complexity.
+#[derive(Clone, Debug)]
+pub struct FrontLaw {
+    /// As text.
+    pub expression: String,
+    /// Operators, inputs and constants.
+    pub nodes: usize,
+    /// Root mean square of the residuals.
+    pub rmse: f64,
+    /// The same over blocks held out in turn.
+    pub held_out_rmse: f64,
+}
+
+/// A friction law of the literature fitted to the same samples.
+#[derive(Clone, Debug)]
+pub struct ClassicalLaw {
+    /// Its name.
+    pub name: &'static str,
+    /// Root mean square of its residuals.
+    pub rmse: f64,
+    /// Bayesian information criterion; lower is better.
+    pub bic: f64,
+    /// Constants of the law, then of the rigid body identified along with it.
+    pub parameters: Vec<Parameter>,
+}
+
+/// One form that could go into the image.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// Its form.
+    pub representation: Representation,
+    /// One line: cells, or the formula's complexity.
+    pub description: String,
+    /// Root mean square error on blocks that neither was fitted to, evaluated in the arithmetic of the drive.
+    pub held_out_rmse: f64,
+    /// Size of its image.
+    pub bytes: usize,
+    /// Whether it is the one in the image.
+    pub chosen: bool,
+}
+
+/// How well a prediction agrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Score {
+    /// Number of rows.
+    pub n: usize,
+    /// Share of the variance that is explained.
+    pub r2: f64,
+    /// Root mean square error, unit of the actuator.
+    pub rmse: f64,
+    /// Norm of the residual over norm of the measurement.
+    pub relative_error: f64,
+}
+
+/// A recording as the exported image predicts it, one value a row.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// File name of the recording.
+    pub label: String,
+    /// Time, s; row number where the recording has no clock.
+    pub time: Vec<f64>,
+    /// Velocity as the model sees it.
+    pub velocity: Vec<f64>,
+    /// Recorded actuator, or recorded friction where it came separated.
+    pub measured: Vec<f64>,
+    /// What the image predicts of it, rigid body included.
+    pub predicted: Vec<f64>,
+    /// Recorded actuator less the rigid body in force.
+    pub friction: Vec<f64>,
+    /// Friction alone, as predicted.
+    pub predicted_friction: Vec<f64>,
+    /// On the rows as recorded.
+    pub score: Score,
+    /// On the samples that the fit sees: everything through the same low-pass.
+    pub filtered_score: Score,
+}

@@ -1,0 +1,187 @@
+//! What a model predicts of a recording, sample after sample, in the arithmetic of the drive.
+
+use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
+use frikan_shared::model::{MAX_INPUTS, RigidBody};
+use frikan_shared::units::{Quantity, Unit};
+
+use super::model::HostModel;
+use super::outcome::{Score, Trace};
+use crate::error::{Error, Result, codes};
+use crate::joint::Joint;
+use crate::recording::Recording;
+use crate::samples::{Preparation, Request, Samples, prepare, prepare_every_row};
+
+/// A prediction, one value a sample, in the unit of the model's output.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// Friction: law and effects.
+    pub friction: Vec<f64>,
+    /// Rigid body in force; zero where friction is recorded separated.
+    pub rigid_body: Vec<f64>,
+}
+
+impl Prediction {
+    /// The whole torque of the actuator.
+    #[must_use]
+    pub fn total(&self) -> Vec<f64> {
+        self.friction.iter().zip(&self.rigid_body).map(|(friction, body)| friction + body).collect()
+    }
+}
+
+/// Predicts samples.
+///
+/// # Errors
+/// `FRK-D009` when the samples lack what the model reads, `FRK-D018` when their unit is not that of the model.
+pub fn predict(model: &HostModel, samples: &Samples) -> Result<Prediction> {
+    let unit = match model.output_unit {
+        Unit::Newton => "N",
+        Unit::Ampere => "A",
+        _ => "Nm",
+    };
+    if !samples.actuator_unit.is_empty() && samples.actuator_unit != unit {
+        let message = format!("the model predicts in {unit}, the recording's actuator is in {}", samples.actuator_unit);
+        return Err(Error::new(&codes::RECORDINGS_DISAGREE, message));
+    }
+    let channels = channels(model, samples)?;
+    let friction = friction(model, samples, &channels);
+    let rigid_body = match samples.friction {
+        Some(_) => vec![0.0; friction.len()],
+        None => rigid_body(&model.rigid_body, samples)?,
+    };
+    Ok(Prediction { friction, rigid_body })
+}
+
+/// The columns that the model reads, in the order of its inputs.
+fn channels<'a>(model: &HostModel, samples: &'a Samples) -> Result<Vec<&'a [f64]>> {
+    let column = |quantity: &Quantity| match quantity {
+        Quantity::Load => samples.input("load").or(samples.rigid_body.as_deref()),
+        other => samples.input(other.name()),
+    };
+    let missing = |quantity: &Quantity| {
+        let message = format!("the model reads `{}`, which is not recorded", quantity.name());
+        Error::new(&codes::MISSING_COLUMN, message).in_column(quantity.name())
+    };
+    model.inputs.iter().map(|input| column(&input.quantity).ok_or_else(|| missing(&input.quantity))).collect()
+}
+
+fn friction(model: &HostModel, samples: &Samples, channels: &[&[f64]]) -> Vec<f64> {
+    let at = |column: Option<&[f64]>, row: usize| column.map_or(0.0, |values| values[row] as f32);
+    let mut friction = Vec::with_capacity(samples.len());
+    for segment in &samples.segments {
+        // Every stretch begins at rest and cold: nothing is known of what went before.
+        let mut state = FrictionState::new(&model.effects);
+        for row in segment.clone() {
+            let mut measurement = Measurement {
+                velocity: at(samples.velocity.as_deref(), row),
+                position: at(samples.position.as_deref(), row),
+                acceleration: at(samples.acceleration.as_deref(), row),
+                ..Measurement::default()
+            };
+            let mut others = 0;
+            for (input, column) in model.inputs.iter().zip(channels) {
+                let value = column[row] as f32;
+                match input.quantity {
+                    Quantity::Velocity => measurement.velocity = value,
+                    Quantity::Position => measurement.position = value,
+                    Quantity::Acceleration => measurement.acceleration = value,
+                    Quantity::Load => measurement.load = value,
+                    Quantity::Temperature => measurement.temperature = value,
+                    Quantity::Other(_) => {
+                        measurement.other[others.min(MAX_INPUTS - 1)] = value;
+                        others += 1;
+                    }
+                }
+            }
+            let step = match samples.time.get(row).zip(row.checked_sub(1).and_then(|before| samples.time.get(before))) {
+                Some((now, before)) if row > segment.start => now - before,
+                _ => 0.0,
+            };
+            friction.push(f64::from(state.step(model, &measurement, step as f32).torque));
+        }
+    }
+    friction
+}
+
+fn rigid_body(body: &RigidBody, samples: &Samples) -> Result<Vec<f64>> {
+    let needs = |coefficient: f32, column: Option<&[f64]>, name: &str| {
+        if coefficient != 0.0 && column.is_none() {
+            let message = format!("the model's rigid body needs `{name}`, which is neither recorded nor derivable");
+            return Err(Error::new(&codes::MISSING_COLUMN, message).in_column(name));
+        }
+        Ok(())
+    };
+    needs(body.inertia, samples.acceleration.as_deref(), "acceleration")?;
+    needs(body.gravity_sin.abs() + body.gravity_cos.abs(), samples.position.as_deref(), "position")?;
+    // A factor of exactly one is what a model has that was trained without a rigid body.
+    needs(body.given_scale * (body.given_scale - 1.0), samples.rigid_body.as_deref(), "rigid_body_torque")?;
+    let at = |column: Option<&[f64]>, row: usize| column.map_or(0.0, |values| values[row] as f32);
+    let torque = |row| {
+        let given = at(samples.rigid_body.as_deref(), row);
+        let (position, acceleration) = (samples.position.as_deref(), samples.acceleration.as_deref());
+        f64::from(rigid_body_torque(body, at(position, row), at(acceleration, row), given))
+    };
+    Ok((0..samples.len()).map(torque).collect())
+}
+
+/// Samples at every row of a recording, prepared by a filter that is planned for it alone, as `trainer predict` sees it.
+///
+/// # Errors
+/// As [`Preparation::plan`] and [`prepare_every_row`].
+pub fn every_row(recording: &Recording, joint: &Joint) -> Result<Samples> {
+    let preparation = Preparation::plan(&[recording], joint, &Request::default())?;
+    prepare_every_row(recording, &preparation)
+}
+
+/// What a model makes of a recording, and how well it agrees.
+///
+/// # Errors
+/// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
+pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint, rate_hz: Option<f64>) -> Result<Trace> {
+    let in_file = |error: Error| error.in_file(recording.file());
+    let rows = every_row(recording, joint).map_err(in_file)?;
+    let prediction = predict(model, &rows).map_err(in_file)?;
+    let channel = recording.separated_friction().or_else(|| recording.actuator()).ok_or_else(|| {
+        in_file(Error::new(&codes::MISSING_COLUMN, "scoring needs the actuator's torque, force or current"))
+    })?;
+    let measured = channel.values.clone();
+    let predicted = prediction.total();
+    let request = Request { rate_hz, ..Request::default() };
+    let preparation = Preparation::plan(&[recording], joint, &request).map_err(in_file)?;
+    let samples = prepare(recording, &preparation).map_err(in_file)?;
+    let filtered = predict(model, &samples).map_err(in_file)?.total();
+    let reference = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+    let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
+    Ok(Trace {
+        label: recording.label.clone(),
+        time,
+        velocity: rows.velocity.clone().unwrap_or_default(),
+        score: Score::of(&measured, &predicted),
+        filtered_score: Score::of(reference, &filtered),
+        friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
+        predicted_friction: prediction.friction,
+        measured,
+        predicted,
+    })
+}
+
+impl Score {
+    /// Agreement of a prediction with a measurement of the same length.
+    #[must_use]
+    pub fn of(measured: &[f64], predicted: &[f64]) -> Self {
+        let n = measured.len();
+        let count = n.max(1) as f64;
+        let mean = measured.iter().sum::<f64>() / count;
+        let residual: f64 = measured.iter().zip(predicted).map(|(m, p)| (m - p).powi(2)).sum();
+        let spread: f64 = measured.iter().map(|m| (m - mean).powi(2)).sum();
+        let power: f64 = measured.iter().map(|m| m * m).sum();
+        let share = |of: f64| if of > 0.0 { residual / of } else { 0.0 };
+        Self { n, r2: 1.0 - share(spread), rmse: (residual / count).sqrt(), relative_error: share(power).sqrt() }
+    }
+
+    /// Agreement over several recordings taken as one.
+    #[must_use]
+    pub fn over(traces: &[Trace]) -> Self {
+        let join = |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
+        Self::of(&join(|trace| &trace.measured), &join(|trace| &trace.predicted))
+    }
+}

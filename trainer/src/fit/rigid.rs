@@ -1,0 +1,112 @@
+//! The rigid body in force: what `joint.toml` gives and what was identified along with friction.
+
+use frikan_shared::model::RigidBody;
+
+use super::gather::Material;
+use crate::joint::Joint;
+use crate::parameter::Parameter;
+use crate::recording::Axis;
+use crate::samples::regression::least_squares;
+use crate::samples::rigid_body::TermKind;
+
+/// A column of which the others and friction leave less than this share of its square cannot be told from them.
+const COLLINEAR_SHARE: f64 = 1e-4;
+
+/// The rigid body for an image from one coefficient for each column of the material.
+pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
+    let Some(separation) = &material.separation else { return RigidBody::default() };
+    let per_newton_metre = match material.samples.actuator_unit {
+        "A" => joint.drive.joint_torque_per_ampere().map_or(1.0, f64::recip),
+        _ => 1.0,
+    };
+    let mut body = [0.0; 5];
+    let [inertia, gravity_sin, gravity_cos, offset, given_scale] = &mut body;
+    *inertia = per_newton_metre * joint.rigid_body.inertia_kgm2.unwrap_or(0.0);
+    if let Some(gravity) = joint.rigid_body.gravity_torque_nm {
+        let phase = joint.rigid_body.gravity_phase_rad.unwrap_or(0.0);
+        *gravity_sin = per_newton_metre * gravity * phase.cos();
+        *gravity_cos = per_newton_metre * gravity * phase.sin();
+    }
+    for (term, coefficient) in separation.terms.iter().zip(coefficients) {
+        match term.kind {
+            TermKind::Inertia | TermKind::ExtraInertia => *inertia += coefficient,
+            TermKind::GravitySine => *gravity_sin += coefficient,
+            TermKind::GravityCosine => *gravity_cos += coefficient,
+            TermKind::TorqueScale => *given_scale += coefficient,
+            TermKind::TorqueOffset => *offset += coefficient,
+        }
+    }
+    let [inertia, gravity_sin, gravity_cos, offset, given_scale] = body.map(|x| x as f32);
+    RigidBody { inertia, gravity_sin, gravity_cos, offset, given_scale }
+}
+
+/// Coefficients with standard errors as named parameters, one for each column.
+pub(super) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Vec<Parameter> {
+    let named = material.columns.iter().zip(coefficients);
+    named
+        .map(|(column, &(value, standard_error))| {
+            let (name, symbol) = names(column.kind, material.samples.axis);
+            Parameter {
+                name: name.to_owned(),
+                symbol: symbol.to_owned(),
+                value,
+                unit: unit(column.kind, material.samples.axis, material.samples.actuator_unit),
+                ci95: [value - 1.96 * standard_error, value + 1.96 * standard_error],
+            }
+        })
+        .collect()
+}
+
+fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
+    match (kind, axis) {
+        (TermKind::Inertia, Axis::Rotary) => ("inertia", "J"),
+        (TermKind::Inertia, Axis::Linear) => ("mass", "M"),
+        (TermKind::ExtraInertia, Axis::Rotary) => ("extra_inertia", "ΔJ"),
+        (TermKind::ExtraInertia, Axis::Linear) => ("extra_mass", "ΔM"),
+        (TermKind::GravitySine, _) => ("gravity_sine", "G_s"),
+        (TermKind::GravityCosine, _) => ("gravity_cosine", "G_c"),
+        (TermKind::TorqueScale, _) => ("torque_scale", "k"),
+        (TermKind::TorqueOffset, _) => ("torque_offset", "τ_0"),
+    }
+}
+
+/// Unit of a coefficient as printed.
+pub(super) fn unit(kind: TermKind, axis: Axis, actuator: &str) -> String {
+    match (kind, axis, actuator) {
+        (TermKind::TorqueScale, _, _) => "1".to_owned(),
+        (TermKind::Inertia | TermKind::ExtraInertia, Axis::Rotary, "Nm") => "kg m²".to_owned(),
+        (TermKind::Inertia | TermKind::ExtraInertia, Axis::Linear, "N") => "kg".to_owned(),
+        (TermKind::Inertia | TermKind::ExtraInertia, Axis::Rotary, _) => format!("{} s²/rad", printed(actuator)),
+        (TermKind::Inertia | TermKind::ExtraInertia, Axis::Linear, _) => format!("{} s²/m", printed(actuator)),
+        _ => printed(actuator).to_owned(),
+    }
+}
+
+/// The unit of an actuator as printed.
+pub(super) fn printed(suffix: &str) -> &'static str {
+    match suffix {
+        "N" => "N",
+        "A" => "A",
+        _ => "N m",
+    }
+}
+
+/// Name of the first column that the others, velocity and its sign hold almost entirely.
+pub(super) fn collinear(material: &Material) -> Option<String> {
+    let separation = material.separation.as_ref()?;
+    let velocity = material.pick(material.samples.velocity.as_deref()?);
+    let sign: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
+    let own: Vec<Vec<f64>> = material.columns.iter().map(|column| material.pick(&column.values)).collect();
+    let all = std::iter::once(0..velocity.len()).collect::<Vec<_>>();
+    let left_of = |index: usize| {
+        let mut others: Vec<Vec<f64>> =
+            own.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, column)| column.clone()).collect();
+        others.extend([velocity.clone(), sign.clone()]);
+        let fit = least_squares(&others, &own[index], &all);
+        let power: f64 = own[index].iter().map(|x| x * x).sum();
+        fit.residuals.iter().map(|x| x * x).sum::<f64>() / power.max(f64::MIN_POSITIVE)
+    };
+    let lost = (0..own.len()).find(|&index| left_of(index) < COLLINEAR_SHARE);
+    let name = |index: usize| names(material.columns[index].kind, material.samples.axis).0.to_owned();
+    lost.map(name).or_else(|| (separation.rank_deficiency > 0).then(|| "a parameter of the rigid body".to_owned()))
+}

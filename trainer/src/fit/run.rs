@@ -1,0 +1,304 @@
+//! One call from recordings to an outcome.
+
+use frikan_runtime::evaluate::evaluate;
+use frikan_shared::image::Image;
+use frikan_shared::model::{Law, MAX_INPUTS};
+
+use super::choose::{Trial, decide};
+use super::formula::formula_of;
+use super::formula_search::{self, Found, classical, law_data, law_parameters, search};
+use super::gather::{Material, gather};
+use super::inputs::{ChosenInput, choose, output_unit};
+use super::learn::{CURVE_POINTS, Learnt, Lesson};
+use super::model::{HostModel, Parts, assemble, from_bytes, provenance, to_bytes};
+use super::options::{Options, Progress, ProgressCallback, Stage};
+use super::outcome::{Candidate, InputRange, Outcome, Representation, Score, Soundness};
+use super::predict::trace;
+use super::{rigid, tables};
+use crate::compile::program::compile_program;
+use crate::error::{Error, Result, codes};
+use crate::joint::Joint;
+use crate::law::{Expr, FormFit};
+use crate::parameter::Parameter;
+use crate::recording::Recording;
+
+/// Tables follow the network to within this share of the residual, and of the range of friction where there is none.
+const TABLE_SHARE_OF_RESIDUAL: f64 = 0.05;
+const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
+/// The drive never puts out more than this multiple of the largest friction that was seen.
+const LIMIT_OVER_LARGEST: f64 = 1.5;
+/// Most points of a picture.
+const CLOUD_POINTS: usize = 4000;
+
+/// Fits recordings of one joint; `tests` are only scored.
+///
+/// # Errors
+/// `FRK-D...` when a recording cannot be used, `FRK-U...` for inputs that do not exist, `FRK-N...` when nothing can be
+/// identified at all. A fit that came about but may not be relied upon is no error, see [`Outcome::sound`].
+pub fn fit(
+    recordings: &[Recording],
+    tests: &[Recording],
+    joint: &Joint,
+    options: &Options,
+    progress: ProgressCallback<'_>,
+) -> Result<Outcome> {
+    let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
+    tell(Stage::Separating);
+    let material = gather(recordings, joint, options)?;
+    let (inputs, relevance) = choose(&material, options.inputs.as_deref())?;
+    let builder = Builder { material: &material, inputs: &inputs, joint };
+
+    tell(Stage::Training);
+    let lesson = Lesson::new(&material, &inputs, options.seed);
+    let (fitted, pruned) = lesson.train(&material, progress)?;
+    tell(Stage::Searching);
+    let data = law_data(&material, &inputs);
+    let found = search(&material, &data)?;
+    tell(Stage::Comparing);
+    let classical = classical(&material, &data);
+
+    tell(Stage::Compiling);
+    let refitted = lesson.refit(&pruned.result)?;
+    let learnt = lesson.learnt(&refitted);
+    let rivals = Rivals {
+        table: builder.table(&lesson.learnt(&pruned.result), pruned.result.train_rmse),
+        expression: builder.expression(&found.open),
+    };
+    let verdict = rivals.judge(&material, options.representation)?;
+    let model = match verdict.representation {
+        Representation::Table => builder.table(&learnt, refitted.train_rmse),
+        Representation::Expression => builder.expression(&found.last),
+    }
+    .ok_or_else(no_image)?;
+
+    let name = joint.name.clone().unwrap_or_default();
+    let image = to_bytes(&Image { provenance: provenance(&name, recordings, options.seed), model: *model })?;
+    // What is scored is what a drive would decode.
+    let model = from_bytes(&image)?.model;
+    tell(Stage::Scoring);
+    let score = |recording: &Recording| trace(&model, recording, joint, options.rate_hz);
+    let train = recordings.iter().map(score).collect::<Result<Vec<_>>>()?;
+    let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
+
+    let by_expression = verdict.representation == Representation::Expression;
+    Ok(Outcome {
+        joint: name,
+        axis: material.samples.axis,
+        unit: rigid::printed(material.samples.actuator_unit),
+        seed: options.seed,
+        filter: material.samples.filter.clone(),
+        inputs: input_ranges(&model, &inputs),
+        relevance,
+        network: lesson.story(&fitted, &pruned, &refitted),
+        law: formula_search::story(&found, &inputs),
+        classical,
+        parameters: parameters(&material, &found, &learnt, by_expression),
+        candidates: verdict.candidates,
+        representation: verdict.representation,
+        choice: verdict.reason,
+        remarks: remarks(&found, recordings),
+        sound: soundness(&material, &found, &learnt, by_expression),
+        train_score: Score::over(&train),
+        train,
+        tests,
+        cloud: cloud(&material),
+        law_curve: law_curve(&model, &inputs),
+        image,
+    })
+}
+
+fn no_image() -> Error {
+    Error::new(&codes::NOT_IDENTIFIABLE, "neither the network nor the expression fits into an image")
+}
+
+/// Turns laws into models of one joint.
+struct Builder<'a> {
+    material: &'a Material,
+    inputs: &'a [ChosenInput],
+    joint: &'a Joint,
+}
+
+impl Builder<'_> {
+    fn expression(&self, fit: &FormFit) -> Option<Box<HostModel>> {
+        let expression = &fit.law.expression;
+        let used: Vec<usize> = (0..self.inputs.len()).filter(|&index| reads(expression, index)).collect();
+        // A law that reads nothing still needs a channel to be a model.
+        let used = if used.is_empty() { vec![0] } else { used };
+        let renumbered = expression.map_leaves(&|leaf| match leaf {
+            Expr::Input(index) => Expr::Input(used.iter().position(|u| u == index).unwrap_or(0)),
+            other => other.clone(),
+        });
+        let program = compile_program(&formula_of(&renumbered), used.len()).ok()?;
+        let coefficients: Vec<f64> = fit.uncertainty.nuisance.iter().map(|(value, _)| *value).collect();
+        self.model(Law::Expression(program), &[], &used, &coefficients)
+    }
+
+    fn table(&self, learnt: &Learnt, rmse: f64) -> Option<Box<HostModel>> {
+        let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
+        let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();
+        let tables = tables::compile(&learnt.network, &learnt.graph, &ranges, bound)?;
+        self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients)
+    }
+
+    fn model(
+        &self,
+        law: Law,
+        cells: &[frikan_shared::table::Cell],
+        used: &[usize],
+        coefficients: &[f64],
+    ) -> Option<Box<HostModel>> {
+        assemble(&Parts {
+            law,
+            cells,
+            inputs: used.iter().map(|&index| &self.inputs[index]).collect(),
+            unit: output_unit(self.material.samples.actuator_unit),
+            limit: LIMIT_OVER_LARGEST * self.largest(),
+            rigid_body: rigid::in_force(self.material, self.joint, coefficients),
+        })
+    }
+
+    /// Largest magnitude of friction in the rows that are learnt from.
+    fn largest(&self) -> f64 {
+        let friction = self.material.pick(&self.material.friction);
+        friction.iter().fold(0.0_f64, |peak, f| peak.max(f.abs())).max(1e-6)
+    }
+}
+
+fn reads(expression: &Expr, input: usize) -> bool {
+    *expression == Expr::Input(input) || expression.children().any(|child| reads(child, input))
+}
+
+/// Both forms, fitted to the open blocks; `None` where a form does not fit into an image.
+struct Rivals {
+    table: Option<Box<HostModel>>,
+    expression: Option<Box<HostModel>>,
+}
+
+struct Verdict {
+    representation: Representation,
+    reason: String,
+    candidates: Vec<Candidate>,
+}
+
+impl Rivals {
+    fn judge(&self, material: &Material, asked: Option<Representation>) -> Result<Verdict> {
+        let unit = rigid::printed(material.samples.actuator_unit);
+        let trial = |model: &Option<Box<HostModel>>| model.as_ref().map(|m| Trial::of(m, material)).transpose();
+        let (table, expression) = (trial(&self.table)?, trial(&self.expression)?);
+        let (representation, reason) = match (asked, &table, &expression) {
+            (_, None, None) => return Err(no_image()),
+            (Some(Representation::Table), Some(_), _) => (Representation::Table, "a table was asked for".to_owned()),
+            (Some(Representation::Expression), _, Some(_)) => {
+                (Representation::Expression, "an expression was asked for".to_owned())
+            }
+            (_, Some(table), Some(expression)) => decide(table, expression, material, unit),
+            (_, None, Some(_)) => {
+                (Representation::Expression, "the network does not fit into tables of a drive".to_owned())
+            }
+            (_, Some(_), None) => {
+                (Representation::Table, "the expression does not fit into a program of a drive".to_owned())
+            }
+        };
+        let forms = [
+            (Representation::Table, &self.table, &table),
+            (Representation::Expression, &self.expression, &expression),
+        ];
+        let mut candidates = Vec::new();
+        for (form, model, trial) in forms {
+            let Some((model, trial)) = model.as_ref().zip(trial.as_ref()) else { continue };
+            let image = Image { provenance: provenance("", &[], 0), model: model.as_ref().clone() };
+            candidates.push(Candidate {
+                representation: form,
+                description: describe(&model.law, model.cells.len()),
+                held_out_rmse: trial.rmse(),
+                bytes: to_bytes(&image)?.len(),
+                chosen: form == representation,
+            });
+        }
+        Ok(Verdict { representation, reason, candidates })
+    }
+}
+
+fn describe(law: &Law, cells: usize) -> String {
+    match law {
+        Law::Expression(program) => format!("program of {} operations", program.operations.len()),
+        Law::Network(network) => format!("network of {} nodes, {cells} cells", network.sources.len()),
+        _ => format!("table of {cells} cells"),
+    }
+}
+
+fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
+    let range = |input: &frikan_shared::model::Input| {
+        let chosen = inputs.iter().find(|chosen| chosen.quantity == input.quantity);
+        InputRange {
+            name: chosen.map_or_else(|| input.quantity.name().to_owned(), |chosen| chosen.name.clone()),
+            unit: input.unit.symbol(),
+            low: f64::from(input.low),
+            high: f64::from(input.high),
+        }
+    };
+    model.inputs.iter().map(range).collect()
+}
+
+fn parameters(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Vec<Parameter> {
+    let nuisance = &found.last.uncertainty.nuisance;
+    if by_expression {
+        let mut parameters = law_parameters(&found.last.law.parameters);
+        parameters.extend(rigid::parameters(material, nuisance));
+        return parameters;
+    }
+    // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
+    // formula stand for them.
+    let coefficients: Vec<(f64, f64)> =
+        learnt.coefficients.iter().zip(nuisance).map(|(value, (_, error))| (*value, *error)).collect();
+    rigid::parameters(material, &coefficients)
+}
+
+fn remarks(found: &Found, recordings: &[Recording]) -> Vec<String> {
+    let mut remarks = found.discovery.remarks.clone();
+    for recording in recordings {
+        let notes = recording.health.notes.iter();
+        remarks.extend(notes.map(|note| format!("{}: {note}", recording.label)));
+    }
+    remarks
+}
+
+fn soundness(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Soundness {
+    if let Some(name) = rigid::collinear(material) {
+        return Soundness::NotIdentifiable(format!(
+            "{name} cannot be told from the other terms on this motion; drive several speeds and accelerations"
+        ));
+    }
+    let settled = if by_expression { found.last.converged } else { learnt.settled };
+    if settled {
+        return Soundness::Sound;
+    }
+    let which = if by_expression { "the fit of the expression" } else { "the training of the network" };
+    Soundness::NotConverged(format!("{which} was still improving when its steps were used up"))
+}
+
+fn cloud(material: &Material) -> Vec<[f64; 2]> {
+    let velocity = material.samples.velocity.as_deref().unwrap_or_default();
+    let stride = material.rows.len().div_ceil(CLOUD_POINTS).max(1);
+    material.rows.iter().step_by(stride).map(|&row| [velocity[row], material.friction[row]]).collect()
+}
+
+/// The exported law over the trained velocities, every other input at its mean.
+fn law_curve(model: &HostModel, inputs: &[ChosenInput]) -> Vec<[f64; 2]> {
+    let mean = |input: &ChosenInput| input.values.iter().sum::<f64>() / input.values.len().max(1) as f64;
+    let mut point = [0.0f32; MAX_INPUTS];
+    for (slot, input) in point.iter_mut().zip(&model.inputs) {
+        *slot = inputs.iter().find(|chosen| chosen.quantity == input.quantity).map_or(0.0, |c| mean(c) as f32);
+    }
+    let Some(velocity) = inputs.first() else { return Vec::new() };
+    let slot = model.inputs.iter().position(|input| input.quantity == velocity.quantity);
+    (0..CURVE_POINTS)
+        .map(|i| {
+            let v = velocity.low + (velocity.high - velocity.low) * i as f64 / (CURVE_POINTS - 1) as f64;
+            if let Some(slot) = slot {
+                point[slot] = v as f32;
+            }
+            [v, f64::from(evaluate(model, &point))]
+        })
+        .collect()
+}
