@@ -1,15 +1,19 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
-use crate::diagnose::sentence::{Story, Units, tell};
-use crate::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose};
-use crate::error::{Error, Result, codes};
 use crate::commands::output::Outputs;
-use crate::diagnose::{Reference, model, simulation};
-use crate::fit;
-use crate::joint::Joint;
+use crate::diagnose::improve::{Origin, improve};
+use crate::diagnose::sentence::{Story, Units, tell};
+use crate::diagnose::simulation::{self, InverseLaw};
+use crate::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose, model};
+use crate::error::{Error, Result, codes};
+use crate::fit::{self, HostModel};
+use crate::joint::{self, Joint};
+use crate::recording::{self, Axis, Quantity, Recording};
 use crate::report::{self, DiagnosisPage};
-use crate::recording::{self, Axis, Recording};
 use clap::{Args, ValueEnum};
+use frikan_shared::image::Image;
+use frikan_shared::model::RigidBody;
+use frikan_shared::units::Unit;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -70,7 +74,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let begin = Instant::now();
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let real = recording::load(&arguments.recording, &joint)?;
-    let signals = compared_signals(arguments, &real, &joint)?;
+    let (signals, compared) = compared_signals(arguments, &real, &joint)?;
     let units = units(&real);
     let options = Options {
         base: base_kind(arguments),
@@ -88,6 +92,12 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     if arguments.json.as_deref() != Some(Path::new("-")) {
         outputs.add(Path::new("-"), text_of(&story));
     }
+    let mut export = Vec::new();
+    if let Some(path) = &arguments.output {
+        let (image, remarks) = improved_image(arguments, (&real, &joint), &diagnosis, &signals, &compared)?;
+        outputs.add(path, image);
+        export = remarks;
+    }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {
             recording: &real.label,
@@ -95,7 +105,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
             diagnosis: &diagnosis,
             story: &story,
             units,
-            export: &[],
+            export: &export,
         };
         outputs.add(path, report::diagnosis(&page));
     }
@@ -103,15 +113,24 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;
     if !arguments.quiet {
+        export.iter().for_each(|sentence| eprintln!("{sentence}"));
+    }
+    if !arguments.quiet {
         let rows = diagnosis.rows;
         eprintln!("{}: {rows} rows behind {:.0} Hz in {seconds:.1} s", real.label, diagnosis.cut_off_hz);
     }
     Ok(exit_status(diagnosis.verdict))
 }
 
+/// What the recording is compared with.
+enum Compared {
+    Itself(Box<RigidBody>),
+    Simulation(Box<InverseLaw>),
+    Model(Box<HostModel>),
+}
+
 /// Signals of the real recording beside what they are compared with.
-fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Result<Signals> {
-    let in_real = |error: Error| error.in_file(real.file());
+fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Result<(Signals, Compared)> {
     if let Some(path) = &arguments.simulation {
         let simulated = recording::load(path, joint)?;
         same_units(real, &simulated)?;
@@ -121,19 +140,59 @@ fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Re
             .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let reference = law.at(&states(&signals, real)?);
         signals.compare_with(reference);
-        Ok(signals)
+        Ok((signals, Compared::Simulation(Box::new(law))))
     } else if let Some(path) = &arguments.model {
         let (_, image) = fit::model::load(path)?;
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
-        let bare = Joint { rigid_body: Default::default(), ..joint.clone() };
+        let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let mut signals = Signals::of(real, &bare)?;
         let state = states(&signals, real)?;
-        let reference: Reference = model::at(&image.model, &state, state.rigid_body.as_deref()).map_err(in_real)?;
+        let reference = model::at(&image.model, &state, state.rigid_body.as_deref())
+            .map_err(|error| error.in_file(real.file()))?;
         signals.compare_with(reference);
-        Ok(signals)
+        Ok((signals, Compared::Model(Box::new(image.model))))
     } else {
-        Signals::of(real, joint)
+        Ok((Signals::of(real, joint)?, Compared::Itself(Box::new(given_rigid_body(real, joint)))))
     }
+}
+
+/// The rigid body of the joint file, where it stands for the recording's own.
+fn given_rigid_body(real: &Recording, joint: &Joint) -> RigidBody {
+    let mut body = RigidBody::default();
+    if real.channel(Quantity::RigidBodyTorque).is_none() {
+        let (gravity, phase) = (joint.rigid_body.gravity_torque_nm, joint.rigid_body.gravity_phase_rad);
+        let (gravity, phase) = (gravity.unwrap_or(0.0), phase.unwrap_or(0.0));
+        body.inertia = joint.rigid_body.inertia_kgm2.unwrap_or(0.0) as f32;
+        body.gravity_sin = (gravity * phase.cos()) as f32;
+        body.gravity_cos = (gravity * phase.sin()) as f32;
+    }
+    body
+}
+
+/// The improved image, with what it holds in sentences.
+fn improved_image(
+    arguments: &Diagnose,
+    (real, joint): (&Recording, &Joint),
+    diagnosis: &Diagnosis,
+    signals: &Signals,
+    compared: &Compared,
+) -> Result<(Vec<u8>, Vec<String>)> {
+    let origin = match compared {
+        Compared::Itself(body) => Origin::Recording(**body),
+        Compared::Simulation(law) => Origin::Simulation(law),
+        Compared::Model(model) => Origin::Model(model),
+    };
+    let unit = match units(real).actuator {
+        "N" => Unit::Newton,
+        "A" => Unit::Ampere,
+        _ => Unit::NewtonMetre,
+    };
+    let improved = improve(diagnosis, signals, origin, unit)
+        .ok_or_else(|| Error::new(&codes::BAD_IMAGE, "the findings and the law together make no valid model"))?;
+    let name = joint.name.as_deref().unwrap_or_default();
+    let provenance = fit::model::provenance(name, std::slice::from_ref(real), arguments.seed);
+    let image = Image { provenance, model: *improved.model };
+    Ok((fit::model::to_bytes(&image)?, improved.remarks))
 }
 
 /// The states of the recording, which need a segment longer than its filter.

@@ -4,6 +4,7 @@
 //! proved against the runtime by [`verify`], with an evaluator of its own in [`reference`].
 
 pub mod cells;
+pub mod effects;
 pub mod formula;
 pub mod integers;
 pub mod interval;

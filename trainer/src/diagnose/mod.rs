@@ -11,6 +11,7 @@ mod confidence;
 mod evidence;
 mod filter;
 mod health;
+pub mod improve;
 mod linear;
 mod localise;
 pub mod model;

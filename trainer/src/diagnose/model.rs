@@ -91,16 +91,7 @@ fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f
 fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<Vec<f64>> {
     let by_velocity = |input: Option<&Input>| input.is_some_and(|input| input.quantity == Quantity::Velocity);
     match &model.law {
-        Law::Expression(program) => (0..program.operations.len())
-            .filter_map(|place| {
-                let constant = constant(program.operations[place])?;
-                let step = STEP * f64::from(constant).abs().max(1e-3);
-                let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
-                let (up, down) = (shifted(step)?, shifted(-step)?);
-                Some(up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect())
-            })
-            .filter(|column: &Vec<f64>| column.iter().all(|v| v.is_finite()) && column.iter().any(|v| *v != 0.0))
-            .collect(),
+        Law::Expression(_) => moving_columns(model, state).into_iter().map(|(_, column)| column).collect(),
         Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
             let odd = is_odd(&model.law);
             let top = state.top_speed();
@@ -110,6 +101,26 @@ fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
         }
         _ => vec![state.sign.clone(), state.velocity.clone()],
     }
+}
+
+/// Change of the friction with each constant of a formula that changes it at all, by the constant's place.
+fn moving_columns<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(usize, Vec<f64>)> {
+    let Law::Expression(program) = &model.law else { return Vec::new() };
+    (0..program.operations.len())
+        .filter_map(|place| {
+            let constant = constant(program.operations[place])?;
+            let step = STEP * f64::from(constant).abs().max(1e-3);
+            let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
+            let (up, down) = (shifted(step)?, shifted(-step)?);
+            Some((place, up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect::<Vec<f64>>()))
+        })
+        .filter(|(_, column)| column.iter().all(|v| v.is_finite()) && column.iter().any(|v| *v != 0.0))
+        .collect()
+}
+
+/// Places of the constants that move, in the order of the columns.
+pub(crate) fn moving_constants<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<usize> {
+    moving_columns(model, state).into_iter().map(|(place, _)| place).collect()
 }
 
 /// Local hat functions of a table of velocity: odd ones, and even ones where the table is not odd.

@@ -54,7 +54,7 @@ pub(super) fn assemble(parts: &Parts<'_>) -> Option<Box<HostModel>> {
 }
 
 /// Where a model comes from. The joint's name is cut to what an image holds.
-pub(super) fn provenance(joint: &str, recordings: &[Recording], seed: u64) -> Provenance {
+pub(crate) fn provenance(joint: &str, recordings: &[Recording], seed: u64) -> Provenance {
     Provenance {
         joint: cut(joint),
         trainer_version: cut(env!("CARGO_PKG_VERSION")),

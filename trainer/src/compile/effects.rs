@@ -1,0 +1,268 @@
+//! From a named effect with its shape and coefficients to the term that a drive runs, or to a change of the rigid body.
+
+use super::formula::Curve;
+use super::interval::Interval;
+use super::series::{ORDERS, Series};
+use super::tables::compile_layout;
+use crate::physics::{Action, EffectId};
+use frikan_shared::effect::{Effect, Harmonic, Kind};
+use frikan_shared::model::RigidBody;
+use frikan_shared::table::{Cell, Table, Uniform, UniformShape};
+use frikan_shared::units::Quantity;
+
+/// Cells of a table over position.
+const POSITION_CELLS: u16 = 24;
+
+/// What the coefficients of the effects refer to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Context {
+    /// Width of the smoothed sign, rad/s or m/s.
+    pub smoothing_velocity: f64,
+    /// Load that scales a power of it, in the unit of the actuator.
+    pub load_scale: f64,
+    /// Longest stop of the recording, s.
+    pub longest_dwell: f64,
+    /// Largest power that friction dissipated in the recording, W.
+    pub power_limit: f64,
+    /// Length of the recording, s.
+    pub duration: f64,
+}
+
+/// Terms collected for one image.
+#[derive(Clone, Debug, Default)]
+pub struct Terms {
+    /// Rigid-body parameters in force.
+    pub rigid_body: RigidBody,
+    /// Correction terms.
+    pub effects: Vec<Effect>,
+    /// Cells of their tables; the first belongs at [`Terms::first_cell`].
+    pub cells: Vec<Cell>,
+    /// Place of the first cell in the image's pool.
+    pub first_cell: u16,
+    /// Channels that the terms read beside velocity.
+    pub channels: Vec<Quantity>,
+}
+
+impl Terms {
+    /// Adds an effect.
+    ///
+    /// # Errors
+    /// Why the effect is not for the drive, in a few words.
+    pub fn add(
+        &mut self,
+        effect: EffectId,
+        shape: &[f64],
+        coefficients: &[f64],
+        context: &Context,
+    ) -> Result<(), &'static str> {
+        match effect.action() {
+            Action::Maintenance => return Err("it is to be looked at, not compensated"),
+            Action::Measurement => return Err("the measurement is to be repaired, not compensated"),
+            Action::FeedForward | Action::Parameter => {}
+        }
+        if self.correct_rigid_body(effect, shape, coefficients) {
+            return Ok(());
+        }
+        let term = self.term(effect, shape, coefficients, context)?;
+        self.effects.push(term);
+        Ok(())
+    }
+
+    /// Corrects the rigid body where the effect is one of its parameters.
+    fn correct_rigid_body(&mut self, effect: EffectId, shape: &[f64], coefficients: &[f64]) -> bool {
+        let body = &mut self.rigid_body;
+        let first = coefficients[0] as f32;
+        match effect {
+            EffectId::GravityError => match shape[0] {
+                0.0 => body.gravity_cos += first,
+                1.0 => body.gravity_sin += first,
+                _ => {
+                    body.gravity_cos += first;
+                    body.gravity_sin += coefficients[1] as f32;
+                }
+            },
+            EffectId::InertiaError => body.inertia += first,
+            EffectId::TorqueOffset => body.offset += first,
+            EffectId::TorqueScale => {
+                let factor = 1.0 + first;
+                body.inertia *= factor;
+                body.gravity_sin *= factor;
+                body.gravity_cos *= factor;
+                body.offset *= factor;
+                body.given_scale *= factor;
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn term(&mut self, effect: EffectId, shape: &[f64], c: &[f64], context: &Context) -> Result<Effect, &'static str> {
+        let smoothing_velocity = context.smoothing_velocity as f32;
+        // Coefficients of a pair of which a variant has the first, the second or both.
+        let pair = |variant: f64| match variant {
+            0.0 => (c[0] as f32, 0.0),
+            1.0 => (0.0, c[0] as f32),
+            _ => (c[0] as f32, c[1] as f32),
+        };
+        Ok(match effect {
+            EffectId::Stribeck => Effect::Stribeck {
+                amplitude: c[0] as f32,
+                velocity: shape[0] as f32,
+                exponent: shape[1] as f32,
+                smoothing_velocity,
+            },
+            EffectId::ViscousNonlinearity => {
+                Effect::PowerViscous { coefficient: c[0] as f32, exponent: shape[0] as f32, smoothing_velocity }
+            }
+            EffectId::DirectionAsymmetry => {
+                let (coulomb, viscous) = pair(shape[0]);
+                Effect::Asymmetry { coulomb, viscous, smoothing_velocity }
+            }
+            EffectId::Temperature => {
+                self.read(Quantity::Temperature);
+                let (coulomb, viscous) = pair(shape[0]);
+                Effect::Temperature { reference: shape[1] as f32, coulomb, viscous, smoothing_velocity }
+            }
+            EffectId::WarmUp => {
+                let (coulomb, viscous) = pair(shape[1]);
+                let (time_constant, power_limit) = (shape[0] as f32, context.power_limit as f32);
+                Effect::WarmUp { time_constant, coulomb, viscous, power_limit, smoothing_velocity }
+            }
+            EffectId::LoadFriction => {
+                let quadratic = shape[0] != 1.0;
+                let scaled = c[0] / if quadratic { context.load_scale.max(f64::MIN_POSITIVE) } else { 1.0 };
+                let (mean, quadratic) = if quadratic { (0.0, scaled) } else { (scaled, 0.0) };
+                self.load(mean, 0.0, quadratic, smoothing_velocity)
+            }
+            EffectId::DriveBackdrive => {
+                let (driving, backdriving) = pair(shape[0]);
+                let (driving, backdriving) = (f64::from(driving), f64::from(backdriving));
+                self.load(0.5 * (driving + backdriving), 0.5 * (driving - backdriving), 0.0, smoothing_velocity)
+            }
+            EffectId::SlowDrift => {
+                let age = context.duration;
+                let bend = c.get(1).map_or(0.0, |bend| bend * age * age);
+                Effect::Coulomb { coulomb: (c[0] * age + bend) as f32, viscous: 0.0, smoothing_velocity }
+            }
+            EffectId::Presliding if c[0] > 0.0 => Effect::Presliding {
+                coulomb: c[0] as f32,
+                breakaway: c[0] as f32,
+                velocity: smoothing_velocity,
+                stiffness: (c[0] / shape[0]) as f32,
+                smoothing_velocity,
+            },
+            EffectId::Presliding => return Err("a bristle that pushes is not dissipative"),
+            EffectId::FrictionalLag => Effect::FrictionalLag { time_constant: (c[0] * shape[0]).max(1e-6) as f32 },
+            EffectId::DwellBreakaway => Effect::DwellBreakaway {
+                gain: c[0] as f32,
+                time: shape[1] as f32,
+                distance: shape[0] as f32,
+                rest_velocity: 0.5 * smoothing_velocity,
+                dwell_limit: context.longest_dwell.max(0.1) as f32,
+                smoothing_velocity,
+            },
+            EffectId::PositionRipple => {
+                self.read(Quantity::Position);
+                let kind = if shape[1] == 1.0 { Kind::Friction } else { Kind::Torque };
+                let line = Harmonic { order: shape[0] as f32, cosine: c[0] as f32, sine: c[1] as f32 };
+                let mut harmonics = heapless::Vec::new();
+                harmonics.push(line).map_err(|_| "the ripple has too many lines")?;
+                Effect::Ripple { kind, smoothing_velocity, harmonics }
+            }
+            EffectId::PositionFriction => self.position_friction(shape, c, smoothing_velocity),
+            EffectId::Spring => {
+                self.read(Quantity::Position);
+                self.rigid_body.offset += c.get(1).copied().unwrap_or(0.0) as f32;
+                Effect::Spring { stiffness: c[0] as f32, rest: 0.0 }
+            }
+            EffectId::Coupling => return Err("the motion of the other joint is not a channel of the image"),
+            _ => return Err("the image has no torque term for it"),
+        })
+    }
+
+    fn load(&mut self, mean: f64, difference: f64, quadratic: f64, smoothing_velocity: f32) -> Effect {
+        self.read(Quantity::Load);
+        Effect::Load {
+            mean: mean as f32,
+            difference: difference as f32,
+            quadratic: quadratic as f32,
+            stribeck: 0.0,
+            velocity: smoothing_velocity,
+            smoothing_velocity,
+        }
+    }
+
+    fn position_friction(&mut self, shape: &[f64], c: &[f64], smoothing_velocity: f32) -> Effect {
+        self.read(Quantity::Position);
+        let (low, high) = (shape[1], shape[2]);
+        let series = CosineSeries { low, high, coefficients: c.to_vec() };
+        let first_cell = self.first_cell + self.cells.len() as u16;
+        let layout = UniformShape { first_cell, cells: POSITION_CELLS, low: low as f32, high: high as f32 };
+        let compiled = compile_layout(&series, Table::Uniform(Uniform::new(layout)));
+        self.cells.extend(compiled.cells);
+        Effect::PositionTable { kind: Kind::Friction, smoothing_velocity, table: compiled.table }
+    }
+
+    fn read(&mut self, quantity: Quantity) {
+        if !self.channels.contains(&quantity) {
+            self.channels.push(quantity);
+        }
+    }
+}
+
+/// `sum c_j cos(j pi x)` with `x` from 0 to 1 over the travel.
+struct CosineSeries {
+    low: f64,
+    high: f64,
+    coefficients: Vec<f64>,
+}
+
+impl Curve for CosineSeries {
+    fn value(&self, x: f64) -> f64 {
+        let angle = std::f64::consts::PI * ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
+        self.coefficients.iter().zip(1..).map(|(c, j)| c * (f64::from(j) * angle).cos()).sum()
+    }
+
+    fn series(&self, _over: Interval) -> Series {
+        // No enclosure is claimed: the table of an effect is checked against the recording.
+        Series([Interval::ENTIRE; ORDERS])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn driving_and_backdriving_become_mean_and_difference() {
+        let mut terms = Terms::default();
+        terms.add(EffectId::DriveBackdrive, &[2.0], &[0.3, 0.1], &Context::default()).unwrap();
+        let Effect::Load { mean, difference, .. } = terms.effects[0] else { panic!("{:?}", terms.effects) };
+        assert!((mean - 0.2).abs() < 1e-6 && (difference - 0.1).abs() < 1e-6);
+        assert_eq!(terms.channels, [Quantity::Load]);
+    }
+
+    #[test]
+    fn a_scale_corrects_every_rigid_body_parameter() {
+        let mut terms = Terms::default();
+        terms.rigid_body.inertia = 2.0;
+        terms.add(EffectId::TorqueScale, &[], &[0.1], &Context::default()).unwrap();
+        assert!((terms.rigid_body.inertia - 2.2).abs() < 1e-6 && (terms.rigid_body.given_scale - 1.1).abs() < 1e-6);
+        assert!(terms.effects.is_empty());
+    }
+
+    #[test]
+    fn faults_are_not_compensated() {
+        assert!(Terms::default().add(EffectId::Contact, &[0.0, 1.0], &[9.0], &Context::default()).is_err());
+        assert!(Terms::default().add(EffectId::TimeMisalignment, &[], &[0.01], &Context::default()).is_err());
+    }
+
+    #[test]
+    fn the_table_over_position_is_its_series() {
+        let mut terms = Terms { first_cell: 3, ..Terms::default() };
+        terms.add(EffectId::PositionFriction, &[3.0, -1.0, 1.0], &[0.5, -0.2, 0.1], &Context::default()).unwrap();
+        assert_eq!(terms.cells.len(), usize::from(POSITION_CELLS));
+        let [c0, ..] = terms.cells[0].floats();
+        assert!((c0 - (0.5 - 0.2 + 0.1)).abs() < 1e-4, "{c0}");
+    }
+}

@@ -1,0 +1,272 @@
+//! The improved model: base law as refitted, rigid body as corrected, and every finding that a drive can run.
+
+use super::base::friction_basis;
+use super::candidates::Label;
+use super::model::{hats, is_odd, moved};
+use super::outcome::Diagnosis;
+use super::sentence::plain_name;
+use super::signals::Signals;
+use super::simulation::InverseLaw;
+use crate::compile::effects::{Context, Terms};
+use crate::compile::formula::{Curve, Parity};
+use crate::compile::interval::Interval;
+use crate::compile::series::{ORDERS, Series};
+use crate::compile::tables::compile_layout;
+use crate::fit::HostModel;
+use crate::physics::JointState;
+use frikan_runtime::evaluate::evaluate;
+use frikan_shared::effect::Effect;
+use frikan_shared::model::{Input, Law, RigidBody};
+use frikan_shared::network::{Layer, Network, Outer, Source};
+use frikan_shared::pool::Pool;
+use frikan_shared::table::{Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
+use frikan_shared::units::{Quantity, Unit};
+
+/// Where the base law comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin<'a> {
+    /// The static model of the recording itself, with the rigid body that the joint file gives.
+    Recording(RigidBody),
+    /// The learned law of a simulation.
+    Simulation(&'a InverseLaw),
+    /// A fitted model.
+    Model(&'a HostModel),
+}
+
+/// An improved model, and in sentences what it holds and what not.
+#[derive(Clone, Debug)]
+pub struct Improved {
+    /// The model.
+    pub model: Box<HostModel>,
+    /// One sentence a finding.
+    pub remarks: Vec<String>,
+}
+
+/// Cells for each doubling of the speed, as a power of two.
+const OCTAVE_CELLS_LOG2: u8 = 3;
+/// Room of the output limit above the largest recorded torque.
+const OUTPUT_ROOM: f64 = 2.0;
+
+/// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
+pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
+    let state = signals.states();
+    let friction = |velocity: f64| refitted_friction(diagnosis, &state, origin, velocity);
+    let dissipated = state.velocity.iter().map(|v| (friction(*v) * v).abs()).fold(1e-6, f64::max);
+    let context = Context {
+        smoothing_velocity: state.sign_velocity,
+        load_scale: quantile_of_load(&state),
+        longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
+        power_limit: dissipated,
+        duration: state.time.last()? - state.time.first()?,
+    };
+    let kept = match origin {
+        Origin::Model(model) if !matches!(model.law, Law::Geometric(_) | Law::Uniform(_)) => Some(model),
+        _ => None,
+    };
+    let mut terms = Terms { rigid_body: rigid_body(diagnosis, signals, origin), ..Terms::default() };
+    let law_table = velocity_table(&friction, 1.1 * fastest(&state), state.sign_velocity);
+    terms.first_cell = kept.map_or(law_table.cells.len(), |model| model.cells.len()) as u16;
+    if let Origin::Model(model) = origin {
+        terms.effects.extend(model.effects.iter().cloned());
+    }
+    let remarks = write_findings(diagnosis, &mut terms, &context);
+    let mut model = match kept {
+        Some(model) => moved_law(diagnosis, model, &mut terms, &state)?,
+        None => Box::new(HostModel {
+            law: Law::from(law_table.table),
+            cells: Pool::from_slice(&law_table.cells).ok()?,
+            inputs: heapless::Vec::from_slice(&[velocity_input(&state)]).ok()?,
+            output_unit: unit,
+            output_limit: 1.0,
+            rigid_body: RigidBody::default(),
+            effects: heapless::Vec::new(),
+        }),
+    };
+    model.rigid_body = terms.rigid_body;
+    terms.cells.iter().try_for_each(|cell| model.cells.push(*cell)).ok()?;
+    model.effects = terms.effects.iter().cloned().collect();
+    add_channels(&mut model, &terms.channels, &state)?;
+    let largest = signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
+    let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
+    model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
+    model.validate().ok()?;
+    Some(Improved { model, remarks })
+}
+
+fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -> Vec<String> {
+    diagnosis
+        .improved_refit
+        .effects
+        .iter()
+        .map(|fitted| match &fitted.label {
+            Label::Named(effect) => match terms.add(*effect, &fitted.shape, &fitted.coefficients, context) {
+                Ok(()) => format!("In the image: {}.", plain_name(*effect)),
+                Err(why) => format!("Not in the image: {} ({why}).", plain_name(*effect)),
+            },
+            Label::Generic(_) => format!("Not in the image: {} (it has no name).", fitted.label),
+        })
+        .collect()
+}
+
+/// Friction of the base over velocity after the refit.
+fn refitted_friction(diagnosis: &Diagnosis, state: &JointState, origin: Origin<'_>, velocity: f64) -> f64 {
+    let refitted = &diagnosis.improved_refit.base;
+    let (eps, top) = (state.sign_velocity, state.top_speed());
+    let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(refitted).map(|(b, c)| b * c).sum() };
+    match origin {
+        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, eps, top)),
+        Origin::Simulation(law) => law.friction(velocity) + sum(vec![(velocity / eps).tanh(), velocity]),
+        Origin::Model(model) => {
+            let inputs = [velocity as f32, 0.0, 0.0, 0.0];
+            f64::from(evaluate(model, &inputs)) + sum(hats(velocity, eps, top, is_odd(&model.law)))
+        }
+    }
+}
+
+fn rigid_body(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>) -> RigidBody {
+    match origin {
+        Origin::Recording(mut given) => {
+            if signals.rigid_body.is_none() {
+                let friction = friction_basis(diagnosis.base, 1.0, 1.0, 1.0).len();
+                given.inertia += diagnosis.improved_refit.base.get(friction).copied().unwrap_or(0.0) as f32;
+            }
+            given
+        }
+        Origin::Simulation(law) => {
+            let [inertia, offset, gravity_sin, gravity_cos, given_scale] = law.rigid_body().map(|p| p as f32);
+            RigidBody { inertia, gravity_sin, gravity_cos, offset, given_scale }
+        }
+        Origin::Model(model) => model.rigid_body,
+    }
+}
+
+/// The law of a formula or a network with its parameters where the refit moved them.
+fn moved_law(
+    diagnosis: &Diagnosis,
+    model: &HostModel,
+    terms: &mut Terms,
+    state: &JointState,
+) -> Option<Box<HostModel>> {
+    let refitted = &diagnosis.improved_refit.base;
+    let mut improved = Box::new(model.clone());
+    match &model.law {
+        Law::Expression(_) => {
+            for (place, by) in super::model::moving_constants(model, state).into_iter().zip(refitted) {
+                *improved = moved(*improved, place, *by)?;
+            }
+        }
+        _ => terms.effects.push(Effect::Coulomb {
+            coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
+            viscous: refitted.get(1).copied().unwrap_or(0.0) as f32,
+            smoothing_velocity: state.sign_velocity as f32,
+        }),
+    }
+    Some(improved)
+}
+
+/// Adds the channels that the terms read. A law that is one table becomes a network of one layer, to which the new
+/// channels contribute nothing.
+fn add_channels(model: &mut HostModel, channels: &[Quantity], state: &JointState) -> Option<()> {
+    let new: Vec<&Quantity> =
+        channels.iter().filter(|q| model.inputs.iter().all(|input| input.quantity != **q)).collect();
+    if new.is_empty() {
+        return Some(());
+    }
+    let mut sources: heapless::Vec<Source, { frikan_shared::network::MAX_SOURCES }> = heapless::Vec::new();
+    let table = match model.law {
+        Law::Geometric(layout) => Some((Table::Geometric(layout), layout.shape().first_cell)),
+        Law::Uniform(layout) => Some((Table::Uniform(layout), layout.shape().first_cell)),
+        _ => None,
+    };
+    if let Some((table, first_cell)) = table {
+        sources.push(Source { table: at_zero(table), first_cell }).ok()?;
+    }
+    for quantity in new {
+        let input = channel_input(quantity, state)?;
+        if table.is_some() {
+            let first_cell = model.cells.len() as u16;
+            model.cells.push(frikan_shared::table::Cell::from_floats([0.0; 4])).ok()?;
+            let layout = UniformShape { first_cell: 0, cells: 1, low: input.low, high: input.high };
+            sources.push(Source { table: Table::Uniform(Uniform::new(layout)), first_cell }).ok()?;
+        } else if let Law::Network(_) = model.law {
+            return None;
+        }
+        model.inputs.push(input).ok()?;
+    }
+    if table.is_some() {
+        let layers = heapless::Vec::from_slice(&[Layer { additive: 1, products: 0 }]).ok()?;
+        model.law = Law::Network(Network { layers, sources, outer: Outer::Linear });
+    }
+    Some(())
+}
+
+/// The layout with its first cell at 0, as a network's sources have it.
+fn at_zero(table: Table) -> Table {
+    match table {
+        Table::Geometric(layout) => Table::Geometric(Geometric::new(GeometricShape { first_cell: 0, ..layout.shape() })),
+        Table::Uniform(layout) => Table::Uniform(Uniform::new(UniformShape { first_cell: 0, ..layout.shape() })),
+    }
+}
+
+fn channel_input(quantity: &Quantity, state: &JointState) -> Option<Input> {
+    let (series, unit) = match quantity {
+        Quantity::Position => (&state.position, if state.rotary { Unit::Radian } else { Unit::Metre }),
+        Quantity::Load => (state.load.as_ref()?, Unit::NewtonMetre),
+        Quantity::Temperature => (state.temperature.as_ref()?, Unit::Celsius),
+        _ => return None,
+    };
+    let (low, high) = series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    (low < high).then(|| Input { quantity: quantity.clone(), unit, low: low as f32, high: high as f32 })
+}
+
+fn velocity_input(state: &JointState) -> Input {
+    let reach = 1.1 * fastest(state) as f32;
+    let unit = if state.rotary { Unit::RadianPerSecond } else { Unit::MetrePerSecond };
+    Input { quantity: Quantity::Velocity, unit, low: -reach, high: reach }
+}
+
+fn fastest(state: &JointState) -> f64 {
+    state.velocity.iter().fold(1e-6, |most, v| most.max(v.abs()))
+}
+
+fn quantile_of_load(state: &JointState) -> f64 {
+    state.load.as_ref().map_or(0.0, |load| crate::physics::quantile(load.iter().map(|l| l.abs()), 0.9))
+}
+
+/// Friction over velocity as a table whose cells grow with speed, the finest a quarter of the smoothed sign's width.
+fn velocity_table(
+    friction: &(dyn Fn(f64) -> f64 + Sync),
+    reach: f64,
+    sign_velocity: f64,
+) -> crate::compile::tables::CompiledTable {
+    let odd = [0.01, 0.1, 0.5, 1.0].iter().all(|share| {
+        let (up, down) = (friction(share * reach), friction(-share * reach));
+        (up + down).abs() <= 1e-9 * (up.abs() + down.abs())
+    });
+    let layout = GeometricShape {
+        first_cell: 0,
+        offset_exponent: sign_velocity.log2().floor() as i8,
+        octave_cells_log2: OCTAVE_CELLS_LOG2,
+        symmetry: if odd { Symmetry::Odd } else { Symmetry::Sided },
+        reach: reach as f32,
+        reach_negative: reach as f32,
+    };
+    compile_layout(&Sampled(friction, odd), Table::Geometric(Geometric::new(layout)))
+}
+
+/// A curve of which only values are known; no enclosure is claimed.
+struct Sampled<'a>(&'a (dyn Fn(f64) -> f64 + Sync), bool);
+
+impl Curve for Sampled<'_> {
+    fn value(&self, x: f64) -> f64 {
+        (self.0)(x)
+    }
+
+    fn series(&self, _over: Interval) -> Series {
+        Series([Interval::ENTIRE; ORDERS])
+    }
+
+    fn parity(&self) -> Parity {
+        if self.1 { Parity::Odd } else { Parity::Neither }
+    }
+}
