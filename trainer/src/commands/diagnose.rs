@@ -4,7 +4,9 @@ use crate::commands::output::Outputs;
 use crate::diagnose::improve::{Origin, improve};
 use crate::diagnose::sentence::{Story, Units, tell};
 use crate::diagnose::simulation::{self, InverseLaw};
-use crate::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose, model};
+use crate::diagnose::{
+    BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose, model,
+};
 use crate::error::{Error, Result, codes};
 use crate::fit::{self, HostModel};
 use crate::joint::{self, Joint};
@@ -147,8 +149,8 @@ fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Re
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let mut signals = Signals::of(real, &bare)?;
         let state = states(&signals, real)?;
-        let reference = model::at(&image.model, &state, state.rigid_body.as_deref())
-            .map_err(|error| error.in_file(real.file()))?;
+        let reference =
+            model::at(&image.model, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real.file()))?;
         signals.compare_with(reference);
         Ok((signals, Compared::Model(Box::new(image.model))))
     } else {

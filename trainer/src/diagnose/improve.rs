@@ -203,7 +203,9 @@ fn add_channels(model: &mut HostModel, channels: &[Quantity], state: &JointState
 /// The layout with its first cell at 0, as a network's sources have it.
 fn at_zero(table: Table) -> Table {
     match table {
-        Table::Geometric(layout) => Table::Geometric(Geometric::new(GeometricShape { first_cell: 0, ..layout.shape() })),
+        Table::Geometric(layout) => {
+            Table::Geometric(Geometric::new(GeometricShape { first_cell: 0, ..layout.shape() }))
+        }
         Table::Uniform(layout) => Table::Uniform(Uniform::new(UniformShape { first_cell: 0, ..layout.shape() })),
     }
 }

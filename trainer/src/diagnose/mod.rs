@@ -37,6 +37,7 @@ pub use candidates::{Channel, Factor, Generic, Label};
 pub use conclude::{Fitted, Refit, unit_text};
 pub use health::{HealthNote, examine};
 pub use localise::{Location, Region};
+pub use noise::Noise;
 pub use outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 pub use prepare::{Lock, Prepared};
 pub use prove::Proof;

@@ -1,0 +1,47 @@
+//! What a diagnosis writes into an image is what the drive then computes.
+
+use frikan_runtime::shared::model::RigidBody;
+use frikan_runtime::shared::units::Unit;
+use frikan_tests::concealed::{Case, Hidden, conceal, signals};
+use frikan_trainer::diagnose::improve::{Origin, improve};
+use frikan_trainer::diagnose::{BaseKind, Lock, Options, Prepared, diagnose, model};
+use frikan_trainer::plant::NoiseKind;
+
+/// Effects that an image holds as a torque, one of each kind of term.
+const EFFECTS: [&str; 7] = [
+    "stribeck",
+    "direction_asymmetry",
+    "temperature",
+    "load_friction",
+    "presliding",
+    "position_ripple",
+    "torque_scale",
+];
+/// Share of the gain that the image may lose: a nuisance of the diagnosis is no part of a model.
+const MAY_LOSE: f64 = 0.35;
+
+#[test]
+fn the_image_leaves_what_the_diagnosis_leaves() {
+    for effect in EFFECTS {
+        let case = Case {
+            hidden: Hidden::Effect(effect, 300.0),
+            noise: NoiseKind::White,
+            base: BaseKind::CoulombViscous,
+            seed: 5,
+        };
+        let (recording, joint, _, _) = conceal(&case).unwrap();
+        let signals = signals(&recording, &joint);
+        let diagnosis = diagnose(&signals, "N m", &Options::default()).unwrap();
+        let origin = Origin::Recording(RigidBody::default());
+        let improved = improve(&diagnosis, &signals, origin, Unit::NewtonMetre).unwrap();
+        let state = signals.states();
+        let torque = model::at(&improved.model, &state, signals.rigid_body.as_deref()).unwrap().torque;
+        let prepared = Prepared::new(&signals, Lock::Nothing);
+        let rest: Vec<f64> = signals.torque.iter().zip(&torque).map(|(recorded, model)| recorded - model).collect();
+        let rest = prepared.filtered(&rest);
+        let rmse = (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt();
+        let (before, after) = (diagnosis.baseline.rmse, diagnosis.improved.rmse);
+        println!("{effect}: {before:.4} -> {after:.4}, image {rmse:.4}; {:?}", improved.remarks);
+        assert!(rmse < after + MAY_LOSE * (before - after), "{effect}: {before} -> {after}, image {rmse}");
+    }
+}
