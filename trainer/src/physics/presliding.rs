@@ -35,7 +35,11 @@ impl Hypothesis for Presliding {
         let (low, high) = state.travel();
         let travel = high - low;
         let finest = (4.0 * state.resolution).max(3e-5 * travel);
-        geometric_grid(finest, (0.1 * travel).max(finest), 8).into_iter().map(|delta| vec![delta]).collect()
+        geometric_grid(finest, (0.4 * travel).max(finest), 10).into_iter().map(|delta| vec![delta]).collect()
+    }
+
+    fn only_positive(&self) -> bool {
+        true
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
@@ -53,6 +57,6 @@ impl Hypothesis for Presliding {
 
     fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
-        Some((state.resolution.max(1e-9), 0.5 * (high - low)))
+        Some((state.resolution.max(1e-9), 1.5 * (high - low)))
     }
 }
