@@ -14,6 +14,15 @@ pub enum Label {
     Generic(Generic),
 }
 
+impl std::fmt::Display for Label {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Label::Named(effect) => f.write_str(effect.name()),
+            Label::Generic(rival) => write!(f, "{} c({})", rival.factor.text(), rival.channel.name()),
+        }
+    }
+}
+
 /// A generic rival: `factor(v) * c(channel)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Generic {
@@ -107,6 +116,22 @@ impl Channel {
             Channel::OtherJoint(_) => "other_velocity",
             Channel::OtherPosition(_) => "other_position",
         }
+    }
+
+    /// The axes along which a finding is located, velocity apart: it keeps its sign there.
+    pub fn axes(state: &JointState) -> Vec<Channel> {
+        let mut axes = vec![
+            Channel::Position,
+            Channel::Load,
+            Channel::Temperature,
+            Channel::Acceleration,
+            Channel::DistanceSinceReversal,
+            Channel::TimeSinceReversal,
+            Channel::Dwell,
+            Channel::Time,
+        ];
+        axes.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
+        axes
     }
 
     /// The series of this channel, where the recording has it.

@@ -12,6 +12,7 @@ use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
 use super::search::{Accepted, Scored, Search, SearchOutcome, Settings};
 use super::signals::Signals;
+use super::traces::Traces;
 use crate::parameter::Parameter;
 use crate::physics::{Action, Dimension, EffectId, catalogue};
 
@@ -94,6 +95,7 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
         base: options.base,
         base_parameters: base_parameters(&base, &improved, signals, actuator),
         noise_rmse: improved.noise.rms,
+        traces: Traces::of(&search, &baseline, &improved),
         baseline: score(&baseline),
         improved: score(&improved),
         proof,
