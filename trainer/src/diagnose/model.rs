@@ -81,7 +81,8 @@ fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f
     };
     tabulated_velocities(1.2 * state.top_speed())
         .map(|velocity| {
-            let measurement = Measurement { velocity: velocity as f32, ..middle };
+            let mut measurement = middle;
+            measurement.velocity = velocity as f32;
             (velocity, f64::from(evaluate(model, &measurement.channels(&model.inputs))))
         })
         .collect()

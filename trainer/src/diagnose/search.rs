@@ -187,6 +187,7 @@ impl<'a> Search<'a> {
                     .iter_mut()
                     .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
             }
+            if std::env::var("DBG").is_ok() { for r in &table { if matches!(r.label, Label::Named(_)) || r.score>50.0 { eprintln!("{:?} S {:.1} d {:.1} c {:.1} T {:.1} {:?}", r.label, r.score, r.evidence.held_out, r.evidence.criterion, r.evidence.statistic, r.shape); } } eprintln!("AR {:?} rms {}", round.noise.autoregression, round.noise.rms); }
             let finding = choose(&table, &self.settings, travel);
             match finding {
                 Some(finding)

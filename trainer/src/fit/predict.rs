@@ -11,6 +11,9 @@ use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::samples::{Preparation, Request, Samples, prepare, prepare_every_row};
 
+/// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
+const COMPARISON_RATE_HZ: f64 = 100.0;
+
 /// A prediction, one value a sample, in the unit of the model's output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prediction {
@@ -136,7 +139,7 @@ pub fn every_row(recording: &Recording, joint: &Joint) -> Result<Samples> {
 ///
 /// # Errors
 /// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
-pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint, rate_hz: Option<f64>) -> Result<Trace> {
+pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
     let rows = every_row(recording, joint).map_err(in_file)?;
     let prediction = predict(model, &rows).map_err(in_file)?;
@@ -145,7 +148,7 @@ pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint, rate_hz: O
     })?;
     let measured = channel.values.clone();
     let predicted = prediction.total();
-    let request = Request { rate_hz, ..Request::default() };
+    let request = Request { rate_hz: Some(COMPARISON_RATE_HZ), ..Request::default() };
     let preparation = Preparation::plan(&[recording], joint, &request).map_err(in_file)?;
     let samples = prepare(recording, &preparation).map_err(in_file)?;
     let filtered = predict(model, &samples).map_err(in_file)?.total();

@@ -23,7 +23,7 @@ use crate::parameter::Parameter;
 use crate::recording::Recording;
 
 /// Tables follow the network to within this share of the residual, and of the range of friction where there is none.
-const TABLE_SHARE_OF_RESIDUAL: f64 = 0.05;
+const TABLE_SHARE_OF_RESIDUAL: f64 = 0.03;
 const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
 /// The drive never puts out more than this multiple of the largest friction that was seen.
 const LIMIT_OVER_LARGEST: f64 = 1.5;
@@ -76,7 +76,7 @@ pub fn fit(
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;
     tell(Stage::Scoring);
-    let score = |recording: &Recording| trace(&model, recording, joint, options.rate_hz);
+    let score = |recording: &Recording| trace(&model, recording, joint);
     let train = recordings.iter().map(score).collect::<Result<Vec<_>>>()?;
     let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
 
@@ -238,18 +238,18 @@ fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
     model.inputs.iter().map(range).collect()
 }
 
+/// Constants of the formula, then the rigid body as it is in the image.
 fn parameters(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Vec<Parameter> {
     let nuisance = &found.last.uncertainty.nuisance;
-    if by_expression {
-        let mut parameters = law_parameters(&found.last.law.parameters);
-        parameters.extend(rigid::parameters(material, nuisance));
-        return parameters;
-    }
     // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
     // formula stand for them.
-    let coefficients: Vec<(f64, f64)> =
-        learnt.coefficients.iter().zip(nuisance).map(|(value, (_, error))| (*value, *error)).collect();
-    rigid::parameters(material, &coefficients)
+    let in_image = |(index, &(value, error)): (usize, &(f64, f64))| {
+        (if by_expression { value } else { learnt.coefficients.get(index).copied().unwrap_or(value) }, error)
+    };
+    let coefficients: Vec<(f64, f64)> = nuisance.iter().enumerate().map(in_image).collect();
+    let mut parameters = law_parameters(&found.last.law.parameters);
+    parameters.extend(rigid::parameters(material, &coefficients));
+    parameters
 }
 
 fn remarks(found: &Found, recordings: &[Recording]) -> Vec<String> {

@@ -15,34 +15,39 @@ pub(super) struct Tables {
     pub(super) cells: Vec<Cell>,
     /// Positions of the inputs that the law reads, in its order.
     pub(super) inputs: Vec<usize>,
-    /// Certified distance from the network, unit of the output; `None` for several inputs, where none is worked out.
-    pub(super) certified: Option<f64>,
 }
 
-/// How often the bound is relaxed by a factor of three before compiling is given up.
-const RELAXATIONS: usize = 6;
+/// Cells for which the smallest drive has room.
+const DRIVE_CELLS: usize = 128;
 
-/// Compiles `network` to within `bound` (unit of the output). `ranges` are those of all its inputs. `None` when it does not fit
-/// a drive's tables.
+/// How often the bound may be doubled so that the cells fit into the smallest drive.
+const RELAXATIONS: i32 = 4;
+
+/// Compiles `network` to within `bound` (unit of the output), or a few times that where the cells would not fit into the
+/// smallest drive. `ranges` are those of all its inputs. `None` when it does not fit a drive's tables at all.
 pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2]], bound: f64) -> Option<Tables> {
     let live: Vec<usize> = (0..ranges.len()).filter(|&input| network.live_nodes()[0][input]).collect();
-    match live[..] {
+    let within = |bound: f64| match live[..] {
         [] => None,
         [only] => single(network, only, ranges[only], bound),
         _ => several(network, graph, &live, bound),
+    };
+    let mut tightest = None;
+    for doubling in 0..=RELAXATIONS {
+        if let Some(tables) = within(bound * 2f64.powi(doubling)) {
+            if tables.cells.len() <= DRIVE_CELLS {
+                return Some(tables);
+            }
+            tightest.get_or_insert(tables);
+        }
     }
+    tightest
 }
 
 fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) -> Option<Tables> {
     let curve = NetworkCurve::of(network);
-    let compiled =
-        (0..RELAXATIONS).find_map(|k| compile_table(&curve, low, high, bound * 3f64.powi(k as i32), 0).ok())?;
-    Some(Tables {
-        law: compiled.table.into(),
-        certified: Some(compiled.certificate.total()),
-        cells: compiled.cells,
-        inputs: vec![input],
-    })
+    let compiled = compile_table(&curve, low, high, bound, 0).ok()?;
+    Some(Tables { law: compiled.table.into(), cells: compiled.cells, inputs: vec![input] })
 }
 
 /// A node with outgoing activations, before its layout is chosen.
@@ -94,14 +99,14 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
     let mut sources = heapless::Vec::new();
     for node in &nodes {
         let first_cell = u16::try_from(cells.len()).ok()?;
-        let (table, columns) = (0..RELAXATIONS).find_map(|k| smallest(node, 3f64.powi(k as i32)))?;
+        let (table, columns) = smallest(node)?;
         for row in 0..table.cells() as usize {
             cells.extend(columns.iter().map(|column| column.get(row).copied().unwrap_or_default()));
         }
         sources.push(Source { table, first_cell }).ok()?;
     }
     let law = Law::Network(TableNetwork { layers, sources, outer: Outer::Linear });
-    Some(Tables { law, cells, inputs: live.to_vec(), certified: None })
+    Some(Tables { law, cells, inputs: live.to_vec() })
 }
 
 fn layer_node(layer: &crate::kan::Layer, terminal: usize) -> usize {
@@ -121,8 +126,8 @@ fn sensitivity(graph: &GraphSummary, curve: &NetworkCurve, layer: usize, node: u
     if layer >= curve.edges.len() { 1.0 } else { slopes.iter().sum::<f64>().max(1e-12) }
 }
 
-/// The layout of fewest cells in which every activation of the node stays within its bound times `slack`.
-fn smallest(node: &Node, slack: f64) -> Option<(Table, Vec<Vec<Cell>>)> {
+/// The layout of fewest cells in which every activation of the node stays within its bound.
+fn smallest(node: &Node) -> Option<(Table, Vec<Vec<Cell>>)> {
     layouts(node.domain).into_iter().find_map(|table| {
         let mut columns = Vec::new();
         for (edge, bound) in node.edges.iter().zip(&node.bounds) {
@@ -131,7 +136,7 @@ fn smallest(node: &Node, slack: f64) -> Option<(Table, Vec<Vec<Cell>>)> {
                 continue;
             };
             let compiled = compile_layout(edge, table);
-            if compiled.certificate.total() > bound * slack {
+            if compiled.certificate.total() > *bound {
                 return None;
             }
             columns.push(compiled.cells);

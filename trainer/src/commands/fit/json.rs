@@ -67,6 +67,6 @@ fn score(score: Score) -> Value {
 fn recording(trace: &Trace) -> Value {
     let mut value = score(trace.score);
     value["recording"] = json!(trace.label);
-    value["filtered"] = score(trace.filtered_score);
+    value["at_100_hz"] = score(trace.filtered_score);
     value
 }

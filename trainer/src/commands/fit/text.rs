@@ -67,7 +67,7 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
             significant(candidate.held_out_rmse, DIGITS)
         )?;
     }
-    writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error  (low-passed)")?;
+    writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error   at 100 Hz")?;
     outcome.train.iter().try_for_each(|trace| write_score(out, "train", trace, unit))?;
     outcome.tests.iter().try_for_each(|trace| write_score(out, "test", trace, unit))?;
     for remark in &outcome.remarks {
