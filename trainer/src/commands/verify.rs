@@ -82,7 +82,7 @@ pub fn run(arguments: &Verify) -> Result<u8> {
         if arguments.exhaustive {
             comparison = exhaustive(model, &reporter);
         }
-        let ram_bytes = size_of::<Model<0>>() + size_of_val(model.cells.as_slice());
+        let ram_bytes = size_of::<Model<1>>() + size_of_val(&model.cells[..]);
         (comparison, Cost { flash_bytes: bytes.len() as u64, ram_bytes: ram_bytes as u64, ..Cost::default() })
     } else {
         reporter.say("building the firmware and running it");

@@ -38,7 +38,7 @@ fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) ->
     let compiled =
         (0..RELAXATIONS).find_map(|k| compile_table(&curve, low, high, bound * 3f64.powi(k as i32), 0).ok())?;
     Some(Tables {
-        law: Law::Table(compiled.table),
+        law: compiled.table.into(),
         certified: Some(compiled.certificate.total()),
         cells: compiled.cells,
         inputs: vec![input],
