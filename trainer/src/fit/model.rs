@@ -2,8 +2,8 @@
 
 use crc::{CRC_64_XZ, Crc};
 use frikan_shared::image::{Image, decode, encode};
-use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_shared::pool::Pool;
+use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
 
@@ -40,16 +40,10 @@ pub(super) fn assemble(parts: &Parts<'_>) -> Option<Box<HostModel>> {
         low: input.low as f32,
         high: input.high as f32,
     });
-    // A table alone is proved to keep the limit, which may lie a little above its largest value.
-    let bound = match parts.law {
-        Law::Geometric(_) | Law::Uniform(_) => parts.cells.iter().fold(0.0, |most: f32, cell| most.max(cell.bound())),
-        Law::Network(_) | Law::Expression(_) | Law::IntegerTable(_) => 0.0,
-    };
-    let output_limit = bound.max(parts.limit as f32);
     let model = HostModel {
         inputs: inputs.collect(),
         output_unit: parts.unit,
-        output_limit,
+        output_limit: parts.limit as f32,
         rigid_body: parts.rigid_body,
         law: parts.law.clone(),
         effects: heapless::Vec::new(),
