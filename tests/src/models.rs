@@ -26,8 +26,7 @@ pub fn asymmetric_friction(velocity: f64) -> f64 {
     stribeck_friction(velocity) * if velocity > 0.0 { 1.0 } else { 0.85 } + 0.4 * velocity
 }
 
-/// Coefficients, lowest power first, of the cubic that meets value and slope of `f` at both ends of `[low, high]`, in the
-/// coordinate that is 0 at `low` and 1 at `high`.
+/// The cubic that meets value and slope of `f` at both ends of `[low, high]`, in powers of the way through it, from 0 to 1.
 fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> [f64; 4] {
     let width = high - low;
     let step = 1e-4 * width;
@@ -35,11 +34,13 @@ fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> [f64; 4] {
         |end: f64, inward: f64| (-3.0 * f(end) + 4.0 * f(end + inward) - f(end + 2.0 * inward)) / (2.0 * inward);
     let (start, end) = (f(low), f(high));
     let (rise, fall) = (slope(low, step) * width, slope(high, -step) * width);
-    [start, rise, 3.0 * (end - start) - 2.0 * rise - fall, 2.0 * (start - end) + rise + fall]
+    let c2 = 3.0 * (end - start) - 2.0 * rise - fall;
+    let c3 = 2.0 * (start - end) + rise + fall;
+    [start, rise, c2, c3]
 }
 
-/// The cell of a table in floating point, whose coordinate is 1 at `low` and 2 at `high`.
-fn cell(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
+/// The same as a cell, whose coordinate goes from 1 to 2.
+fn hermite_cell(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
     let [c0, c1, c2, c3] = hermite(f, low, high);
     let shifted = [c0 - c1 + c2 - c3, c1 - 2.0 * c2 + 3.0 * c3, c2 - 3.0 * c3, c3];
     Cell::from_floats(shifted.map(|coefficient| coefficient as f32))
@@ -50,12 +51,13 @@ fn geometric_side(layout: &Geometric, count: u32, f: impl Fn(f64) -> f64) -> Vec
     let magnitude =
         |position: u32| f64::from(f32::from_bits(layout.offset.to_bits() + position)) - f64::from(layout.offset);
     let shift = layout.shape().shift();
-    (0..count).map(|index| cell(&f, magnitude(index << shift), magnitude((index + 1) << shift))).collect()
+    let cell = |index: u32| hermite_cell(&f, magnitude(index << shift), magnitude((index + 1) << shift));
+    (0..count).map(cell).collect()
 }
 
 /// A geometric table of `f` with its cells, of four cells an octave of `|v| + 2^-6`.
 #[must_use]
-pub fn geometric_table(f: impl Fn(f64) -> f64, symmetry: Symmetry, reach: f32) -> (Geometric, Vec<Cell>) {
+pub fn geometric_table(f: impl Fn(f64) -> f64, symmetry: Symmetry, reach: f32) -> (Table, Vec<Cell>) {
     let layout = Geometric::new(GeometricShape {
         first_cell: 0,
         offset_exponent: -6,
@@ -69,17 +71,17 @@ pub fn geometric_table(f: impl Fn(f64) -> f64, symmetry: Symmetry, reach: f32) -
     if symmetry == Symmetry::Sided {
         cells.extend(geometric_side(&layout, negative, |magnitude| f(-magnitude)));
     }
-    (layout, cells)
+    (Table::Geometric(layout), cells)
 }
 
 /// A uniform table of `f` with its cells.
 #[must_use]
-pub fn uniform_table(f: impl Fn(f64) -> f64, cells: u16, low: f32, high: f32) -> (Uniform, Vec<Cell>) {
+pub fn uniform_table(f: impl Fn(f64) -> f64, cells: u16, low: f32, high: f32) -> (Table, Vec<Cell>) {
     let layout = Uniform::new(UniformShape { first_cell: 0, cells, low, high });
     let width = (f64::from(high) - f64::from(low)) / f64::from(cells);
     let start = |index: u16| f64::from(low) + width * f64::from(index);
-    let pieces = (0..cells).map(|index| cell(&f, start(index), start(index) + width)).collect();
-    (layout, pieces)
+    let pieces = (0..cells).map(|index| hermite_cell(&f, start(index), start(index) + width)).collect();
+    (Table::Uniform(layout), pieces)
 }
 
 fn model(reaches: &[f32], law: Law, cells: &[Cell]) -> TestModel {
@@ -220,7 +222,7 @@ fn push_source<const N: usize, F: Fn(f64) -> f64>(
     for row in 0..usize::from(rows) {
         pool.extend(columns.iter().map(|(_, cells)| cells[row]));
     }
-    let source = Source { table: Table::Uniform(columns[0].0), first_cell };
+    let source = Source { table: columns[0].0, first_cell };
     sources.push(source).expect("the test's networks are small");
 }
 
