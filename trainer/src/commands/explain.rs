@@ -1,7 +1,7 @@
 //! `trainer explain CODE`: an error code or the name of an effect, at length.
 
-use clap::Args;
 use crate::error::{Class, Code, Error, Result, codes};
+use clap::Args;
 
 /// One section an effect: a line `# name`, a title, labelled paragraphs.
 const EFFECTS: &str = include_str!("explain/effects.txt");
