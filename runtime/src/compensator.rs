@@ -99,7 +99,7 @@ impl<const CELLS: usize> Compensator<CELLS> {
             Err(error) => return Compensation { torque: 0.0, position: 0.0, status: Status::NoModel(*error) },
         };
         let channels = measurement.channels(&model.inputs);
-        if !(dt >= 0.0 && dt <= LONGEST_SAMPLE) || channels.iter().any(|channel| !channel.is_finite()) {
+        if !(0.0..=LONGEST_SAMPLE).contains(&dt) || channels.iter().any(|channel| !channel.is_finite()) {
             self.torque = 0.0;
             return Compensation { torque: 0.0, position: 0.0, status: Status::NotFinite };
         }

@@ -1,11 +1,12 @@
 //! The static law of a model: inputs in, friction out.
 
 use frikan_shared::model::{Input, Law, MAX_INPUTS, Model};
+use frikan_shared::table::Table;
 
 use crate::expression::run;
 use crate::integer_table::evaluate_steps;
 use crate::network::evaluate_network;
-use crate::table::evaluate_table;
+use crate::table::{evaluate_geometric, evaluate_table};
 
 /// `value` held to `[-limit, limit]`; zero for NaN.
 #[must_use]
@@ -35,25 +36,25 @@ pub fn held(channels: &[Input], inputs: &[f32; MAX_INPUTS]) -> [f32; MAX_INPUTS]
 #[must_use]
 #[inline]
 pub fn evaluate<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
-    let [first, ..] = *inputs;
-    match &model.law {
-        Law::Table(table) => {
-            let value = if first.is_nan() { 0.0 } else { evaluate_table(table, &model.cells, first) };
-            limited(value, model.output_limit)
-        }
-        Law::Network(network) => {
-            let value = evaluate_network(network, &model.cells, inputs, model.inputs.len());
-            limited(if any_nan(&model.inputs, inputs) { 0.0 } else { value }, model.output_limit)
-        }
-        Law::Expression(program) => {
-            let value = run(program, &held(&model.inputs, inputs));
-            limited(if any_nan(&model.inputs, inputs) { 0.0 } else { value }, model.output_limit)
-        }
-        Law::IntegerTable(table) => {
-            let value = if first.is_nan() { 0.0 } else { evaluate_steps(table, &model.cells, first) };
-            limited(value, model.output_limit)
-        }
+    // The commonest law comes first and keeps to registers; validation has proved its values finite and within the limit.
+    if let Law::Geometric(layout) = &model.law {
+        let [input, ..] = *inputs;
+        return evaluate_geometric(layout, &model.cells, input);
     }
+    evaluate_other(model, inputs)
+}
+
+/// The laws that take longer than a call.
+#[inline(never)]
+fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
+    let value = match &model.law {
+        Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, inputs[0]),
+        Law::Uniform(layout) => evaluate_table(&Table::Uniform(*layout), &model.cells, inputs[0]),
+        Law::Network(network) => evaluate_network(network, &model.cells, inputs, model.inputs.len()),
+        Law::Expression(program) => run(program, &held(&model.inputs, inputs)),
+        Law::IntegerTable(table) => evaluate_steps(table, &model.cells, inputs[0]),
+    };
+    limited(if any_nan(&model.inputs, inputs) { 0.0 } else { value }, model.output_limit)
 }
 
 /// Whether a channel of the model is NaN.

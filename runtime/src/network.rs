@@ -3,7 +3,7 @@
 use frikan_shared::elementary;
 use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::network::{MAX_WIDTH, Network, Outer};
-use frikan_shared::table::Cell;
+use frikan_shared::pool::Pool;
 
 use crate::table::{cubic, place};
 
@@ -12,7 +12,12 @@ use crate::table::{cubic, place};
 /// The number of instructions depends on the network alone. Zero where it does not fit its pool, which no validated
 /// network does.
 #[must_use]
-pub fn evaluate_network(network: &Network, cells: &[Cell], inputs: &[f32; MAX_INPUTS], input_count: usize) -> f32 {
+pub fn evaluate_network<const CELLS: usize>(
+    network: &Network,
+    pool: &Pool<CELLS>,
+    inputs: &[f32; MAX_INPUTS],
+    input_count: usize,
+) -> f32 {
     let mut nodes = [0.0f32; MAX_WIDTH];
     for (node, input) in nodes.iter_mut().zip(inputs) {
         *node = *input;
@@ -24,9 +29,9 @@ pub fn evaluate_network(network: &Network, cells: &[Cell], inputs: &[f32; MAX_IN
         let mut sums = [0.0f32; MAX_WIDTH];
         for (&node, source) in nodes.iter().take(width).zip(&mut sources) {
             let place = place(&source.table, node);
-            let row = usize::from(source.first_cell) + place.row as usize * targets;
-            for (sum, cell) in sums.iter_mut().zip(cells.get(row..row + targets).unwrap_or_default()) {
-                *sum += cubic(cell, place);
+            let row = u32::from(source.first_cell).wrapping_add(place.row.wrapping_mul(targets as u32));
+            for (sum, column) in sums.iter_mut().take(targets).zip(0u32..) {
+                *sum += cubic(pool.at(row.wrapping_add(column)), place);
             }
         }
         width = layer.outputs();

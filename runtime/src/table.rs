@@ -1,43 +1,45 @@
 //! Cubic tables: finding the cell, and the cubic.
 
-use frikan_shared::table::{Cell, Geometric, SIGN_BIT, Table, Uniform};
+use frikan_shared::pool::Pool;
+use frikan_shared::table::{Cell, Geometric, Table, Uniform};
 
 /// Where an input lies in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Row of cells.
     pub row: u32,
-    /// Local coordinate in `[0, 1)`.
-    pub x: f32,
+    /// Local coordinate in `[1, 2)`.
+    pub t: f32,
     /// Bits that turn the output's sign.
     pub sign: u32,
+}
+
+/// The place of a position: the cell is the high word of its product with `cells`, the fraction the low one.
+#[inline(always)]
+fn place_position(position: u32, cells: u32, first_cell: u32, sign: u32) -> Place {
+    let product = u64::from(position) * u64::from(cells);
+    Place {
+        row: first_cell.wrapping_add((product >> 32) as u32),
+        t: f32::from_bits((product as u32) >> 9 | 1.0f32.to_bits()),
+        sign,
+    }
 }
 
 /// The place of `input` in a geometric layout; beyond the reach, and for NaN, its end.
 #[inline(always)]
 fn place_geometric(layout: &Geometric, input: f32) -> Place {
-    let bits = input.to_bits();
-    let [positive, negative] = &layout.sides;
-    let side = if bits & SIGN_BIT == 0 { positive } else { negative };
+    // A sign bit is an index below 2, which the compiler knows.
+    let side = &layout.sides[(input.to_bits() >> 31) as usize];
     let width = input.abs() + layout.offset;
-    let position = width.to_bits().wrapping_sub(layout.offset.to_bits()).min(side.last_position);
-    Place {
-        row: side.first_cell.wrapping_add(position.wrapping_shr(layout.shift)),
-        x: (position & layout.fraction_mask) as f32 * layout.fraction_step,
-        sign: bits & layout.sign_mask,
-    }
+    let position = width.to_bits().wrapping_sub(side.origin).min(side.last_position);
+    place_position(position, side.cells_per_turn, 0, side.sign)
 }
 
 /// The place of `input` in a uniform layout; the conversion to `u32` saturates and takes NaN to the lower end.
 #[inline(always)]
 fn place_uniform(layout: &Uniform, input: f32) -> Place {
-    let fraction = ((input - layout.low) * layout.scale) as u32;
-    let product = u64::from(fraction) * u64::from(layout.cells);
-    Place {
-        row: layout.first_cell.wrapping_add((product >> 32) as u32),
-        x: ((product as u32) >> 8) as f32 * Uniform::FRACTION_STEP,
-        sign: 0,
-    }
+    let position = ((input - layout.low) * layout.scale) as u32;
+    place_position(position, layout.cells, layout.first_cell, 0)
 }
 
 /// The place of `input` in `table`.
@@ -50,20 +52,30 @@ pub fn place(table: &Table, input: f32) -> Place {
     }
 }
 
-/// `c0 + x (c1 + x (c2 + x c3))`, with the sign bits of the place.
+/// `((c3 t + c2) t + c1) t + c0`, with the sign bits of the place.
 #[must_use]
 #[inline(always)]
 pub fn cubic(cell: &Cell, place: Place) -> f32 {
     let [c0, c1, c2, c3] = cell.floats();
-    let value = ((c3 * place.x + c2) * place.x + c1) * place.x + c0;
+    let value = ((c3 * place.t + c2) * place.t + c1) * place.t + c0;
     f32::from_bits(value.to_bits() ^ place.sign)
 }
 
-/// The value of a single table at `input`, in about 35 instructions whatever the input. Zero where the table reaches
-/// beyond `cells`, which no validated model does.
+/// The value of a geometric table at `input`; 0 for NaN.
+#[must_use]
+#[inline(always)]
+pub fn evaluate_geometric<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS>, input: f32) -> f32 {
+    let place = place_geometric(layout, input);
+    let value = cubic(pool.at(place.row), place);
+    // NaN is told from the bits of |v| + c, which are at hand.
+    let is_nan = (input.abs() + layout.offset).to_bits() > f32::INFINITY.to_bits();
+    f32::from_bits(if is_nan { 0 } else { value.to_bits() })
+}
+
+/// The value of a single table at `input`.
 #[must_use]
 #[inline]
-pub fn evaluate_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
+pub fn evaluate_table<const CELLS: usize>(table: &Table, pool: &Pool<CELLS>, input: f32) -> f32 {
     let place = place(table, input);
-    cells.get(place.row as usize).map_or(0.0, |cell| cubic(cell, place))
+    cubic(pool.at(place.row), place)
 }

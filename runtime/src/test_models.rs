@@ -4,6 +4,7 @@ use frikan_shared::effect::Effect;
 use frikan_shared::expression::{Operation, Program};
 use frikan_shared::image::{Image, encode};
 use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
+use frikan_shared::pool::Pool;
 use frikan_shared::units::{Quantity, Unit};
 use std::vec::Vec;
 
@@ -26,7 +27,7 @@ pub(crate) fn coulomb_model(coulomb: f32, effects: &[Effect]) -> TestModel {
         rigid_body: RigidBody::default(),
         law: Law::Expression(Program { operations: heapless::Vec::from_slice(&operations).unwrap() }),
         effects: heapless::Vec::from_slice(effects).unwrap(),
-        cells: heapless::Vec::new(),
+        cells: Pool::new(),
     };
     model.validate().unwrap();
     model

@@ -15,6 +15,7 @@ pub mod image;
 pub mod integer_table;
 pub mod model;
 pub mod network;
+pub mod pool;
 pub mod table;
 pub mod units;
 pub mod validate;

@@ -6,7 +6,8 @@ use crate::effect::{Effect, MAX_EFFECTS};
 use crate::expression::Program;
 use crate::integer_table::IntegerTable;
 use crate::network::Network;
-use crate::table::{Cell, Table};
+use crate::pool::Pool;
+use crate::table::{Geometric, Table, Uniform};
 use crate::units::{Quantity, Unit};
 
 /// Most inputs of a model; a power of two, so that an input index is a mask.
@@ -60,15 +61,27 @@ impl Default for RigidBody {
 /// The variants differ in size on purpose: a drive has no heap to box the large ones in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(clippy::large_enum_variant)]
+#[repr(u8)]
 pub enum Law {
-    /// A function of the only input.
-    Table(Table),
+    /// A function of the only input in cells that grow with the distance from zero: the usual one.
+    Geometric(Geometric),
+    /// A function of the only input in equal cells.
+    Uniform(Uniform),
     /// Several inputs through layers of tables.
     Network(Network),
     /// A formula.
     Expression(Program),
     /// A function of the only input, in integers, for targets without a floating-point unit.
     IntegerTable(IntegerTable),
+}
+
+impl From<Table> for Law {
+    fn from(table: Table) -> Self {
+        match table {
+            Table::Geometric(layout) => Self::Geometric(layout),
+            Table::Uniform(layout) => Self::Uniform(layout),
+        }
+    }
 }
 
 /// Where a model comes from.
@@ -86,9 +99,15 @@ pub struct Provenance {
 
 /// A friction model with room for `CELLS` cells.
 ///
-/// [`crate::validate`] says what a model has to satisfy; every decoded model does.
+/// [`crate::validate`] says what a model has to satisfy; every decoded model does. Law and cells come first in memory, so that the
+/// short offsets of a load reach them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[repr(C)]
 pub struct Model<const CELLS: usize> {
+    /// The static law.
+    pub law: Law,
+    /// Coefficients into which all tables index.
+    pub cells: Pool<CELLS>,
     /// Input channels in the order in which the law counts them.
     pub inputs: heapless::Vec<Input, MAX_INPUTS>,
     /// Unit of the output.
@@ -97,10 +116,6 @@ pub struct Model<const CELLS: usize> {
     pub output_limit: f32,
     /// Rigid-body parameters in force.
     pub rigid_body: RigidBody,
-    /// The static law.
-    pub law: Law,
     /// Correction terms, added in their order.
     pub effects: heapless::Vec<Effect, MAX_EFFECTS>,
-    /// Coefficients into which all tables index.
-    pub cells: heapless::Vec<Cell, CELLS>,
 }

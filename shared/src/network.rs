@@ -15,7 +15,7 @@ pub const MAX_LAYERS: usize = 4;
 pub const MAX_WIDTH: usize = 16;
 
 /// Most nodes with outgoing edges, over all layers.
-pub const MAX_SOURCES: usize = 24;
+pub const MAX_SOURCES: usize = 16;
 
 /// A node with outgoing edges: the layout that its edges share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

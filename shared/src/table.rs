@@ -1,13 +1,17 @@
 //! Tables of cubic pieces: what a cell holds, and the two layouts by which an input finds its cell.
 //!
-//! A cell holds the coefficients `c0..c3` of `c0 + x (c1 + x (c2 + x c3))` with the local coordinate `x` in `[0, 1)`,
-//! so that `c0` is exactly the value at the cell's near end. The layouts differ only in how they cut the input:
+//! A cell holds the coefficients `c0..c3` of `((c3 t + c2) t + c1) t + c0` with the local coordinate `t` in `[1, 2)`: 1 at the
+//! cell's near end, 2 at its far end. That range costs nothing: the 23 bits of the fraction of the way through the cell,
+//! or-ed into the pattern of 1.0, *are* `t`, exactly. The layouts differ only in how they cut the input:
 //!
 //! * [`Geometric`]: cells grow with the distance from zero, where friction bends. With `w = |v| + c`, `c` a power of two,
 //!   the bits of `w` minus the bits of `c` are a *position* that counts steps of equal ratio: its high part is the cell
 //!   number and its low part the local coordinate. The position saturates as an unsigned integer, which also takes
 //!   infinities and NaN.
-//! * [`Uniform`]: equal cells over `[low, high]` by a saturating conversion to `u32` and one 32 x 32 -> 64 bit product.
+//! * [`Uniform`]: equal cells over `[low, high]`, the position a saturating conversion to `u32`.
+//!
+//! In both, one 32 x 32 -> 64 bit product of the position gives the cell in the high word and the fraction in the low one, of
+//! which the upper 23 bits are used.
 //!
 //! Outside its range a table holds the value at the nearer end.
 
@@ -25,6 +29,9 @@ pub const SIGN_BIT: u32 = 0x8000_0000;
 pub struct Cell([u32; 4]);
 
 impl Cell {
+    /// All words zero.
+    pub const ZERO: Self = Self([0; 4]);
+
     /// A cell of cubic coefficients, lowest power first.
     #[must_use]
     pub const fn from_floats(coefficients: [f32; 4]) -> Self {
@@ -38,6 +45,21 @@ impl Cell {
     pub const fn floats(&self) -> [f32; 4] {
         let [c0, c1, c2, c3] = self.0;
         [f32::from_bits(c0), f32::from_bits(c1), f32::from_bits(c2), f32::from_bits(c3)]
+    }
+
+    /// A bound of the cubic's magnitude on `[1, 2]` as the drive computes it: the largest of its Bernstein coefficients, and for the
+    /// rounding of the evaluation (and of these coefficients) a few units in the last place of its terms.
+    #[must_use]
+    pub fn bound(&self) -> f32 {
+        let [c0, c1, c2, c3] = self.floats();
+        let bernstein = [
+            c0 + c1 + c2 + c3,
+            c0 + (4.0 * c1 + 5.0 * c2 + 6.0 * c3) / 3.0,
+            c0 + (5.0 * c1 + 8.0 * c2 + 12.0 * c3) / 3.0,
+            c0 + 2.0 * c1 + 4.0 * c2 + 8.0 * c3,
+        ];
+        let rounding = 8.0 * f32::EPSILON * (c0.abs() + 2.0 * c1.abs() + 4.0 * c2.abs() + 8.0 * c3.abs());
+        bernstein.into_iter().fold(0.0f32, |most, coefficient| most.max(coefficient.abs())) + rounding
     }
 
     /// A cell of integer coefficients, lowest power first.
@@ -107,12 +129,18 @@ pub struct GeometricShape {
 }
 
 /// The cells of one sign.
+///
+/// Positions are biased: they begin at `first_cell << shift`, so that the cell number that comes out is already one of the pool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Index in the pool of the cell next to zero.
-    pub first_cell: u32,
-    /// Largest position; inputs beyond it hold.
+    /// What is taken from the bits of `|v| + c` to get the biased position.
+    pub origin: u32,
+    /// Largest biased position; inputs beyond it hold.
     pub last_position: u32,
+    /// `2^32 / 2^shift`: the product of a position with it has the cell in the high word and the fraction in the low one.
+    pub cells_per_turn: u32,
+    /// The bits that this side turns in the output: the sign bit for negative inputs of an odd table, else none.
+    pub sign: u32,
 }
 
 /// Geometric layout, ready to evaluate.
@@ -122,45 +150,37 @@ pub struct Geometric {
     shape: GeometricShape,
     /// `c` of `w = |v| + c`.
     pub offset: f32,
-    /// Bits of the position below the cell number, `23 - octave_cells_log2`.
-    pub shift: u32,
-    /// The bits of the position that are the local coordinate.
-    pub fraction_mask: u32,
-    /// Local coordinate of one step of the position, `2^-shift`.
-    pub fraction_step: f32,
-    /// The bits of the input that are carried over to the output: the sign bit of an odd table, else none.
-    pub sign_mask: u32,
-    /// Cells for positive inputs, then for negative ones.
+    /// Positive inputs, then negative ones.
     pub sides: [Side; 2],
 }
 
 impl Geometric {
-    /// The layout of a shape, for one column (a table) or for `columns` interleaved columns (the edges of a network).
+    /// The layout of a shape. A shape out of its documented range gives a harmless layout, which validation refuses.
     #[must_use]
     pub fn new(shape: GeometricShape) -> Self {
-        // A shape out of its documented range gives a harmless layout that validation refuses.
         let exponent = i32::from(shape.offset_exponent.clamp(-60, 60));
         let offset = f32::from_bits(((exponent + 127) as u32) << MANTISSA_BITS);
-        let shift = MANTISSA_BITS - u32::from(shape.octave_cells_log2.min(8));
-        let last_position =
-            |reach: f32| (reach.abs() + offset).to_bits().saturating_sub(offset.to_bits()).max(1).saturating_sub(1);
-        let positive = Side { first_cell: u32::from(shape.first_cell), last_position: last_position(shape.reach) };
-        let negative = match shape.symmetry {
-            Symmetry::Odd | Symmetry::Even => positive,
-            Symmetry::Sided => Side {
-                first_cell: positive.first_cell + (positive.last_position >> shift) + 1,
-                last_position: last_position(shape.reach_negative),
-            },
+        let shift = shape.shift();
+        // One step short of the end, so that the end is still in the last cell.
+        let last = |reach: f32| (reach.abs() + offset).to_bits().saturating_sub(offset.to_bits()).saturating_sub(1);
+        let side = |first_cell: u32, last: u32, sign: u32| {
+            let bias = first_cell << shift;
+            Side {
+                origin: offset.to_bits().wrapping_sub(bias),
+                last_position: bias.wrapping_add(last),
+                cells_per_turn: 1 << (32 - shift),
+                sign,
+            }
         };
-        Self {
-            shape,
-            offset,
-            shift,
-            fraction_mask: (1 << shift) - 1,
-            fraction_step: f32::from_bits((127 - shift) << MANTISSA_BITS),
-            sign_mask: if shape.symmetry == Symmetry::Odd { SIGN_BIT } else { 0 },
-            sides: [positive, negative],
-        }
+        let first_cell = u32::from(shape.first_cell);
+        let last_positive = last(shape.reach);
+        let negative = match shape.symmetry {
+            Symmetry::Odd => side(first_cell, last_positive, SIGN_BIT),
+            Symmetry::Even => side(first_cell, last_positive, 0),
+            Symmetry::Sided => side(first_cell + (last_positive >> shift) + 1, last(shape.reach_negative), 0),
+        };
+        let positive = side(first_cell, last_positive, 0);
+        Self { shape, offset, sides: [positive, negative] }
     }
 
     /// What the image says of this layout.
@@ -172,7 +192,10 @@ impl Geometric {
     /// Cells on the side of positive and of negative inputs.
     #[must_use]
     pub fn side_cells(&self) -> [u32; 2] {
-        self.sides.map(|side| (side.last_position >> self.shift) + 1)
+        let shift = self.shape.shift();
+        let offset = self.offset.to_bits();
+        // The positions without their bias.
+        self.sides.map(|side| (side.last_position.wrapping_sub(offset.wrapping_sub(side.origin)) >> shift) + 1)
     }
 
     /// Cells of both signs together, counted once where they share.
@@ -180,6 +203,20 @@ impl Geometric {
     pub fn cells(&self) -> u32 {
         let [positive, negative] = self.side_cells();
         if self.shape.symmetry == Symmetry::Sided { positive + negative } else { positive }
+    }
+
+    /// Whether every biased position fits in 32 bits.
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        (u64::from(self.shape.first_cell) + u64::from(self.cells())) << self.shape.shift() <= u64::from(u32::MAX)
+    }
+}
+
+impl GeometricShape {
+    /// Bits of a position below the cell number.
+    #[must_use]
+    pub fn shift(&self) -> u32 {
+        MANTISSA_BITS - u32::from(self.octave_cells_log2.min(8))
     }
 }
 
@@ -224,9 +261,6 @@ pub struct Uniform {
 }
 
 impl Uniform {
-    /// Local coordinate of one step of the fraction, whose 24 high bits are used.
-    pub const FRACTION_STEP: f32 = 1.0 / 16_777_216.0;
-
     /// The layout of a shape.
     #[must_use]
     pub fn new(shape: UniformShape) -> Self {
@@ -281,7 +315,7 @@ impl Table {
     #[must_use]
     pub fn first_cell(&self) -> u32 {
         match self {
-            Self::Geometric(layout) => layout.sides[0].first_cell,
+            Self::Geometric(layout) => u32::from(layout.shape().first_cell),
             Self::Uniform(layout) => layout.first_cell,
         }
     }

@@ -19,7 +19,7 @@ pub enum InvalidModel {
     DuplicateInput,
     /// The trained range of an input is empty, inverted, not finite, or beyond 1e9.
     InputRange,
-    /// The output limit is not a positive finite number.
+    /// The output limit is not a positive finite number, or the only table of the law exceeds it.
     OutputLimit,
     /// A rigid-body parameter is not finite.
     RigidBody,
@@ -73,10 +73,8 @@ impl<const CELLS: usize> Model<CELLS> {
             InvalidModel::RigidBody,
         )?;
         match &self.law {
-            Law::Table(table) => {
-                ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
-                check_table(table, table.first_cell() as usize, 1, &self.cells)?;
-            }
+            Law::Geometric(layout) => self.check_only_table(Table::Geometric(*layout))?,
+            Law::Uniform(layout) => self.check_only_table(Table::Uniform(*layout))?,
             Law::Network(network) => check_network(network, self.inputs.len(), &self.cells)?,
             Law::Expression(program) => program.check(self.inputs.len()).map_err(InvalidModel::Program)?,
             Law::IntegerTable(table) => {
@@ -85,6 +83,13 @@ impl<const CELLS: usize> Model<CELLS> {
             }
         }
         self.check_effects()
+    }
+
+    fn check_only_table(&self, table: Table) -> Result<(), InvalidModel> {
+        ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
+        check_table(&table, table.first_cell() as usize, 1, &self.cells)?;
+        let columns = self.cells.iter().skip(table.first_cell() as usize).take(table.cells() as usize);
+        ensure(columns.into_iter().all(|cell| cell.bound() <= self.output_limit), InvalidModel::OutputLimit)
     }
 
     fn check_effects(&self) -> Result<(), InvalidModel> {
@@ -124,6 +129,7 @@ fn check_table(table: &Table, first: usize, columns: usize, cells: &[Cell]) -> R
                 && shape.octave_cells_log2 <= 8
                 && scale(shape.reach)
                 && scale(shape.reach_negative)
+                && layout.fits()
         }
         Table::Uniform(layout) => {
             let shape = layout.shape();

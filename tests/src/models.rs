@@ -2,6 +2,7 @@
 
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::image::{Image, encode};
+use frikan_runtime::shared::integer_table::{IntegerShape, IntegerTable};
 use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_runtime::shared::network::{Layer, Network, Outer, Source};
 use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
@@ -35,14 +36,17 @@ fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
     let (rise, fall) = (slope(low, step) * width, slope(high, -step) * width);
     let c2 = 3.0 * (end - start) - 2.0 * rise - fall;
     let c3 = 2.0 * (start - end) + rise + fall;
-    Cell::from_floats([start as f32, rise as f32, c2 as f32, c3 as f32])
+    // From powers of x in [0, 1] to powers of the cell's coordinate 1 + x.
+    let coefficients = [start - rise + c2 - c3, rise - 2.0 * c2 + 3.0 * c3, c2 - 3.0 * c3, c3];
+    Cell::from_floats(coefficients.map(|coefficient| coefficient as f32))
 }
 
 /// The cells of one side of a geometric table.
 fn geometric_side(layout: &Geometric, count: u32, f: impl Fn(f64) -> f64) -> Vec<Cell> {
     let magnitude =
         |position: u32| f64::from(f32::from_bits(layout.offset.to_bits() + position)) - f64::from(layout.offset);
-    let cell = |index: u32| hermite(&f, magnitude(index << layout.shift), magnitude((index + 1) << layout.shift));
+    let shift = layout.shape().shift();
+    let cell = |index: u32| hermite(&f, magnitude(index << shift), magnitude((index + 1) << shift));
     (0..count).map(cell).collect()
 }
 
@@ -98,21 +102,21 @@ fn model(reaches: &[f32], law: Law, cells: &[Cell]) -> TestModel {
 #[must_use]
 pub fn symmetric_table() -> TestModel {
     let (table, cells) = geometric_table(stribeck_friction, Symmetry::Odd, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// Asymmetric friction in a geometric table.
 #[must_use]
 pub fn sided_table() -> TestModel {
     let (table, cells) = geometric_table(asymmetric_friction, Symmetry::Sided, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// A smooth law in a uniform table.
 #[must_use]
 pub fn uniform() -> TestModel {
     let (table, cells) = uniform_table(|velocity| 20.0 * (2.0 * velocity).tanh(), 64, -2.0, 2.0);
-    model(&[2.0], Law::Table(table), &cells)
+    model(&[2.0], table.into(), &cells)
 }
 
 /// The formula of [`stribeck_friction`].
@@ -133,6 +137,30 @@ pub fn stribeck_expression() -> TestModel {
         Add,
     ];
     model(&[2.0], Law::Expression(Program { operations: operations.into_iter().collect() }), &[])
+}
+
+/// Symmetric friction in an integer table: 2^-16 rad/s a step in, 1/1000 N m a step out.
+#[must_use]
+pub fn integer_table() -> TestModel {
+    let shape = IntegerShape {
+        first_cell: 0,
+        inner_shift: 9,
+        outer_shift: 13,
+        split_shift: 13,
+        symmetry: Symmetry::Odd,
+        reach: 1 << 17,
+        input_step: 1.0 / 65_536.0,
+        output_step: 1e-3,
+    };
+    let steps = |step: f64| stribeck_friction(step / 65_536.0) / 1e-3;
+    let narrow = (0..16).map(|index| (f64::from(index) * 512.0, 512.0));
+    let wide = (1..16).map(|index| (f64::from(index) * 8192.0, 8192.0));
+    let cells = narrow.chain(wide).map(|(start, width)| {
+        let [c0, c1, c2, c3] = hermite(steps, start, start + width).floats();
+        Cell::from_integers([c0, c1, c2, c3].map(|coefficient| coefficient.round() as i32))
+    });
+    let cells: Vec<_> = cells.collect();
+    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &cells)
 }
 
 /// A network [1,5,1] whose inner edges are shifted sigmoids.

@@ -56,6 +56,21 @@ pub fn one_input(count: usize, reach: f32, seed: u64) -> Vec<f32> {
     values
 }
 
+/// `count` counts of a drive without floating-point unit, as `i32` bits: the ends of the range, an even sweep over
+/// `[-1.25 reach, 1.25 reach]`, and random ones over all 2^32. One seed, one vector.
+#[must_use]
+pub fn counts(count: usize, reach: i32, seed: u64) -> Vec<i32> {
+    let mut values = vec![0, 1, -1, reach - 1, reach, reach + 1, 1 - reach, -reach, -reach - 1, i32::MAX, i32::MIN];
+    values.extend([8191, 8192, 8193, -8191, -8192, -8193, i32::MIN + 1]);
+    values.truncate(count);
+    let sweep = (count - values.len()) / 2;
+    let end = 1.25 * f64::from(reach);
+    values.extend((0..sweep).map(|index| (index as f64 * 2.0 * end / sweep as f64 - end) as i32));
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    values.resize_with(count, || random.next_u32() as i32);
+    values
+}
+
 /// `rows` rows of `reaches.len()` inputs that fill the box of the reaches evenly (additive recurrence on the roots of
 /// `x^(d+1) = x + 1`; Roberts 2018), every 16th row with a special value in one of its inputs.
 #[must_use]

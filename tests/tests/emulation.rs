@@ -1,11 +1,13 @@
 //! The bits of every emulated target against those of the host, for every kind of model.
 
 use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::integer_table::evaluate_integer;
+use frikan_runtime::shared::model::Law;
 use frikan_tests::models::{self, TestModel};
-use frikan_tests::vectors::{one_input, space_filling};
-use frikan_trainer::emulator::{Emulator, Mode, Request};
+use frikan_tests::vectors::{counts, one_input, space_filling};
+use frikan_trainer::emulator::{Emulator, Firmware, Mode, Request};
 
-/// Inputs of the exhaustive-in-spirit comparison of one-input tables.
+/// Inputs of the comparison of a one-input table, in floating point and in integers.
 const TABLE_ROWS: usize = 1_000_000;
 
 /// Rows of every other comparison.
@@ -43,6 +45,23 @@ fn every_kind_agrees_on(target: &str) {
     }
 }
 
+/// The integer table as a drive without floating-point unit calls it: counts in, counts out.
+fn integer_table_agrees_on(target: &str) {
+    let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-integer").unwrap();
+    let model = models::integer_table();
+    let Law::IntegerTable(table) = &model.law else { unreachable!() };
+    let steps = counts(TABLE_ROWS, 1 << 17, 3);
+    let values: Vec<f32> = steps.iter().map(|count| f32::from_bits(*count as u32)).collect();
+    let image = models::image(&model);
+    let request =
+        Request { image: &image, values: &values, inputs: 1, mode: Mode::Evaluate, floating_point_control: 0 };
+    let answer = emulator.run(&request).unwrap();
+    for (count, output) in steps.iter().zip(&answer.outputs) {
+        let expected = evaluate_integer(table, &model.cells, *count);
+        assert_eq!(output.to_bits() as i32, expected, "integer table on {target} at {count}");
+    }
+}
+
 #[test]
 fn cortex_m4f_computes_the_bits_of_the_host() {
     every_kind_agrees_on("cortex-m4f");
@@ -61,16 +80,19 @@ fn cortex_m33_computes_the_bits_of_the_host() {
 #[test]
 fn cortex_m0plus_computes_the_bits_of_the_host() {
     every_kind_agrees_on("cortex-m0plus");
+    integer_table_agrees_on("cortex-m0plus");
 }
 
 #[test]
 fn riscv32imac_computes_the_bits_of_the_host() {
     every_kind_agrees_on("riscv32imac");
+    integer_table_agrees_on("riscv32imac");
 }
 
 #[test]
 fn riscv32imc_computes_the_bits_of_the_host() {
     every_kind_agrees_on("riscv32imc");
+    integer_table_agrees_on("riscv32imc");
 }
 
 /// Some drive firmware flushes subnormals to zero or asks for the default NaN; a table must not notice.

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use frikan_trainer::commands::output::print;
-use frikan_trainer::commands::{explain, export, fit, predict, show, simulate, verify};
+use frikan_trainer::commands::{diagnose, explain, export, fit, predict, show, simulate, verify};
 use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
@@ -25,6 +25,7 @@ enum Command {
     Predict(predict::Predict),
     Verify(verify::Verify),
     Export(export::Export),
+    Diagnose(diagnose::Diagnose),
     Simulate(simulate::Simulate),
     Explain(explain::Explain),
 }
@@ -36,6 +37,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments).map(|()| 0),
         Command::Explain(arguments) => arguments.run().and_then(|text| print(&text)).map(|()| 0),
     }

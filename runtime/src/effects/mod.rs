@@ -13,7 +13,7 @@ pub mod windup;
 use frikan_shared::effect::{Effect, Kind};
 use frikan_shared::elementary::tanh;
 use frikan_shared::model::{Input, MAX_INPUTS};
-use frikan_shared::table::Cell;
+use frikan_shared::pool::Pool;
 use frikan_shared::units::Quantity;
 
 /// One sample as the effects see it: channels held to their trained ranges, 0 where the model has no such channel.
@@ -123,7 +123,12 @@ impl State {
 
 /// Advances `state` by one sample and returns what `effect` adds. A state that is not the effect's adds nothing.
 #[must_use]
-pub fn contribution(effect: &Effect, state: &mut State, motion: &Motion, cells: &[Cell]) -> Contribution {
+pub fn contribution<const CELLS: usize>(
+    effect: &Effect,
+    state: &mut State,
+    motion: &Motion,
+    pool: &Pool<CELLS>,
+) -> Contribution {
     match (effect, state) {
         (Effect::Presliding { .. }, State::Bristle(bristle)) => presliding::step(effect, bristle, motion),
         (Effect::DwellBreakaway { .. }, State::Dwell(dwell)) => dwell_breakaway::step(effect, dwell, motion),
@@ -134,7 +139,7 @@ pub fn contribution(effect: &Effect, state: &mut State, motion: &Motion, cells: 
         }
         (Effect::Temperature { .. } | Effect::Load { .. }, _) => Contribution::torque(channels::torque(effect, motion)),
         (Effect::Ripple { .. } | Effect::PositionTable { .. } | Effect::Spring { .. }, _) => {
-            position::contribution(effect, motion, cells)
+            position::contribution(effect, motion, pool)
         }
         _ => Contribution::torque(velocity::torque(effect, motion)),
     }

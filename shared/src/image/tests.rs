@@ -2,7 +2,7 @@ use super::*;
 use crate::effect::{Effect, Harmonic, Kind};
 use crate::expression::{Operation, Program, ProgramFault};
 use crate::model::{Input, Law, RigidBody};
-use crate::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
+use crate::table::{Cell, Geometric, GeometricShape, Symmetry};
 use crate::units::{Quantity, Unit};
 use proptest::prelude::*;
 use std::vec::Vec;
@@ -28,7 +28,7 @@ fn table_image(symmetry: Symmetry) -> Image<64> {
         output_unit: Unit::NewtonMetre,
         output_limit: 100.0,
         rigid_body: RigidBody::default(),
-        law: Law::Table(Table::Geometric(layout)),
+        law: Law::Geometric(layout),
         effects: heapless::Vec::new(),
         cells: cells.collect(),
     };
@@ -134,6 +134,7 @@ fn models_that_cannot_be_evaluated_are_refused() {
     refused(&|model| model.inputs.push(input(Quantity::Load)).unwrap(), InvalidModel::LawInputs);
     refused(&|model| model.output_limit = f32::NAN, InvalidModel::OutputLimit);
     refused(&|model| model.output_limit = 0.0, InvalidModel::OutputLimit);
+    refused(&|model| model.output_limit = 20.0, InvalidModel::OutputLimit);
     refused(&|model| model.rigid_body.inertia = f32::NAN, InvalidModel::RigidBody);
     refused(&|model| model.cells.truncate(20), InvalidModel::CellOutOfPool);
     for coefficient in [f32::NAN, f32::INFINITY, f32::from_bits(3)] {

@@ -2,6 +2,8 @@
 //!
 //! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
 
+pub mod summary;
+
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
@@ -163,6 +165,19 @@ impl Outcome {
     /// Names of the findings in the order in which they were accepted.
     pub fn named(&self) -> Vec<EffectId> {
         self.diagnosis.findings.iter().map(|finding| finding.effect).collect()
+    }
+
+    /// Channels of the first unnamed finding.
+    pub fn unknown_channels(&self) -> Vec<String> {
+        use frikan_trainer::diagnose::Label;
+        self.diagnosis
+            .findings
+            .iter()
+            .find_map(|finding| match finding.fitted.label {
+                Label::Generic(rival) => Some(vec![rival.factor.text().to_string(), rival.channel.name().to_string()]),
+                Label::Named(_) => None,
+            })
+            .unwrap_or_default()
     }
 
     /// The first finding with its ambiguity set.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Args;
 use frikan_runtime::evaluate::evaluate;
-use frikan_shared::model::{MAX_INPUTS, Model};
+use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
 use serde_json::{Value, json};
 
@@ -82,7 +82,7 @@ pub fn run(arguments: &Verify) -> Result<u8> {
         if arguments.exhaustive {
             comparison = exhaustive(model, &reporter);
         }
-        let ram_bytes = size_of::<Model<0>>() + size_of_val(model.cells.as_slice());
+        let ram_bytes = size_of_val(model) + size_of_val(&model.cells[..]) - size_of_val(&model.cells);
         (comparison, Cost { flash_bytes: bytes.len() as u64, ram_bytes: ram_bytes as u64, ..Cost::default() })
     } else {
         reporter.say("building the firmware and running it");

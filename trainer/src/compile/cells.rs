@@ -22,10 +22,30 @@ const PARTS: usize = 32;
 /// Unit roundoff of `f32`.
 const F32_ROUNDOFF: f64 = 1.0 / 16_777_216.0;
 
-/// A cubic in the local coordinate `x` in `[0, 1]`, its coefficients rounded to `f32`.
-pub type Cubic = [f32; 4];
+/// A cubic in the local coordinate `x` in `[0, 1]`, lowest power first. Its coefficients are those that the drive has, so that a
+/// certificate speaks of these and not of what they were rounded from.
+pub type Cubic = [f64; 4];
 
-/// The cubic through the function at the stretched Chebyshev points of `[low, high]`, where `high` may lie below `low`: the local
+/// The coefficients of the drive's coordinate `t = 1 + x`, rounded to `f32`.
+///
+/// What is too small to matter is zero, so that no coefficient is subnormal. The constant is chosen last, against the rounded others, so
+/// that the near end keeps its value: exactly where that is 0.
+#[must_use]
+pub fn to_drive(cubic: Cubic) -> [f32; 4] {
+    let [near, c1, c2, c3] = cubic;
+    let round = |c: f64| if c.abs() < 1.0e-30 { 0.0 } else { c as f32 };
+    let (d1, d2, d3) = (round(c1 - 2.0 * c2 + 3.0 * c3), round(c2 - 3.0 * c3), round(c3));
+    let others = (d3 + d2) + d1;
+    [round(near - f64::from(others)), d1, d2, d3]
+}
+
+/// The cubic in `x` of the drive's coefficients.
+fn from_drive(cell: &[f32; 4]) -> Cubic {
+    let [c0, c1, c2, c3] = cell.map(f64::from);
+    [c0 + c1 + c2 + c3, c1 + 2.0 * c2 + 3.0 * c3, c2 + 3.0 * c3, c3]
+}
+
+/// The cubic, not yet rounded, through the function at the stretched Chebyshev points of `[low, high]`, where `high` may lie below `low`: the local
 /// coordinate runs from `low` to `high`.
 #[must_use]
 pub fn fit_cell(curve: &dyn Curve, low: f64, high: f64) -> Cubic {
@@ -44,18 +64,12 @@ pub fn fit_cell(curve: &dyn Curve, low: f64, high: f64) -> Cubic {
     let c3 = d0123;
     let c2 = d012 - d0123 * (x1 + x2);
     let c1 = d01 - d012 * x1 + d0123 * x1 * x2;
-    [y0, c1, c2, c3].map(to_coefficient)
-}
-
-/// Rounded to `f32`; what is too small to matter is zero, so that no coefficient is subnormal.
-fn to_coefficient(value: f64) -> f32 {
-    let rounded = value as f32;
-    if rounded.abs() < 1.0e-30 { 0.0 } else { rounded }
+    [y0, c1, c2, c3]
 }
 
 /// The cubic in `f64`.
 fn value_at(cubic: &Cubic, x: f64) -> f64 {
-    let [c0, c1, c2, c3] = cubic.map(f64::from);
+    let [c0, c1, c2, c3] = *cubic;
     ((c3 * x + c2) * x + c1) * x + c0
 }
 
@@ -70,7 +84,7 @@ pub fn sampled_error(curve: &dyn Curve, low: f64, high: f64, cubic: &Cubic) -> f
 
 /// Series of the cubic over an interval of the local coordinate.
 fn cubic_series(cubic: &Cubic, x: Interval) -> Series {
-    let [c0, c1, c2, c3] = cubic.map(|c| Series::constant(f64::from(c)));
+    let [c0, c1, c2, c3] = cubic.map(Series::constant);
     let x = Series::variable(x);
     ((c3 * x + c2) * x + c1) * x + c0
 }
@@ -105,9 +119,10 @@ impl Certificate {
     }
 }
 
-/// Certifies the cubic of `[low, high]`, whose local coordinate the drive computes to within `coordinate_error`.
+/// Largest error of the cubic of `[low, high]` in exact arithmetic, and the largest change of the function's value when the
+/// local coordinate is off by `coordinate_error`.
 #[must_use]
-pub fn certify(curve: &dyn Curve, low: f64, high: f64, cubic: &Cubic, coordinate_error: f64) -> Certificate {
+pub fn bound_cell(curve: &dyn Curve, low: f64, high: f64, cubic: &Cubic, coordinate_error: f64) -> (f64, f64) {
     let mut approximation = 0.0f64;
     let mut moved = 0.0f64;
     for part in 0..PARTS {
@@ -131,7 +146,21 @@ pub fn certify(curve: &dyn Curve, low: f64, high: f64, cubic: &Cubic, coordinate
         let [value, slope, ..] = function.0;
         moved = moved.max((slope.magnitude() * coordinate_error).min(value.width()));
     }
-    let [a0, a1, a2, a3] = cubic.map(|c| f64::from(c.abs()));
-    let horner = F32_ROUNDOFF * 1.001 * (2.0 * a3 + 2.0 * (a2 + a3) + 2.0 * (a1 + a2 + a3) + (a0 + a1 + a2 + a3));
-    Certificate { approximation: approximation * (1.0 + 1.0e-9), rounding: horner + moved }
+    (approximation * (1.0 + 1.0e-9), moved)
+}
+
+/// Certifies a cell of `f32` coefficients, whose local coordinate the drive computes to within `coordinate_error`.
+#[must_use]
+pub fn certify(curve: &dyn Curve, low: f64, high: f64, cell: &[f32; 4], coordinate_error: f64) -> Certificate {
+    let (approximation, moved) = bound_cell(curve, low, high, &from_drive(cell), coordinate_error);
+    // Horner at t <= 2: every product and every sum adds a roundoff of its own magnitude, and the products double what was there.
+    let [a0, a1, a2, a3] = cell.map(|c| f64::from(c.abs()));
+    let (mut sum, mut error) = (a3, 0.0);
+    for coefficient in [a2, a1, a0] {
+        sum *= 2.0;
+        error = 2.0 * error + sum;
+        sum += coefficient;
+        error += sum;
+    }
+    Certificate { approximation, rounding: 1.001 * F32_ROUNDOFF * error + moved }
 }

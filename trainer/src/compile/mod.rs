@@ -5,6 +5,7 @@
 
 pub mod cells;
 pub mod formula;
+pub mod integers;
 pub mod interval;
 pub mod program;
 pub mod reference;

@@ -6,6 +6,7 @@
 
 use frikan_shared::elementary;
 use frikan_shared::expression::{Operation, Program};
+use frikan_shared::integer_table::IntegerShape;
 use frikan_shared::model::{Law, MAX_INPUTS, Model};
 use frikan_shared::network::{Network, Outer};
 use frikan_shared::table::{Cell, Geometric, Symmetry, Table, Uniform};
@@ -24,14 +25,20 @@ pub fn evaluate_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX
         return 0.0;
     }
     let value = match &model.law {
-        Law::Table(table) => single_table(table, &model.cells, inputs[0]),
+        Law::Geometric(layout) => single_table(&Table::Geometric(*layout), &model.cells, inputs[0]),
+        Law::Uniform(layout) => single_table(&Table::Uniform(*layout), &model.cells, inputs[0]),
         Law::Network(network) => network_value(network, &model.cells, &inputs[..count]),
         Law::Expression(program) => {
             let held: Vec<f32> =
                 inputs.iter().zip(&model.inputs).map(|(x, channel)| x.clamp(channel.low, channel.high)).collect();
             program_value(program, &held)
         }
-        Law::IntegerTable(_) => 0.0,
+        Law::IntegerTable(table) => {
+            let shape = table.shape();
+            let half = if inputs[0].is_sign_negative() { -0.5 } else { 0.5 };
+            let steps = (inputs[0] / shape.input_step + half) as i32;
+            integer_value(&shape, &model.cells, steps) as f32 * shape.output_step
+        }
     };
     if value.is_nan() { 0.0 } else { value.clamp(-model.output_limit, model.output_limit) }
 }
@@ -71,8 +78,8 @@ fn find_geometric(layout: &Geometric, input: f32) -> Found {
     if negative && shape.symmetry == Symmetry::Sided {
         row += (steps(shape.reach).max(1) - 1) / steps_per_cell + 1;
     }
-    let x = ((position % steps_per_cell) as f64 / steps_per_cell as f64) as f32;
-    (row as usize, x, negative && shape.symmetry == Symmetry::Odd)
+    let t = (1.0 + (position % steps_per_cell) as f64 / steps_per_cell as f64) as f32;
+    (row as usize, t, negative && shape.symmetry == Symmetry::Odd)
 }
 
 fn find_uniform(layout: &Uniform, input: f32) -> Found {
@@ -82,15 +89,15 @@ fn find_uniform(layout: &Uniform, input: f32) -> Found {
     let fraction = f64::from(scaled).clamp(0.0, f64::from(u32::MAX)).floor() as u128;
     let product = fraction * u128::from(shape.cells);
     let cell = product / 2u128.pow(32);
-    let x = ((product % 2u128.pow(32)) / 256) as f32 / 2.0f32.powi(24);
-    (usize::from(shape.first_cell) + cell as usize, x, false)
+    let t = 1.0 + ((product % 2u128.pow(32)) / 512) as f32 / 2.0f32.powi(23);
+    (usize::from(shape.first_cell) + cell as usize, t, false)
 }
 
-fn cubic(cell: Cell, (_, x, turned): Found) -> f32 {
+fn cubic(cell: Cell, (_, t, turned): Found) -> f32 {
     let [c0, c1, c2, c3] = cell.floats();
     let mut value = c3;
     for coefficient in [c2, c1, c0] {
-        value = value * x + coefficient;
+        value = value * t + coefficient;
     }
     if turned { -value } else { value }
 }
@@ -98,6 +105,35 @@ fn cubic(cell: Cell, (_, x, turned): Found) -> f32 {
 fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
     let found = find(table, input);
     cubic(cells[found.0], found)
+}
+
+/// The value of an integer table at `steps`, both in steps, worked out in 128 bits and by division instead of shifts.
+#[must_use]
+pub fn integer_value(shape: &IntegerShape, cells: &[Cell], steps: i32) -> i32 {
+    let width = |shift: u8| 1i128 << shift;
+    let position = i128::from(steps).abs().min(i128::from(shape.reach) - 1);
+    let split = width(shape.split_shift);
+    let inner_cells = split / width(shape.inner_shift);
+    let cell_of = |position: i128| {
+        if position < split {
+            position / width(shape.inner_shift)
+        } else {
+            inner_cells + (position - split) / width(shape.outer_shift)
+        }
+    };
+    let width = width(if position < split { shape.inner_shift } else { shape.outer_shift });
+    let mut cell = i128::from(shape.first_cell) + cell_of(position);
+    if steps < 0 && shape.symmetry == Symmetry::Sided {
+        cell += cell_of(i128::from(shape.reach) - 1) + 1;
+    }
+    let [c0, c1, c2, c3] = cells[cell as usize].integers().map(i128::from);
+    let x = position % width;
+    let mut value = c3;
+    for coefficient in [c2, c1, c0] {
+        value = coefficient + (value * x).div_euclid(width);
+    }
+    let value = if steps < 0 && shape.symmetry == Symmetry::Odd { -value } else { value };
+    value as i32
 }
 
 fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {

@@ -6,7 +6,7 @@
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 use thiserror::Error;
 
-use super::cells::{Certificate, Cubic, certify, fit_cell, sampled_error};
+use super::cells::{Certificate, certify, fit_cell, sampled_error, to_drive};
 use super::formula::{Curve, Parity};
 
 /// Most cells of a side that are tried.
@@ -42,6 +42,14 @@ pub struct CompiledTable {
     pub certificate: Certificate,
     /// Cells of the table.
     pub per_cell: Vec<Certificate>,
+}
+
+impl CompiledTable {
+    /// The smallest output limit with which a model of this table alone is valid, in the unit of the output.
+    #[must_use]
+    pub fn output_bound(&self) -> f32 {
+        self.cells.iter().fold(0.0, |most, cell| most.max(cell.bound()))
+    }
 }
 
 /// A candidate: its layout, and the ends of each cell in the order of the pool.
@@ -94,8 +102,8 @@ pub fn compile_layout(curve: &dyn Curve, table: Table) -> CompiledTable {
     certified(curve, candidate.table, &candidate.edges, &fitted(curve, &candidate.edges), candidate.coordinate_error)
 }
 
-fn fitted(curve: &dyn Curve, edges: &[(f64, f64)]) -> Vec<Cubic> {
-    edges.iter().map(|&(near, far)| fit_cell(curve, near, far)).collect()
+fn fitted(curve: &dyn Curve, edges: &[(f64, f64)]) -> Vec<[f32; 4]> {
+    edges.iter().map(|&(near, far)| to_drive(fit_cell(curve, near, far))).collect()
 }
 
 fn fill(curve: &dyn Curve, candidate: &Candidate, bound: f64) -> Option<CompiledTable> {
@@ -106,7 +114,7 @@ fn fill(curve: &dyn Curve, candidate: &Candidate, bound: f64) -> Option<Compiled
         if !acceptable {
             return None;
         }
-        cubics.push(cubic);
+        cubics.push(to_drive(cubic));
     }
     let compiled = certified(curve, candidate.table, &candidate.edges, &cubics, candidate.coordinate_error);
     (compiled.certificate.total() <= bound).then_some(compiled)
@@ -116,7 +124,7 @@ fn certified(
     curve: &dyn Curve,
     table: Table,
     edges: &[(f64, f64)],
-    cubics: &[Cubic],
+    cubics: &[[f32; 4]],
     coordinate_error: f64,
 ) -> CompiledTable {
     let per_cell: Vec<Certificate> = edges
@@ -157,7 +165,7 @@ fn geometric_candidates(parity: Parity, low: f64, high: f64, first_cell: u16) ->
                 reach_negative: reach_negative as f32,
             };
             let layout = Geometric::new(shape);
-            if layout.side_cells().into_iter().all(|cells| cells <= MOST_CELLS) {
+            if layout.fits() && layout.side_cells().into_iter().all(|cells| cells <= MOST_CELLS) {
                 candidates.push(geometric_candidate(layout));
             }
         }
@@ -166,15 +174,15 @@ fn geometric_candidates(parity: Parity, low: f64, high: f64, first_cell: u16) ->
 }
 
 fn geometric_candidate(layout: Geometric) -> Candidate {
-    let offset = layout.offset.to_bits();
-    let edge = |cell: u32| f64::from(f32::from_bits(offset + (cell << layout.shift))) - f64::from(layout.offset);
+    let (offset, shift) = (layout.offset.to_bits(), layout.shape().shift());
+    let edge = |cell: u32| f64::from(f32::from_bits(offset + (cell << shift))) - f64::from(layout.offset);
     let [positive, negative] = layout.side_cells();
     let mut edges: Vec<(f64, f64)> = (0..positive).map(|cell| (edge(cell), edge(cell + 1))).collect();
     if layout.shape().symmetry == Symmetry::Sided {
         edges.extend((0..negative).map(|cell| (-edge(cell), -edge(cell + 1))));
     }
     // |v| + c is rounded to half a step of the position; the last position is one step short of the reach.
-    let coordinate_error = 1.5 * f64::from(layout.fraction_step);
+    let coordinate_error = 1.5 / f64::from(1u32 << shift);
     Candidate { table: Table::Geometric(layout), edges, coordinate_error }
 }
 
@@ -188,8 +196,8 @@ fn uniform_layout(layout: Uniform) -> Candidate {
     let count = f64::from(layout.cells);
     let edge = |cell: u32| low + (high - low) * f64::from(cell) / count;
     let edges = (0..layout.cells).map(|cell| (edge(cell), edge(cell + 1))).collect();
-    // Difference, scale (two operations) and product each round once; the fraction keeps 24 bits.
-    let coordinate_error = (4.0 * count + 2.0) / 16_777_216.0;
+    // Difference, scale (two operations) and product each round once; the fraction is cut to 23 bits.
+    let coordinate_error = (4.0 * count + 4.0) / 16_777_216.0;
     Candidate { table: Table::Uniform(layout), edges, coordinate_error }
 }
 
@@ -198,13 +206,15 @@ mod tests {
     use super::*;
     use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
     use frikan_runtime::table::evaluate_table;
+    use frikan_shared::pool::Pool;
 
     /// Largest error of the table as the drive computes it, sampled.
     fn observed(curve: &dyn Curve, compiled: &CompiledTable, low: f32, high: f32) -> f64 {
+        let pool = Pool::<256>::from_slice(&compiled.cells).unwrap();
         (0..=200_000u32)
             .map(|i| low + (high - low) * (i as f32 / 200_000.0))
             .map(|v| {
-                let got = evaluate_table(&compiled.table, &compiled.cells, v);
+                let got = evaluate_table(&compiled.table, &pool, v);
                 (f64::from(got) - curve.value(f64::from(v))).abs()
             })
             .fold(0.0, f64::max)

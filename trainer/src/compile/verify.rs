@@ -165,11 +165,13 @@ pub fn compare_patterns<const CELLS: usize>(model: &Model<CELLS>, first: u32, co
 mod tests {
     use super::*;
     use crate::compile::formula::{Curve, Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::integers::compile_integer_table;
     use crate::compile::program::compile_program;
     use crate::compile::tables::{compile_layout, compile_table};
     use frikan_shared::image::{Image, decode, encode};
     use frikan_shared::model::{Input, Law, Provenance, RigidBody};
     use frikan_shared::network::{Layer, Network, Outer, Source};
+    use frikan_shared::pool::Pool;
     use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
     use frikan_shared::units::{Quantity, Unit};
 
@@ -185,11 +187,11 @@ mod tests {
         let model = TestModel {
             inputs: inputs.collect(),
             output_unit: Unit::NewtonMetre,
-            output_limit: 40.0,
+            output_limit: 60.0,
             rigid_body: RigidBody::default(),
             law,
             effects: heapless::Vec::new(),
-            cells: heapless::Vec::from_slice(cells).unwrap(),
+            cells: Pool::from_slice(cells).unwrap(),
         };
         // What is compared is what a drive decodes.
         let mut buffer = [0; 8192];
@@ -214,11 +216,17 @@ mod tests {
         let sided = stribeck_law().join(Operator::Add, Formula::Input(0).apply(Function::Cos));
         for curve in [&odd, &sided] {
             let compiled = compile_table(curve, -2.0, 2.0, 1.0e-3, 0).unwrap();
-            assert_identical(&model(Law::Table(compiled.table), &compiled.cells, &[Quantity::Velocity]));
+            assert_identical(&model(compiled.table.into(), &compiled.cells, &[Quantity::Velocity]));
         }
         let layout = Uniform::new(UniformShape { first_cell: 0, cells: 37, low: -1.7, high: 2.1 });
         let uniform = compile_layout(&odd, Table::Uniform(layout));
-        assert_identical(&model(Law::Table(uniform.table), &uniform.cells, &[Quantity::Velocity]));
+        assert_identical(&model(uniform.table.into(), &uniform.cells, &[Quantity::Velocity]));
+    }
+
+    #[test]
+    fn integer_tables_agree_to_the_bit() {
+        let compiled = compile_integer_table(&stribeck_law(), -2.0, 2.0, 5.0e-2, 0).unwrap();
+        assert_identical(&model(Law::IntegerTable(compiled.table), &compiled.cells, &[Quantity::Velocity]));
     }
 
     #[test]
@@ -278,7 +286,7 @@ mod tests {
     #[ignore = "takes minutes: all 2^32 inputs"]
     fn all_inputs_agree_to_the_bit() {
         let compiled = compile_table(&stribeck_law(), -2.0, 2.0, 1.0e-3, 0).unwrap();
-        let model = model(Law::Table(compiled.table), &compiled.cells, &[Quantity::Velocity]);
+        let model = model(compiled.table.into(), &compiled.cells, &[Quantity::Velocity]);
         let comparison = compare_exhaustively(&model, |_| ());
         assert_eq!(comparison, Comparison { compared: 1 << 32, equal: 1 << 32, first_difference: None });
     }

@@ -14,6 +14,15 @@ pub enum Label {
     Generic(Generic),
 }
 
+impl std::fmt::Display for Label {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Label::Named(effect) => f.write_str(effect.name()),
+            Label::Generic(rival) => write!(f, "{} c({})", rival.factor.text(), rival.channel.name()),
+        }
+    }
+}
+
 /// A generic rival: `factor(v) * c(channel)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Generic {
@@ -48,6 +57,8 @@ pub enum Factor {
     Velocity,
     /// One: a torque that does not turn with the direction.
     One,
+    /// The square of velocity: a centrifugal torque.
+    VelocitySquared,
 }
 
 impl Factor {
@@ -57,6 +68,7 @@ impl Factor {
             Factor::Sign => "tanh(v/v_eps)",
             Factor::Velocity => "v",
             Factor::One => "1",
+            Factor::VelocitySquared => "v^2",
         }
     }
 }
@@ -84,6 +96,8 @@ pub enum Channel {
     Dwell,
     /// Velocity of another joint.
     OtherJoint(usize),
+    /// Position of another joint.
+    OtherPosition(usize),
 }
 
 impl Channel {
@@ -99,8 +113,25 @@ impl Channel {
             Channel::DistanceSinceReversal => "distance_since_reversal",
             Channel::TimeSinceReversal => "time_since_reversal",
             Channel::Dwell => "dwell",
-            Channel::OtherJoint(_) => "other_joint",
+            Channel::OtherJoint(_) => "other_velocity",
+            Channel::OtherPosition(_) => "other_position",
         }
+    }
+
+    /// The axes along which a finding is located, velocity apart: it keeps its sign there.
+    pub fn axes(state: &JointState) -> Vec<Channel> {
+        let mut axes = vec![
+            Channel::Position,
+            Channel::Load,
+            Channel::Temperature,
+            Channel::Acceleration,
+            Channel::DistanceSinceReversal,
+            Channel::TimeSinceReversal,
+            Channel::Dwell,
+            Channel::Time,
+        ];
+        axes.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
+        axes
     }
 
     /// The series of this channel, where the recording has it.
@@ -116,6 +147,7 @@ impl Channel {
             Channel::TimeSinceReversal => Some(state.memory.elapsed.clone()),
             Channel::Dwell => Some(state.memory.dwell.clone()),
             Channel::OtherJoint(joint) => state.other_joints.get(joint).map(|other| other.velocity.clone()),
+            Channel::OtherPosition(joint) => state.other_joints.get(joint).map(|other| other.position.clone()),
         }
     }
 }
@@ -235,11 +267,13 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
     for channel in [Channel::Position, Channel::Load, Channel::Temperature, Channel::Time, Channel::Acceleration] {
         add(&all, channel);
     }
+    add(&[Factor::VelocitySquared], Channel::Position);
     add(&[Factor::Sign, Factor::One], Channel::Speed);
     add(&[Factor::Sign], Channel::DistanceSinceReversal);
     add(&[Factor::Sign], Channel::TimeSinceReversal);
     for joint in 0..state.other_joints.len() {
         add(&all, Channel::OtherJoint(joint));
+        add(&all, Channel::OtherPosition(joint));
     }
     rivals
 }
@@ -252,6 +286,7 @@ pub(crate) fn generic_columns(state: &JointState, rival: Generic, order: usize) 
         Factor::Sign => state.sign.clone(),
         Factor::Velocity => state.velocity.clone(),
         Factor::One => vec![1.0; state.len()],
+        Factor::VelocitySquared => state.velocity.iter().map(|v| v * v).collect(),
     };
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();

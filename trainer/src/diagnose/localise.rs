@@ -47,27 +47,21 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let rows: Vec<usize> = runs.iter().flat_map(|run| (run.start + order).min(run.end)..run.end).collect();
     let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
     let state = &search.prepared.state;
-    let mut channels = vec![
-        Channel::Position,
-        Channel::Load,
-        Channel::Temperature,
-        Channel::Acceleration,
-        Channel::DistanceSinceReversal,
-        Channel::TimeSinceReversal,
-        Channel::Dwell,
-        Channel::Time,
-    ];
-    channels.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
-    let mut regions: Vec<Region> = Vec::new();
     let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };
-    regions.extend(interval("velocity", &at_rows(&state.velocity), &density));
-    for channel in channels {
-        let Some(series) = channel.series(state) else { continue };
-        regions.extend(interval(channel.name(), &at_rows(&series), &density));
-    }
+    let mut axes = vec![("velocity", at_rows(&state.velocity))];
+    axes.extend(
+        Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))),
+    );
+    let axes: Vec<(&'static str, &[f64])> = axes.iter().map(|(name, values)| (*name, values.as_slice())).collect();
+    locate_density(&axes, &at_rows(&state.time), &density)
+}
+
+/// Locates a density of evidence along time and along every axis, given as name and value a row.
+pub(crate) fn locate_density(axes: &[(&'static str, &[f64])], time: &[f64], density: &[f64]) -> Location {
+    let mut regions: Vec<Region> =
+        axes.iter().filter_map(|(name, values)| interval(name, values, density)).collect();
     regions.sort_by(|a, b| contrast(b).total_cmp(&contrast(a)));
-    let time = at_rows(&state.time);
-    Location { regions, when_s: when(&time, &density) }
+    Location { regions, when_s: when(time, density) }
 }
 
 /// How much denser the evidence is inside than on average, weighed by what it holds.

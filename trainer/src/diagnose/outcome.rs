@@ -7,6 +7,7 @@ use super::health::HealthNote;
 use super::localise::Location;
 use super::prove::Proof;
 use super::search::Scored;
+use super::traces::Traces;
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
 use serde::Serialize;
@@ -102,6 +103,8 @@ pub struct Diagnosis {
     pub rows: usize,
     /// Delay of the torque against the position in s, as far as it is the sampling's own.
     pub sampling_delay_s: f64,
+    /// Series for pictures and sentences.
+    pub traces: Traces,
 }
 
 /// Goodness of fit on the working rows.

@@ -42,6 +42,9 @@ impl Default for Settings {
     }
 }
 
+/// Terms at most, repeated ones included.
+const MOST_TERMS: usize = 12;
+
 /// A hypothesis with its score in one round.
 #[derive(Clone, Debug)]
 pub struct Scored {
@@ -115,6 +118,20 @@ impl<'a> Search<'a> {
         Self { prepared, base, design, hypotheses, settings, features }
     }
 
+    /// Whether a label may be found in the next round: once, except for effects that repeat with other shapes.
+    fn may_be_found(&self, label: &Label, accepted: &[Accepted]) -> bool {
+        let repeats = match label {
+            Label::Named(effect) => self.hypothesis(*effect).is_some_and(Hypothesis::repeats),
+            Label::Generic(_) => false,
+        };
+        repeats || accepted.iter().all(|found| found.label != *label)
+    }
+
+    /// Effects that count towards the largest number of findings: a repeated one counts once.
+    fn kinds(accepted: &[Accepted]) -> usize {
+        (0..accepted.len()).filter(|&i| accepted[..i].iter().all(|before| before.label != accepted[i].label)).count()
+    }
+
     /// Shapes that a group was allowed to choose from.
     fn grid_size(&self, group: usize) -> f64 {
         let group = &self.design.groups[group];
@@ -170,9 +187,14 @@ impl<'a> Search<'a> {
                     .iter_mut()
                     .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
             }
+            if std::env::var("DBG").is_ok() { for r in &table { if matches!(r.label, Label::Named(_)) || r.score>50.0 { eprintln!("{:?} S {:.1} d {:.1} c {:.1} T {:.1} {:?}", r.label, r.score, r.evidence.held_out, r.evidence.criterion, r.evidence.statistic, r.shape); } } eprintln!("AR {:?} rms {}", round.noise.autoregression, round.noise.rms); }
             let finding = choose(&table, &self.settings, travel);
             match finding {
-                Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
+                Some(finding)
+                    if Self::kinds(&accepted) < self.settings.most_findings && accepted.len() < MOST_TERMS =>
+                {
+                    accepted.push(finding);
+                }
                 _ => {
                     let accepted = self.backward(accepted, &round.noise);
                     return SearchOutcome { accepted, last_round: table, noise: round.noise };
@@ -356,10 +378,10 @@ impl<'s, 'a> Round<'s, 'a> {
             .groups
             .iter()
             .enumerate()
-            .filter(|(_, group)| accepted.iter().all(|found| found.label != group.label))
+            .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
             .filter_map(|(index, group)| {
                 let grid = self.search.grid_size(index);
-                let evidence = GroupEvidence::weigh(alone, &self.variants[index], rows, grid)?;
+                let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
                 let surprise = self.variants[index]
                     .iter()
                     .flatten()
@@ -381,6 +403,16 @@ impl<'s, 'a> Round<'s, 'a> {
         let mut table: Vec<Scored> = table.into_iter().map(|(_, scored)| scored).collect();
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
+    }
+
+    /// The variants of a group whose coefficients have a possible sign.
+    fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
+        let positive = match self.search.design.groups[group].label {
+            Label::Named(effect) => self.search.hypothesis(effect).is_some_and(Hypothesis::only_positive),
+            Label::Generic(_) => false,
+        };
+        let possible = |e: &VariantEvidence| !positive || e.coefficients.iter().all(|c| *c > 0.0);
+        self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
     }
 
     /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
@@ -405,6 +437,8 @@ impl<'s, 'a> Round<'s, 'a> {
                 let columns = self.search.filtered_columns(&scored.label, shape);
                 self.bench.evidence(&self.search.whitened(&columns, &self.noise))
             };
+            let positive = hypothesis.only_positive();
+            let weigh = |shape: &[f64]| weigh(shape).filter(|e| !positive || e.coefficients.iter().all(|c| *c > 0.0));
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.grid_size(*index);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
@@ -513,10 +547,11 @@ fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted
     let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
     let named = table.iter().filter(is_named).find(passes);
     let generic = table.iter().filter(|s| !is_named(s)).find(passes);
-    // An unnamed structure is measured against every name by the same held-out evidence.
+    // An unnamed structure is measured against every name by the same held-out evidence; where this runs to hundreds of
+    // nats every formula is a little wrong, and a free function has to explain a tenth more than a name.
     let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
     let best = match (named, generic) {
-        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => generic,
+        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin.max(0.1 * held_out) => generic,
         (Some(named), _) => named,
         (None, Some(generic)) => generic,
         (None, None) => return None,

@@ -3,6 +3,7 @@
 use crc::{CRC_64_XZ, Crc};
 use frikan_shared::image::{Image, decode, encode};
 use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
+use frikan_shared::pool::Pool;
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
 
@@ -46,7 +47,7 @@ pub(super) fn assemble(parts: &Parts<'_>) -> Option<Box<HostModel>> {
         rigid_body: parts.rigid_body,
         law: parts.law.clone(),
         effects: heapless::Vec::new(),
-        cells: heapless::Vec::from_slice(parts.cells).ok()?,
+        cells: Pool::from_slice(parts.cells).ok()?,
     };
     model.validate().ok()?;
     Some(Box::new(model))

@@ -196,7 +196,8 @@ impl Score {
     /// Agreement over several recordings taken as one.
     #[must_use]
     pub fn over(traces: &[Trace]) -> Self {
-        let join = |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
+        let join =
+            |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
         Self::of(&join(|trace| &trace.measured), &join(|trace| &trace.predicted))
     }
 }

@@ -240,10 +240,8 @@ impl Rivals {
                 (Representation::Table, "the expression does not fit into a program of a drive".to_owned())
             }
         };
-        let forms = [
-            (Representation::Table, &self.table, &table),
-            (Representation::Expression, &self.expression, &expression),
-        ];
+        let forms =
+            [(Representation::Table, &self.table, &table), (Representation::Expression, &self.expression, &expression)];
         let mut candidates = Vec::new();
         for (form, model, trial) in forms {
             let Some((model, trial)) = model.as_ref().zip(trial.as_ref()) else { continue };

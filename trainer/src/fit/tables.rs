@@ -34,7 +34,7 @@ pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2
 fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) -> Option<Tables> {
     let curve = NetworkCurve::of(network);
     let compiled = compile_table(&curve, low, high, bound, 0).ok()?;
-    Some(Tables { law: Law::Table(compiled.table), cells: compiled.cells, inputs: vec![input] })
+    Some(Tables { law: compiled.table.into(), cells: compiled.cells, inputs: vec![input] })
 }
 
 /// A node with outgoing activations, before its layout is chosen.

@@ -1,6 +1,6 @@
 //! Adam (Kingma and Ba, 2015), full batch: the paper's baseline.
 
-use super::lbfgs::{End, Iterate};
+use super::lbfgs::{End, Iterate, Objective};
 
 const FIRST_DECAY: f64 = 0.9;
 const SECOND_DECAY: f64 = 0.999;
@@ -11,7 +11,7 @@ pub(super) fn minimise(
     values: &mut [f64],
     steps: usize,
     rate: f64,
-    objective: &mut dyn FnMut(&[f64]) -> (f64, Vec<f64>),
+    objective: &mut Objective,
     observe: &mut dyn FnMut(&Iterate) -> bool,
 ) -> End {
     let (mut first, mut second) = (vec![0.0; values.len()], vec![0.0; values.len()]);

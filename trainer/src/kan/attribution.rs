@@ -135,13 +135,13 @@ mod tests {
         let target = vec![0.0; 400];
         let blocks = Blocks::default();
         let dataset = Dataset { inputs: &inputs, target: &target, linear: &[], blocks: &blocks };
-        let scores = Attribution::of(&network(1.0), &dataset, &[0..400]);
+        let scores = Attribution::of(&network(1.0), &dataset, &dataset.training_rows());
         let product = scores.nodes[1][1];
         assert!((scores.edges[0][2] - product).abs() < 1e-3 && (scores.edges[0][5] - product).abs() < 1e-3);
         assert!(scores.edges[0][1] < 1e-9 && scores.edges[0][3] < 1e-9);
         assert!((scores.nodes[0][1] - product).abs() < 1e-3);
         assert_eq!(scores.ranges[0][0][0], inputs[0].iter().copied().fold(0.0, f64::min));
         // A product of no weight leaves its second input without a score.
-        assert!(Attribution::of(&network(0.0), &dataset, &[0..400]).nodes[0][1] < 1e-9);
+        assert!(Attribution::of(&network(0.0), &dataset, &dataset.training_rows()).nodes[0][1] < 1e-9);
     }
 }

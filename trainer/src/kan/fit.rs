@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::architecture::Architecture;
 use super::dataset::{Dataset, row_count};
 use super::error::KanError;
-use super::knots::pilot;
 use super::model::Model;
 use super::network::Network;
 use super::outcome::{Convergence, Step};
+use super::pilot::pilot;
 use super::random::Random;
 use super::start::initial;
 use super::training::{Optimiser, ProgressCallback, Settings, Smoothing, Watch, minimise};
@@ -100,7 +100,7 @@ pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) 
         let network = initial(&options.architecture, &pilot, &mut Random::new(options.seed, restart as u64))?;
         let mut model = Model::scaled_to(network, dataset, &rows);
         model.linear.copy_from_slice(pilot.linear());
-        Ok(Trained::run(model, dataset, options, restart, progress))
+        Ok(Trained::run(model, pilot.noise_variance, dataset, options, restart, progress))
     };
     let first = train(0)?;
     let others: Vec<Trained> = (1..options.restarts).into_par_iter().map(train).collect::<Result<_, _>>()?;
@@ -125,18 +125,23 @@ pub fn refit(
     progress: ProgressCallback,
 ) -> Result<FitResult, KanError> {
     dataset.check(network.inputs.len())?;
-    Ok(refit_from(network.clone(), linear_coefficients, dataset, options, progress).into_result(dataset, 0))
+    let rows = dataset.training_rows();
+    let before = Model::resumed(network.clone(), linear_coefficients, dataset, &rows);
+    let noise_variance = before.residual_sum(dataset, &rows) / row_count(&rows) as f64;
+    let trained = refit_from(network.clone(), linear_coefficients, noise_variance, dataset, options, progress);
+    Ok(trained.into_result(dataset, 0))
 }
 
 pub(super) fn refit_from(
     network: Network,
     linear_coefficients: &[f64],
+    noise_variance: f64,
     dataset: &Dataset,
     options: &FitOptions,
     progress: ProgressCallback,
 ) -> Trained {
     let model = Model::resumed(network, linear_coefficients, dataset, &dataset.training_rows());
-    Trained::run(model, dataset, options, 0, progress)
+    Trained::run(model, noise_variance, dataset, options, 0, progress)
 }
 
 /// A model at the end of its training.
@@ -152,6 +157,7 @@ pub(super) struct Trained {
 impl Trained {
     fn run(
         mut model: Model,
+        noise_variance: f64,
         dataset: &Dataset,
         options: &FitOptions,
         restart: usize,
@@ -163,6 +169,7 @@ impl Trained {
             optimiser: options.optimiser,
             steps: options.steps,
             smoothing: options.smoothing,
+            noise_variance,
             tolerance: options.tolerance,
             with_base: options.base_weights,
         };

@@ -22,6 +22,10 @@ const TRIALS: usize = 12;
 /// Steps without progress after which the iteration has converged.
 const PATIENCE: usize = 3;
 
+/// First strength of estimated smoothing per residual variance: smoother than most data turn out to need, since it is
+/// easier to let activations bend than to straighten them out again.
+const SMOOTHING_START: f64 = 100.0;
+
 /// Factor by which smoothing may change per step.
 const SMOOTHING_LIMIT: f64 = 100.0;
 
@@ -38,7 +42,7 @@ pub(super) fn minimise(
     let start = match settings.smoothing {
         Smoothing::None => 0.0,
         Smoothing::Fixed(strength) => strength * samples as f64,
-        Smoothing::Estimated => 1e-4 * samples as f64,
+        Smoothing::Estimated => SMOOTHING_START * settings.noise_variance,
     };
     let mut penalties = Penalty::smoothness(model, &unknowns, start);
     let mut values = unknowns.read(model);

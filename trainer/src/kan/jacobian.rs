@@ -62,7 +62,7 @@ impl NormalEquations {
     pub(super) fn of(model: &Model, unknowns: &Unknowns, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
         let chunk = |range: Range<usize>| {
             let mut sums = Self::zeros(unknowns.len());
-            let mut trace = Trace::new(&model.network);
+            let mut trace = Trace::for_training(&model.network, unknowns.with_base);
             let mut jacobian_row = Row::default();
             for row in range {
                 let residual = jacobian_row.fill(model, unknowns, dataset, row, &mut trace);
@@ -114,7 +114,7 @@ pub(super) fn residual_sum_and_gradient(
     rows: &[Range<usize>],
 ) -> (f64, Vec<f64>) {
     let chunk = |range: Range<usize>| {
-        let mut trace = Trace::new(&model.network);
+        let mut trace = Trace::for_training(&model.network, unknowns.with_base);
         let mut jacobian_row = Row::default();
         let (mut sum, mut gradient) = (0.0, vec![0.0; unknowns.len()]);
         for row in range {
@@ -145,7 +145,7 @@ mod tests {
         let mut random = Random::new(seed, 0);
         let mut network = Network::zeros(architecture).unwrap();
         network.parameters.iter_mut().for_each(|p| *p = random.uniform(-0.9, 0.9));
-        let mut model = Model::scaled_to(network, dataset, &[0..dataset.rows()]);
+        let mut model = Model::scaled_to(network, dataset, &dataset.training_rows());
         model.linear.iter_mut().for_each(|a| *a = random.normal());
         model
     }
@@ -167,8 +167,8 @@ mod tests {
             let mut model = randomised(&architecture, &dataset, 5);
             model.network.set_active(0, 1, 0, false).unwrap();
             let unknowns = Unknowns::of(&model, true);
-            let (_, gradient) = residual_sum_and_gradient(&model, &unknowns, &dataset, &[0..40]);
-            let normal = NormalEquations::of(&model, &unknowns, &dataset, &[0..40]);
+            let (_, gradient) = residual_sum_and_gradient(&model, &unknowns, &dataset, &dataset.training_rows());
+            let normal = NormalEquations::of(&model, &unknowns, &dataset, &dataset.training_rows());
             let start = unknowns.read(&model);
             let step = 1e-6;
             for i in 0..unknowns.len() {
@@ -176,7 +176,7 @@ mod tests {
                     let mut values = start.clone();
                     values[i] += amount;
                     unknowns.write(&values, &mut model);
-                    model.residual_sum(&dataset, &[0..40])
+                    model.residual_sum(&dataset, &dataset.training_rows())
                 };
                 let difference = (at(step) - at(-step)) / (2.0 * step);
                 let tolerance = 1e-5 * (1.0 + difference.abs());
@@ -194,10 +194,10 @@ mod tests {
         let dataset = Dataset { inputs: &inputs, target: &target, linear: &[], blocks: &blocks };
         let model = randomised(&"[1,2,1]".parse().unwrap(), &dataset, 1);
         let unknowns = Unknowns::of(&model, true);
-        let normal = NormalEquations::of(&model, &unknowns, &dataset, &[0..5]);
+        let normal = NormalEquations::of(&model, &unknowns, &dataset, &dataset.training_rows());
         let n = unknowns.len();
         let mut expected = vec![0.0; n * n];
-        let (mut trace, mut row) = (Trace::new(&model.network), Row::default());
+        let (mut trace, mut row) = (Trace::for_training(&model.network, true), Row::default());
         for sample in 0..5 {
             row.fill(&model, &unknowns, &dataset, sample, &mut trace);
             let mut dense = vec![0.0; n];

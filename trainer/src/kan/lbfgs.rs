@@ -12,6 +12,9 @@ const LINE_EVALUATIONS: usize = 20;
 const SUFFICIENT_FALL: f64 = 1e-4;
 const CURVATURE: f64 = 0.9;
 
+/// Value and gradient at a point.
+pub(super) type Objective<'a> = dyn FnMut(&[f64]) -> (f64, Vec<f64>) + 'a;
+
 /// What one iteration hands to its observer, which returns true to stop.
 pub(super) struct Iterate<'a> {
     pub(super) values: &'a [f64],
@@ -33,7 +36,7 @@ pub(super) fn minimise(
     values: &mut Vec<f64>,
     steps: usize,
     tolerance: f64,
-    objective: &mut dyn FnMut(&[f64]) -> (f64, Vec<f64>),
+    objective: &mut Objective,
     observe: &mut dyn FnMut(&Iterate) -> bool,
 ) -> End {
     let (mut loss, mut gradient) = objective(values);
@@ -107,7 +110,7 @@ fn search(
     gradient: &[f64],
     direction: &[f64],
     first: f64,
-    objective: &mut dyn FnMut(&[f64]) -> (f64, Vec<f64>),
+    objective: &mut Objective,
 ) -> Option<(Vec<f64>, f64, Vec<f64>)> {
     let slope = dot(gradient, direction);
     let (mut low, mut high, mut length) = (0.0, f64::INFINITY, first);

@@ -17,6 +17,7 @@ mod model;
 mod network;
 mod outcome;
 mod penalty;
+mod pilot;
 mod prune;
 mod random;
 mod spline;

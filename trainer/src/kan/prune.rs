@@ -106,7 +106,10 @@ pub fn prune(
 ) -> Result<Pruned, KanError> {
     dataset.check(fitted.network.inputs.len())?;
     let refit_options = FitOptions { steps: pruning.refit_steps, ..options.clone() };
-    let refit = |network: Network, linear: &[f64]| refit_from(network, linear, dataset, &refit_options, progress);
+    let noise_variance = (fitted.train_rmse / fitted.network.output.width).powi(2);
+    let refit = |network: Network, linear: &[f64]| {
+        refit_from(network, linear, noise_variance, dataset, &refit_options, progress)
+    };
     let mut current = refit(fitted.network.clone(), &fitted.linear_coefficients);
     let mut best = current.criterion;
     let mut removed = Vec::new();

@@ -114,29 +114,42 @@ impl SplineBasis {
     /// The non-zero functions and their slopes at `x`; outside the grid their tangents at the nearer end.
     #[inline]
     pub fn at(&self, x: f64) -> LocalBasis {
+        // A length known to the compiler lets it keep the functions in vector registers.
+        match self.grid.order {
+            1 => self.local::<2>(x),
+            2 => self.local::<3>(x),
+            3 => self.local::<4>(x),
+            4 => self.local::<5>(x),
+            _ => self.local::<MAX_SUPPORT>(x),
+        }
+    }
+
+    #[inline]
+    fn local<const SUPPORT: usize>(&self, x: f64) -> LocalBasis {
         let breaks = &self.grid.breaks;
         let last = self.polynomials.len() - 1;
         let cell = breaks[1..=last].partition_point(|&b| b <= x);
         let inverse_width = self.inverse_width[cell];
         let position = (x - breaks[cell]) * inverse_width;
         let t = position.clamp(0.0, 1.0);
-        let polynomial = &self.polynomials[cell];
-        let order = self.grid.order;
+        let beyond = position - t;
 
-        let mut value = polynomial[order];
-        let mut slope = [0.0; MAX_SUPPORT];
-        for power in (0..order).rev() {
-            for i in 0..MAX_SUPPORT {
+        let by_power = |power: usize| -> &[f64; MAX_SUPPORT] { &self.polynomials[cell][power] };
+        let (mut value, mut slope) = ([0.0; SUPPORT], [0.0; SUPPORT]);
+        value.copy_from_slice(&by_power(SUPPORT - 1)[..SUPPORT]);
+        for power in (0..SUPPORT - 1).rev() {
+            let coefficients = by_power(power);
+            for i in 0..SUPPORT {
                 slope[i] = slope[i] * t + value[i];
-                value[i] = value[i] * t + polynomial[power][i];
+                value[i] = value[i] * t + coefficients[i];
             }
         }
-        let beyond = position - t;
-        for i in 0..MAX_SUPPORT {
-            value[i] += slope[i] * beyond;
-            slope[i] *= inverse_width;
+        let mut local = LocalBasis { first: cell, ..LocalBasis::default() };
+        for i in 0..SUPPORT {
+            local.value[i] = value[i] + slope[i] * beyond;
+            local.slope[i] = slope[i] * inverse_width;
         }
-        LocalBasis { first: cell, value, slope }
+        local
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::architecture::Architecture;
 use super::error::KanError;
-use super::knots::Pilot;
+use super::knots::stretched;
 use super::network::Network;
+use super::pilot::Pilot;
 use super::random::Random;
 use super::spline::{Grid, SplineBasis};
 
@@ -18,12 +19,11 @@ pub(super) fn initial(architecture: &Architecture, pilot: &Pilot, random: &mut R
     for (index, layer) in network.layers().iter().enumerate() {
         for position in 0..layer.edges.len() {
             let resolution = architecture.resolution(index, position % layer.inputs);
-            // A single spline keeps its knots symmetric; several share the work by standing between each other's.
-            let shift =
-                if layer.nodes.terminals() * depth_factor(architecture) > 1 { random.uniform(-0.5, 0.5) } else { 0.0 };
+            // Several splines share the work by having their knots between each other's.
+            let stretch = if architecture.hidden.is_empty() { 0.0 } else { random.uniform(-1.0, 1.0) };
             let breaks = match index {
-                0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, shift),
-                _ => staggered(resolution.cells, shift),
+                0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, stretch),
+                _ => stretched(resolution.cells, stretch).map(|share| 2.0 * share - 1.0).collect(),
             };
             bases.push(SplineBasis::new(Grid { order: resolution.order, breaks })?);
         }
@@ -56,11 +56,6 @@ pub(super) fn initial(architecture: &Architecture, pilot: &Pilot, random: &mut R
     Ok(network)
 }
 
-/// Zero for a network of one layer.
-fn depth_factor(architecture: &Architecture) -> usize {
-    architecture.hidden.len()
-}
-
 /// Random weights whose absolute values sum to one.
 fn unit_weights(count: usize, random: &mut Random) -> Vec<f64> {
     let weights: Vec<f64> = (0..count).map(|_| random.sign() * random.uniform(0.2, 1.0)).collect();
@@ -73,20 +68,4 @@ fn effect_range(pilot: &Pilot, input: usize) -> (f64, f64) {
     let values = (0..=100).map(|i| pilot.effect(input, -1.0 + 0.02 * i as f64));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     if high - low > 1e-9 { (low, high) } else { (low - 1.0, low + 1.0) }
-}
-
-/// Equal cells over `[-1, 1]`, inner boundaries moved by `shift` cells.
-fn staggered(cells: usize, shift: f64) -> Vec<f64> {
-    let inner = |i: usize| -1.0 + 2.0 * (i as f64 + shift) / cells as f64;
-    (0..=cells)
-        .map(|i| {
-            if i == 0 {
-                -1.0
-            } else if i == cells {
-                1.0
-            } else {
-                inner(i)
-            }
-        })
-        .collect()
 }

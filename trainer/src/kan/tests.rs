@@ -1,5 +1,7 @@
 //! The room as a whole: laws of the paper, noise, linear columns, decoys, and data that are no pleasure.
 
+use std::slice::from_ref;
+
 use super::*;
 
 /// Coulomb, Stribeck and viscous friction of the paper's six axes: k1, k2 [N m], k3 [rad/s], k4 [N m s/rad].
@@ -43,9 +45,13 @@ fn learns_the_paper_s_clean_laws_to_four_millinewtonmetres() {
         let (v, test) = (column(&mut random, 1000), column(&mut random, 2000));
         let torque: Vec<f64> = v.iter().map(|&v| friction(parameters, v)).collect();
         let truth: Vec<f64> = test.iter().map(|&v| friction(parameters, v)).collect();
-        let result = trained(&[v], &torque, &options("[1,5,1]"));
-        let error = rmse(&result.network.evaluate_columns(&[test]), &truth);
-        assert!(error < 4e-3, "axis {}: {error}", axis + 1);
+        let options = FitOptions { restarts: 3, tolerance: 3e-3, ..options("[1,5,1]") };
+        let result = trained(&[v], &torque, &options);
+        let fitted = result.network.evaluate_columns(from_ref(&test));
+        let error = rmse(&fitted, &truth);
+        let miss = |i: &usize| (fitted[*i] - truth[*i]).abs();
+        let worst = (0..test.len()).max_by(|a, b| miss(a).total_cmp(&miss(b))).unwrap();
+        assert!(error < 4e-3, "axis {}: {error}, worst {} at {} rad/s", axis + 1, miss(&worst), test[worst]);
     }
 }
 
@@ -75,13 +81,13 @@ fn one_seed_gives_one_result_on_any_number_of_threads() {
     let options = FitOptions { steps: 4, restarts: 3, ..options("[1,2,1]") };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let result = pool.install(|| trained(&[v.clone()], &torque, &options));
+        let result = pool.install(|| trained(from_ref(&v), &torque, &options));
         serde_json::to_vec(&result).unwrap()
     };
     let one = on(1);
     assert!(one == on(2));
     assert!(one == on(1));
-    let other = trained(&[v.clone()], &torque, &FitOptions { seed: 1, ..options.clone() });
+    let other = trained(from_ref(&v), &torque, &FitOptions { seed: 1, ..options.clone() });
     assert!(serde_json::to_vec(&other).unwrap() != one);
 }
 
@@ -159,15 +165,15 @@ fn survives_what_recordings_contain() {
     };
     // A constant input, a constant target, one velocity only, four samples, two values.
     assert!(finite(&[v.clone(), constant.clone()], &clean, "[2,3,1]").train_rmse < 1.0);
-    assert!(finite(&[v.clone()], &constant, "[1,5,1]").train_rmse < 1e-6);
-    finite(&[constant.clone()], &clean, "[1,2,1]");
+    assert!(finite(from_ref(&v), &constant, "[1,5,1]").train_rmse < 1e-6);
+    finite(from_ref(&constant), &clean, "[1,2,1]");
     finite(&[v[..4].to_vec()], &clean[..4], "[1,5,1]");
     let steps: Vec<f64> = v.iter().map(|v| v.signum()).collect();
-    finite(&[steps.clone()], &steps, "[1,[2,1],1]");
+    finite(from_ref(&steps), &steps, "[1,[2,1],1]");
     // Outliers in target and input.
     let mut wild = clean.clone();
     wild[7] = 1e9;
-    finite(&[v.clone()], &wild, "[1,5,1]");
+    finite(from_ref(&v), &wild, "[1,5,1]");
     let mut far = v.clone();
     far[3] = 1e6;
     finite(&[far], &clean, "[1,5,1]");

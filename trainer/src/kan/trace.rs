@@ -14,7 +14,7 @@ pub(super) struct EdgeTrace {
 
 impl EdgeTrace {
     #[inline]
-    pub(super) fn at(edge: &Edge, parameters: &[f64], x: f64) -> Self {
+    pub(super) fn at(edge: &Edge, parameters: &[f64], x: f64, with_base: bool) -> Self {
         let local = edge.basis.at(x);
         let coefficients = &parameters[edge.coefficients()][local.first..=local.first + edge.basis.order()];
         let (mut spline, mut spline_slope) = (0.0, 0.0);
@@ -23,11 +23,15 @@ impl EdgeTrace {
             spline_slope += c * slope;
         }
         let (scale, base) = (parameters[edge.scale()], parameters[edge.base()]);
-        // SiLU and its slope: x s(x), s(x) (1 + x (1 - s(x))).
-        let logistic = 1.0 / (1.0 + libm::exp(-x));
-        let silu = x * logistic;
-        let silu_slope = logistic * (1.0 + x * (1.0 - logistic));
-        Self { local, silu, value: base * silu + scale * spline, slope: base * silu_slope + scale * spline_slope }
+        let mut trace = Self { local, silu: 0.0, value: scale * spline, slope: scale * spline_slope };
+        if with_base || base != 0.0 {
+            // SiLU and its slope: x s(x), s(x) (1 + x (1 - s(x))).
+            let logistic = 1.0 / (1.0 + libm::exp(-x));
+            trace.silu = x * logistic;
+            trace.value += base * trace.silu;
+            trace.slope += base * logistic * (1.0 + x * (1.0 - logistic));
+        }
+        trace
     }
 }
 
@@ -48,6 +52,8 @@ struct LayerTrace {
 pub(super) struct Trace {
     layers: Vec<LayerTrace>,
     output: f64,
+    /// Whether SiLU is wanted even where its weight is zero.
+    with_base: bool,
 }
 
 impl Trace {
@@ -60,7 +66,12 @@ impl Trace {
             terminal_adjoints: vec![0.0; layer.nodes.terminals()],
             input_adjoints: vec![0.0; layer.inputs],
         });
-        Self { layers: layers.collect(), output: 0.0 }
+        Self { layers: layers.collect(), output: 0.0, with_base: false }
+    }
+
+    /// A trace for derivatives with respect to parameters, base weights among them when `with_base`.
+    pub(super) fn for_training(network: &Network, with_base: bool) -> Self {
+        Self { with_base, ..Self::new(network) }
     }
 
     /// Normalised output for normalised inputs.
@@ -72,7 +83,7 @@ impl Trace {
         for (index, layer) in network.layers.iter().enumerate() {
             let (done, rest) = self.layers.split_at_mut(index + 1);
             let trace = &mut done[index];
-            trace.run(layer, &network.parameters);
+            trace.run(layer, &network.parameters, self.with_base);
             match rest.first_mut() {
                 Some(next) => combine(layer, &trace.terminals, &mut next.inputs),
                 None => self.output = trace.terminals[0],
@@ -127,12 +138,12 @@ impl Trace {
 
 impl LayerTrace {
     #[inline]
-    fn run(&mut self, layer: &Layer, parameters: &[f64]) {
+    fn run(&mut self, layer: &Layer, parameters: &[f64], with_base: bool) {
         for (to, edges) in layer.edges.chunks_exact(layer.inputs).enumerate() {
             let mut sum = 0.0;
             for (from, edge) in edges.iter().enumerate() {
                 if edge.active {
-                    let trace = EdgeTrace::at(edge, parameters, self.inputs[from]);
+                    let trace = EdgeTrace::at(edge, parameters, self.inputs[from], with_base);
                     sum += trace.value;
                     self.edges[to * layer.inputs + from] = trace;
                 }

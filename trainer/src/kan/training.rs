@@ -44,6 +44,8 @@ pub(super) struct Settings {
     pub(super) optimiser: Optimiser,
     pub(super) steps: usize,
     pub(super) smoothing: Smoothing,
+    /// First guess of the residual variance, normalised target; where estimated smoothing starts from.
+    pub(super) noise_variance: f64,
     /// Relative fall of the penalised loss below which a step counts as no progress.
     pub(super) tolerance: f64,
     pub(super) with_base: bool,
@@ -121,7 +123,7 @@ impl<'a> Watch<'a> {
             step.validation_loss = Some(model.physical_loss(model.residual_sum(dataset, &self.validation), rows));
         }
         self.history.push(step);
-        if step.step % self.stride == 0 {
+        if step.step.is_multiple_of(self.stride) {
             self.snapshots.push((step.step, model.network.clone()));
             if self.snapshots.len() > SNAPSHOTS {
                 self.stride *= 2;

@@ -3,18 +3,21 @@
 use rayon::prelude::*;
 
 use super::canonical::canonical;
+use super::choice::{Candidate, FrontEntry, choose, finalists, front};
 use super::data::{LawData, LawError};
 use super::expression::Expr;
 use super::fit::{Effort, Fit, Held, Problem};
 use super::known_forms::polish;
+use super::library::admissible;
 use super::naming::name_all;
 use super::price::{EXACT, Evidence, correlation_length};
 use super::ranges::Extents;
+use super::render::significant;
 use super::search::{Beam, best, explore};
 use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
-use super::uncertainty::{Interval, Uncertainty, analyse};
+use super::uncertainty::{Interval, NORMAL_95, Uncertainty, analyse};
 
-/// How to search.
+/// How to search, and which law is simple enough.
 #[derive(Clone, Debug)]
 pub struct SearchOptions {
     /// Structures kept from round to round, at least 1.
@@ -25,11 +28,15 @@ pub struct SearchOptions {
     pub search_samples: usize,
     /// Parts into which the blocks are grouped for holding out, at least 2.
     pub folds: usize,
+    /// Nodes that a law may have; one with more is taken only where it reduces the held-out mean square by 15 %.
+    pub max_nodes: usize,
+    /// Structures to start from besides the usual ones, for instance read off the activations of a pruned network.
+    pub starts: Vec<Structure>,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { beam_width: 6, rounds: 8, search_samples: 4000, folds: 5 }
+        Self { beam_width: 6, rounds: 8, search_samples: 2000, folds: 5, max_nodes: 20, starts: Vec::new() }
     }
 }
 
@@ -61,23 +68,6 @@ pub struct Law {
     pub template: Expr,
     /// Named constants, in the order of the template.
     pub parameters: Vec<Parameter>,
-}
-
-/// A law on the front of error against complexity.
-#[derive(Clone, Debug)]
-pub struct FrontEntry {
-    /// Which law.
-    pub structure: Structure,
-    /// With numbers.
-    pub expression: Expr,
-    /// Nodes of the expression.
-    pub nodes: usize,
-    /// Root mean square of the residuals, unit of the target.
-    pub rmse: f64,
-    /// The same over blocks that were held out in turn.
-    pub held_out_rmse: f64,
-    /// What was minimised, nats.
-    pub score: f64,
 }
 
 /// Coefficient of a nuisance column.
@@ -124,109 +114,71 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let small = thinned.as_ref().map(|d| Problem::new(d, &extents));
     let beam = Beam { width: options.beam_width.max(1), rounds: options.rounds, refits: 5 };
     let searched = small.as_ref().unwrap_or(&problem);
-    let explored = explore(searched, beam, evidence_of(searched, None), &[]);
+    let explored = explore(searched, beam, evidence_of(searched, None), &options.starts);
 
-    let rough = evidence_of(searched, best(&explored, evidence_of(searched, None), 1).first().copied());
-    let finalists: Vec<Fit> = best(&explored, rough, 12).par_iter().map(|f| polish(&problem, f, &[])).collect();
+    let rough = evidence_of(searched, best(searched, &explored, evidence_of(searched, None), 1).first().copied());
+    let finalists: Vec<Fit> =
+        finalists(searched, &explored, rough).par_iter().map(|f| polish(&problem, f, &[])).collect();
     let evidence = evidence_of(&problem, finalists.first());
-    let mut ranked: Vec<(f64, f64, Fit)> = finalists
-        .into_par_iter()
-        .map(|fit| {
-            let held_out = held_out_mean_square(data, &extents, &fit, options.folds.max(2));
-            (evidence.held_out(&fit, held_out), held_out, fit)
-        })
-        .collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.2.structure.cmp(&b.2.structure)));
-    let front = front(&problem, &ranked);
-    let chosen = ranked.remove(0).2;
+    let candidates: Vec<Candidate> =
+        finalists.into_par_iter().map(|fit| Candidate::new(&problem, fit, evidence, options.folds.max(2))).collect();
+    let front = front(&candidates);
+    let chosen = choose(&candidates, options.max_nodes).fit.clone();
     let mut remarks = Vec::new();
+    let chosen = drop_undetermined(&problem, chosen, &mut remarks);
     let (fit, held) = settle_smoothing(&problem, chosen, evidence, &mut remarks);
     let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);
     let law = describe(&problem, &fit, &uncertainty, &held);
-    let nuisance = data
-        .nuisance
-        .iter()
-        .zip(problem.nuisance_coefficients(&fit))
-        .zip(&uncertainty.nuisance)
-        .map(|((n, value), (_, se))| NuisanceCoefficient {
-            name: n.name.clone(),
-            value,
-            unit: n.unit.clone(),
-            ci95: [value - 1.96 * se, value + 1.96 * se],
-        })
-        .collect();
-    let mean = data.target.len() as f64;
+    let nuisance = nuisance_coefficients(&problem, &fit, &uncertainty);
     Ok(Discovery {
         law,
         front,
         remarks,
         nuisance,
-        rmse: (fit.rss / mean).sqrt(),
+        rmse: (fit.rss / data.rows() as f64).sqrt(),
         r2: 1.0 - fit.rss / problem.total().max(f64::MIN_POSITIVE),
         explored: explored.len(),
     })
 }
 
+/// Held-out blocks guard against what correlated residuals pretend, so that no fewer samples than this are counted.
+const LEAST_EFFECTIVE: f64 = 200.0;
+
 fn evidence_of(problem: &Problem<'_>, fit: Option<&Fit>) -> Evidence {
     let rows = problem.rows();
     let length = fit.map_or(1.0, |f| correlation_length(&problem.residuals(f)));
-    Evidence { rows, effective: (rows as f64 / length).max(10.0), exact: EXACT * EXACT * problem.total() / rows as f64 }
+    Evidence {
+        rows,
+        effective: (rows as f64 / length).max(LEAST_EFFECTIVE.min(rows as f64)),
+        exact: EXACT * EXACT * problem.total() / rows as f64,
+    }
 }
 
-/// Mean square over all samples, each predicted from constants fitted without its block.
-fn held_out_mean_square(data: &LawData, extents: &Extents, fit: &Fit, folds: usize) -> f64 {
-    let mut labels = data.blocks.clone();
-    labels.sort_unstable();
-    labels.dedup();
-    let folds = folds.min(labels.len());
-    if folds < 2 {
-        return fit.rss / data.rows() as f64;
+/// Takes out, one by one, terms whose coefficients may as well be zero once the correlation of the residuals is counted.
+fn drop_undetermined(problem: &Problem<'_>, mut fit: Fit, remarks: &mut Vec<String>) -> Fit {
+    loop {
+        let uncertainty = analyse(problem, &fit, &[], Interval::Linearised);
+        let first = fit.structure.nonlinear().len();
+        let weight = |i: usize| fit.params[first + i].abs() / uncertainty.standard_errors[first + i];
+        let weakest = (0..fit.structure.terms().len())
+            .filter(|&i| weight(i) < NORMAL_95 && admissible(&fit.structure.without(fit.structure.terms()[i])))
+            .min_by(|a, b| weight(*a).total_cmp(&weight(*b)));
+        let Some(weakest) = weakest else { return fit };
+        let naming =
+            &name_all(&fit.structure, problem.data(), problem.extents().layout(), &fit.params)[first + weakest];
+        remarks.push(format!(
+            "{} = {} ± {} {} is not determined and left out.",
+            naming.name,
+            significant(fit.params[first + weakest], 3),
+            significant(NORMAL_95 * uncertainty.standard_errors[first + weakest], 2),
+            naming.unit
+        ));
+        let simpler = fit.structure.without(fit.structure.terms()[weakest]);
+        let start: Vec<(Nonlinear, f64)> = fit.nonlinear();
+        let rough = problem.fit_grid(&simpler, &start, Held::default(), 1, Effort::SEARCH);
+        fit = polish(problem, &rough, &[]);
     }
-    let fold_of = |block: usize| labels.partition_point(|l| *l < block) * folds / labels.len();
-    let mut sum = 0.0;
-    for fold in 0..folds {
-        let (test, train): (Vec<usize>, Vec<usize>) = (0..data.rows()).partition(|&r| fold_of(data.blocks[r]) == fold);
-        let (train, test) = (data.select(&train), data.select(&test));
-        let problem = Problem::new(&train, extents);
-        let psi = &fit.params[..fit.structure.nonlinear().len()];
-        let refit = problem.fit_from(&fit.structure, psi, Held::default(), Effort::FINAL);
-        let beta = problem.nuisance_coefficients(&refit);
-        let law = Problem::new(&test, extents).law_values(&refit);
-        for (row, f) in law.iter().enumerate() {
-            let along: f64 = test.nuisance.iter().zip(&beta).map(|(n, b)| n.values[row] * b).sum();
-            sum += (test.target[row] - f - along).powi(2);
-        }
-    }
-    let mean_square = sum / data.rows() as f64;
-    if mean_square.is_finite() { mean_square } else { f64::INFINITY }
-}
-
-/// Those of the ranked laws that are better than every simpler one.
-fn front(problem: &Problem<'_>, ranked: &[(f64, f64, Fit)]) -> Vec<FrontEntry> {
-    let layout = problem.extents().layout();
-    let mut entries: Vec<FrontEntry> = ranked
-        .iter()
-        .map(|(score, held_out, fit)| {
-            let expression = canonical(&fit.structure.template(layout).bind(&fit.params));
-            FrontEntry {
-                structure: fit.structure.clone(),
-                nodes: expression.node_count(),
-                expression,
-                rmse: (fit.rss / problem.rows() as f64).sqrt(),
-                held_out_rmse: held_out.sqrt(),
-                score: *score,
-            }
-        })
-        .collect();
-    entries.sort_by(|a, b| a.nodes.cmp(&b.nodes).then(a.held_out_rmse.total_cmp(&b.held_out_rmse)));
-    let mut least = f64::INFINITY;
-    entries.retain(|e| {
-        let better = e.held_out_rmse < least;
-        least = least.min(e.held_out_rmse);
-        better
-    });
-    entries
 }
 
 /// Fixes the smoothing of the sign where the data cannot tell it from a step.
@@ -239,23 +191,36 @@ fn settle_smoothing(
     let names = fit.structure.nonlinear();
     let Some(at) = names.iter().position(|n| *n == Nonlinear::Smoothing) else { return (fit, Vec::new()) };
     let sign = fit.structure.sign();
-    let bound = problem.extents().steepest(sign);
-    let mut psi = fit.params[..names.len()].to_vec();
-    psi[at] = bound;
     let held = vec![Nonlinear::Smoothing];
-    let fixed = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::FINAL);
     let rows = problem.rows() as f64;
-    let worse = 2.0 * (evidence.misfit(fixed.rss / rows) - evidence.misfit(fit.rss / rows));
-    if worse > 3.84 {
+    let with_width = |width: f64| -> (Fit, f64) {
+        let mut psi = fit.params[..names.len()].to_vec();
+        psi[at] = sign.from_width(width);
+        let fixed =
+            problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::SEARCH);
+        let worse = 2.0 * (evidence.misfit(fixed.rss / rows) - evidence.misfit(fit.rss / rows));
+        (fixed, worse)
+    };
+    let steepest = sign.width(problem.extents().steepest(sign));
+    if with_width(steepest).1 > 3.84 {
         return (fit, Vec::new());
     }
+    // The widest that is as good, by bisection in the logarithm.
+    let (mut good, mut bad) = (steepest, problem.extents().fastest());
+    for _ in 0..12 {
+        let middle = (good * bad).sqrt();
+        if with_width(middle).1 < 1.0 { good = middle } else { bad = middle }
+    }
+    let fixed = polish(problem, &with_width(good).0, &held);
+    let bound = sign.from_width(good);
     let constant = match sign {
         SignForm::Tanh | SignForm::Arctan => "slope",
         SignForm::Algebraic | SignForm::Parabolic | SignForm::Cubic => "width",
     };
     remarks.push(format!(
-        "The smoothing of the sign is not determined: too few samples near zero velocity. Its {constant} is fixed at {bound:.3}, the \
-         steepest that these data could tell from a step."
+        "The smoothing of the sign is not determined: too few samples near zero velocity. Its {constant} is fixed at {}, the smoothest \
+         that fits as well as a step.",
+        significant(bound, 4)
     ));
     (fixed, held)
 }
@@ -268,8 +233,9 @@ fn allow_for_viscous(
     uncertainty: &mut Uncertainty,
     remarks: &mut Vec<String>,
 ) {
-    let sees_speed =
-        |t: &Term| matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::SignPower);
+    let sees_speed = |t: &Term| {
+        matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::OddRoot | Shape::SignPower)
+    };
     let exact = uncertainty.noise <= EXACT * (problem.total() / problem.rows() as f64).sqrt();
     if exact || fit.structure.terms().is_empty() || fit.structure.terms().iter().any(sees_speed) {
         return;
@@ -293,6 +259,24 @@ fn allow_for_viscous(
         uncertainty.intervals[k] = [low.min(fit.params[k]), high.max(fit.params[k])];
         uncertainty.standard_errors[k] = more.standard_errors[other];
     }
+}
+
+/// Coefficients of the nuisance columns with their intervals.
+pub(super) fn nuisance_coefficients(
+    problem: &Problem<'_>,
+    fit: &Fit,
+    uncertainty: &Uncertainty,
+) -> Vec<NuisanceCoefficient> {
+    let coefficients = problem.nuisance_coefficients(fit);
+    let columns = problem.data().nuisance.iter().zip(coefficients).zip(&uncertainty.nuisance);
+    columns
+        .map(|((column, value), (_, se))| NuisanceCoefficient {
+            name: column.name.clone(),
+            value,
+            unit: column.unit.clone(),
+            ci95: [value - NORMAL_95 * se, value + NORMAL_95 * se],
+        })
+        .collect()
 }
 
 /// Names, units and intervals for a fitted law.

@@ -104,10 +104,9 @@ pub(super) fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-/// `|x|^p` with `0^p = 0` for every positive `p`.
+/// `|x|^p` as `exp(p ln |x|)`; zero for `x = 0` and positive `p`.
 pub(super) fn power(x: f64, p: f64) -> f64 {
-    let m = x.abs();
-    if m == 0.0 && p > 0.0 { 0.0 } else { libm::pow(m, p) }
+    libm::exp(p * libm::log(x.abs()))
 }
 
 impl From<f64> for Expr {

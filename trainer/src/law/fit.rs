@@ -110,11 +110,12 @@ impl<'a> Problem<'a> {
     }
 
     fn tape(&self, structure: &Structure) -> Tape {
-        Tape::new(&structure.columns(self.extents.layout()), structure.nonlinear().len())
+        let columns = structure.columns(self.extents.layout());
+        Tape::new(&columns, structure.nonlinear().len(), &self.channels, self.rows())
     }
 
     fn at(&self, tape: &Tape, psi: &[f64], pinned: Option<(usize, f64)>, jacobian: bool) -> Point {
-        let mut columns = tape.run(&self.channels, self.rows(), psi, jacobian);
+        let mut columns = tape.run(psi, jacobian);
         let mut basis = Basis::default();
         let mut residual = self.target.clone();
         for (j, column) in columns.values.iter_mut().enumerate() {
@@ -268,7 +269,7 @@ impl<'a> Problem<'a> {
         let layout = self.extents.layout();
         let known = parent.nonlinear();
         let tape = self.tape(&parent.structure);
-        let columns = tape.run(&self.channels, self.rows(), &parent.params, false);
+        let columns = tape.run(&parent.params, false);
         let mut basis = self.nuisance.clone();
         columns.values.iter().for_each(|c| {
             basis.push(c);
@@ -286,7 +287,7 @@ impl<'a> Problem<'a> {
                 None => self.extents.range(*n, parent.structure.sign()).starts,
             })
             .collect();
-        let tape = Tape::new(&child.columns(layout), names.len());
+        let tape = Tape::new(&child.columns(layout), names.len(), &self.channels, self.rows());
         let mut best = (f64::INFINITY, Vec::new());
         for index in 0..axes.iter().map(Vec::len).product() {
             let mut rest = index;
@@ -299,7 +300,7 @@ impl<'a> Problem<'a> {
                 })
                 .collect();
             let mut extra = Basis::default();
-            for mut column in tape.run(&self.channels, self.rows(), &psi, false).values {
+            for mut column in tape.run(&psi, false).values {
                 let size = dot(&column, &column);
                 basis.remove_from(&mut column);
                 if dot(&column, &column) > 1e-16 * size {
@@ -381,10 +382,21 @@ impl<'a> Problem<'a> {
         self.nuisance.coefficients(&products)
     }
 
+    /// Standard errors of the coefficients for unit noise, the non-linear constants being given.
+    pub fn coefficient_errors(&self, fit: &Fit) -> Vec<f64> {
+        let tape = self.tape(&fit.structure);
+        let mut basis = Basis::default();
+        for mut column in tape.run(&fit.params, false).values {
+            self.nuisance.remove_from(&mut column);
+            basis.push(&column);
+        }
+        basis.errors()
+    }
+
     /// The law at every sample, without the nuisance columns.
     pub fn law_values(&self, fit: &Fit) -> Vec<f64> {
         let template = fit.structure.template(self.extents.layout());
-        Tape::new(&[template], fit.params.len()).run(&self.channels, self.rows(), &fit.params, false).values.remove(0)
+        Tape::new(&[template], fit.params.len(), &self.channels, self.rows()).run(&fit.params, false).values.remove(0)
     }
 
     /// Residuals of law and nuisance columns together.

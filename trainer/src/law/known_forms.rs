@@ -1,12 +1,18 @@
 //! The classical friction laws, fitted as they stand.
 
+use rayon::prelude::*;
+
+use super::choice::held_out_mean_square;
 use super::data::{LawData, LawError};
-use super::discover::{Law, describe};
+use super::discover::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
 use super::fit::{Effort, Fit, Held, Problem};
 use super::price::constants;
 use super::ranges::Extents;
 use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 use super::uncertainty::{Interval, Uncertainty, analyse};
+
+/// Parts into which the blocks are grouped for holding out.
+const FOLDS: usize = 5;
 
 /// A friction law of the literature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,8 +109,12 @@ pub struct FormFit {
     pub law: Law,
     /// Standard errors and identifiability in the order of the law's parameters.
     pub uncertainty: Uncertainty,
+    /// Coefficients of the nuisance columns.
+    pub nuisance: Vec<NuisanceCoefficient>,
     /// Root mean square of the residuals, unit of the target.
     pub rmse: f64,
+    /// The same over samples predicted from constants that were fitted without their blocks.
+    pub held_out_rmse: f64,
     /// Bayesian information criterion (Schwarz 1978) with the effective number of samples; lower is better.
     pub bic: f64,
     /// Whether the optimiser ended at a minimum.
@@ -142,11 +152,34 @@ pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f6
     let mean_square = fit.rss / data.rows() as f64;
     Ok(FormFit {
         law: describe(&problem, &fit, &uncertainty, &held),
+        nuisance: nuisance_coefficients(&problem, &fit, &uncertainty),
         rmse: mean_square.sqrt(),
+        held_out_rmse: held_out_mean_square(&problem, &fit, holding, FOLDS).sqrt(),
         bic: effective * libm::log(mean_square.max(f64::MIN_POSITIVE)) + libm::log(effective) * free as f64,
         converged: fit.converged,
         uncertainty,
     })
+}
+
+/// Fits every form and ranks them by held-out likelihood, each constant paying what the Bayesian criterion asks of it beyond
+/// what holding out has already cost; best first.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn rank_forms(data: &LawData) -> Result<Vec<(KnownForm, FormFit)>, LawError> {
+    let fits: Vec<(KnownForm, FormFit)> = KnownForm::ALL
+        .par_iter()
+        .map(|form| Ok((*form, fit_form(*form, data, None)?)))
+        .collect::<Result<_, LawError>>()?;
+    let length = fits.iter().map(|(_, f)| f.uncertainty.correlation_length).fold(f64::INFINITY, f64::min);
+    let effective = data.rows() as f64 / length;
+    let each = (0.5 * libm::log(effective) - 1.0).max(0.0);
+    let score = |(form, fit): &(KnownForm, FormFit)| {
+        effective * libm::log(fit.held_out_rmse.max(f64::MIN_POSITIVE)) + each * constants(&form.structure()) as f64
+    };
+    let mut ranked: Vec<(f64, (KnownForm, FormFit))> = fits.into_iter().map(|f| (score(&f), f)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(ranked.into_iter().map(|(_, f)| f).collect())
 }
 
 /// The fit optimised until rounding stops it.

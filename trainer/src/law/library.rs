@@ -4,6 +4,9 @@ use super::data::{ChannelRole, LawData};
 use super::fit::{Fit, Problem};
 use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
+/// Most terms of a law.
+const MOST_TERMS: usize = 6;
+
 /// A change of a fitted structure: terms taken out, terms put in, the sign form afterwards.
 #[derive(Clone, Debug)]
 pub struct Move {
@@ -25,6 +28,7 @@ pub fn terms(data: &LawData, problem: &Problem<'_>) -> Vec<Vec<Term>> {
         Shape::Viscous,
         Shape::Quadratic,
         Shape::OddPower,
+        Shape::OddRoot,
         Shape::AbsSign,
         Shape::AbsViscous,
         Shape::Offset,
@@ -70,7 +74,10 @@ pub fn admissible(structure: &Structure) -> bool {
     let plains = |shape| count(&|t| t.shape == shape && plain(t));
     // A decay already holds its value at the reference temperature.
     let one_decay = [Shape::Sign, Shape::Viscous].into_iter().all(|s| decays(s) == 0 || plains(s) == 0);
-    one_stribeck && one_shape && one_power && one_decay
+    // What declines from the static to the Coulomb level, and what differs between directions, needs a Coulomb level.
+    let based =
+        count(&|t| t.shape == Shape::Sign) > 0 || count(&|t| t.shape.is_stribeck() || t.shape == Shape::AbsSign) == 0;
+    one_stribeck && one_shape && one_power && one_decay && based
 }
 
 /// All moves from a structure.
@@ -103,7 +110,10 @@ pub fn moves(structure: &Structure, library: &[Vec<Term>]) -> Vec<Move> {
             sign: f,
         }));
     }
-    all.retain(|m| admissible(&m.apply(structure)));
+    all.retain(|m| {
+        let after = m.apply(structure);
+        after.terms().len() <= MOST_TERMS && admissible(&after)
+    });
     all
 }
 
@@ -111,12 +121,13 @@ pub fn moves(structure: &Structure, library: &[Vec<Term>]) -> Vec<Move> {
 fn related(a: Term, b: Term) -> bool {
     let family = |s: Shape| match s {
         Shape::StribeckExponential | Shape::StribeckGaussian | Shape::StribeckPower | Shape::Breakaway => 0,
-        Shape::SignPower | Shape::OddPower | Shape::Quadratic | Shape::Viscous => 1,
+        Shape::SignPower | Shape::OddPower | Shape::OddRoot | Shape::Quadratic | Shape::Viscous => 1,
         Shape::AbsSign | Shape::AbsViscous | Shape::Offset => 2,
         Shape::Sign => 3,
     };
+    let ripple = |t: Term| matches!(t.modulation, Modulation::Sine(_) | Modulation::Cosine(_));
     (a.modulation == b.modulation && family(a.shape) == family(b.shape))
-        || (a.shape == b.shape && a.modulation != b.modulation)
+        || (a.shape == b.shape && a.modulation != b.modulation && !ripple(b))
 }
 
 impl Move {

@@ -4,6 +4,7 @@
 //! all its constants at once ([`mod@fit`]), prices it ([`price`]) and names what it finds ([`naming`]).
 
 pub mod canonical;
+pub mod choice;
 pub mod data;
 pub mod discover;
 pub mod expression;
@@ -20,8 +21,9 @@ pub mod structure;
 pub mod tape;
 pub mod uncertainty;
 
+pub use choice::FrontEntry;
 pub use data::{Channel, ChannelRole, LawData, LawError, Nuisance};
-pub use discover::{Discovery, FrontEntry, Law, NuisanceCoefficient, Parameter, SearchOptions, discover};
+pub use discover::{Discovery, Law, NuisanceCoefficient, Parameter, SearchOptions, discover};
 pub use expression::{Expr, Step, Unary};
-pub use known_forms::{FormFit, KnownForm, fit_form};
+pub use known_forms::{FormFit, KnownForm, fit_form, rank_forms};
 pub use render::{Language, render};

@@ -26,7 +26,10 @@ pub fn name_all(structure: &Structure, data: &LawData, layout: &Layout, values: 
         structure,
         data,
         layout,
-        exponent: names.iter().position(|n| *n == Nonlinear::Exponent).map(|k| values[k]),
+        exponent: names
+            .iter()
+            .position(|n| matches!(n, Nonlinear::Exponent | Nonlinear::RootExponent))
+            .map(|k| values[k]),
     };
     names.iter().map(|n| context.nonlinear(*n)).chain(structure.terms().iter().map(|t| context.term(*t))).collect()
 }
@@ -64,6 +67,7 @@ impl Context<'_> {
             Nonlinear::StribeckExponent => naming("stribeck_exponent", "α", "1"),
             Nonlinear::BreakawayVelocity => naming("breakaway_velocity", "v_b", self.speed()),
             Nonlinear::Exponent => naming("velocity_exponent", "p", "1"),
+            Nonlinear::RootExponent => naming("velocity_exponent", "m", "1"),
             Nonlinear::Rate(i) => naming(format!("{}_rate", channel(i).name), "κ", divided("", &channel(i).unit, 1.0)),
             Nonlinear::Order(i) => {
                 naming(format!("{}_ripple_order", channel(i).name), "n", divided("", &channel(i).unit, 1.0))
@@ -85,6 +89,7 @@ impl Context<'_> {
             Shape::Viscous => naming("viscous_coefficient", "F_v", over(1.0)),
             Shape::Quadratic => naming("quadratic_coefficient", "F_2", over(2.0)),
             Shape::OddPower => naming("viscous_power_coefficient", "F_p", over(1.0 + self.exponent.unwrap_or(0.0))),
+            Shape::OddRoot => naming("viscous_power_coefficient", "F_p", over(1.0 - self.exponent.unwrap_or(0.0))),
             Shape::AbsSign => naming(format!("coulomb_asymmetry_{kind}"), "ΔF_c", target),
             Shape::AbsViscous => naming("viscous_asymmetry_coefficient", "ΔF_v", over(1.0)),
             Shape::Offset => naming(format!("offset_{kind}"), "F_0", target),

@@ -15,7 +15,7 @@ pub const EXACT: f64 = 1e-7;
 fn of_sign(sign: SignForm) -> f64 {
     match sign {
         SignForm::Tanh => 0.0,
-        SignForm::Arctan | SignForm::Algebraic => 3.0,
+        SignForm::Arctan | SignForm::Algebraic => 4.0,
         SignForm::Parabolic | SignForm::Cubic => 4.0,
     }
 }
@@ -24,9 +24,9 @@ fn of_term(term: Term) -> f64 {
     let shape = match term.shape {
         Shape::Sign | Shape::Viscous | Shape::StribeckExponential => 0.0,
         Shape::Offset | Shape::AbsViscous => 0.5,
-        Shape::StribeckGaussian | Shape::Quadratic => 1.0,
-        Shape::AbsSign | Shape::OddPower => 1.5,
-        Shape::SignPower | Shape::StribeckPower | Shape::Breakaway => 2.0,
+        Shape::Quadratic => 1.0,
+        Shape::AbsSign | Shape::OddPower | Shape::OddRoot => 1.5,
+        Shape::StribeckGaussian | Shape::SignPower | Shape::StribeckPower | Shape::Breakaway => 2.0,
     };
     let modulation = match term.modulation {
         Modulation::Plain => 0.0,

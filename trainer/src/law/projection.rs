@@ -92,6 +92,19 @@ impl Basis {
         coefficients
     }
 
+    /// Standard errors of the coefficients for unit noise: row norms of the inverse triangular factor; infinite for
+    /// dependent columns.
+    pub fn errors(&self) -> Vec<f64> {
+        let mut squares = vec![0.0; self.factor.len()];
+        for rank in 0..self.rank() {
+            let mut unit = vec![0.0; self.rank()];
+            unit[rank] = 1.0;
+            squares.iter_mut().zip(self.coefficients(&unit)).for_each(|(s, c)| *s += c * c);
+        }
+        let known = self.factor.iter().zip(squares);
+        known.map(|(r, s): (_, f64)| if r.is_some() { s.sqrt() } else { f64::INFINITY }).collect()
+    }
+
     /// Which of the pushed columns added something.
     pub fn independent(&self) -> Vec<bool> {
         self.factor.iter().map(Option::is_some).collect()

@@ -6,6 +6,9 @@ use super::structure::{Layout, Nonlinear, SignForm};
 /// Samples that must lie inside the smoothed sign for its width to be seen.
 const SAMPLES_IN_TRANSITION: usize = 5;
 
+/// Speeds below this share of the fastest are rest.
+const REST: f64 = 1e-3;
+
 /// Most starting orders of a ripple that are tried.
 const MOST_ORDERS: usize = 400;
 
@@ -23,6 +26,12 @@ pub struct Range {
 }
 
 impl Range {
+    /// Whether a value has run to the end of the range, where the form is no longer itself.
+    pub fn is_end(&self, value: f64) -> bool {
+        let near = 1e-3 * if self.logarithmic { value.abs() } else { self.upper - self.lower };
+        value <= self.lower + near || value >= self.upper - near
+    }
+
     fn logarithmic(lower: f64, upper: f64, starts: usize) -> Self {
         let upper = upper.max(lower * 2.0);
         let ratio = upper / lower;
@@ -58,8 +67,8 @@ impl Extents {
             data.channels[velocity].values.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
         speeds.sort_by(f64::total_cmp);
         let fastest = speeds[speeds.len() - 1];
-        let slow = speeds[SAMPLES_IN_TRANSITION.min(speeds.len() - 1)].max(1e-6 * fastest);
-        let slowest = speeds[0].max(1e-6 * fastest);
+        let slow = speeds[SAMPLES_IN_TRANSITION.min(speeds.len() - 1)].max(REST * fastest);
+        let slowest = speeds[0].max(0.1 * REST * fastest);
         let mut references = Vec::new();
         let mut spans = Vec::new();
         for channel in &data.channels {
@@ -77,6 +86,11 @@ impl Extents {
     /// Where the channels are.
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// The largest speed.
+    pub fn fastest(&self) -> f64 {
+        self.fastest
     }
 
     /// Whether a channel varies at all.
@@ -107,7 +121,8 @@ impl Extents {
             Nonlinear::StribeckVelocity => Range::logarithmic((2.0 * slow).min(0.02 * fast), 1.5 * fast, 7),
             Nonlinear::BreakawayVelocity => Range::logarithmic(slow, 0.5 * fast, 7),
             Nonlinear::StribeckExponent => Range::listed(0.3, 4.0, &[0.5, 1.0, 2.0]),
-            Nonlinear::Exponent => Range::listed(0.15, 4.0, &[0.4, 0.7, 1.5, 2.5]),
+            Nonlinear::Exponent => Range::listed(0.1, 4.0, &[0.4, 0.7, 1.5, 2.5]),
+            Nonlinear::RootExponent => Range::listed(0.1, 0.7, &[0.25, 0.5]),
             Nonlinear::Rate(i) => {
                 let span = self.spans[i];
                 let starts = [-2.0, -0.5, 0.3, 1.0, 3.0].map(|x| x / span);

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::fit::{Effort, Fit, Held, Problem};
 use super::library::{self, Move};
 use super::price::Evidence;
-use super::structure::{Shape, SignForm, Structure, Term};
+use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// How far the search goes.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +47,10 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
     let mut explored: Explored = fits.into_iter().map(|f| (f.structure.clone(), f)).collect();
     let mut expanded: Vec<Structure> = Vec::new();
     for _ in 0..beam.rounds {
-        let parents: Vec<&Fit> =
-            best(&explored, evidence, beam.width).into_iter().filter(|f| !expanded.contains(&f.structure)).collect();
+        let parents: Vec<&Fit> = best(problem, &explored, evidence, beam.width)
+            .into_iter()
+            .filter(|f| !expanded.contains(&f.structure))
+            .collect();
         if parents.is_empty() {
             break;
         }
@@ -57,34 +59,44 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
             .par_iter()
             .flat_map_iter(|parent| promising(problem, parent, &library, beam.refits, evidence))
             .collect();
-        children.retain(|c| !explored.contains_key(&c.structure));
+        // A structure known from a worse start is worth another fit.
+        children.retain(|c| explored.get(&c.structure).is_none_or(|known| c.rss < 0.999 * known.rss));
         children.sort_by(|a, b| a.structure.cmp(&b.structure).then(a.rss.total_cmp(&b.rss)));
         children.dedup_by(|a, b| a.structure == b.structure);
         let fits: Vec<Fit> = children
             .par_iter()
             .map(|c| problem.fit_grid(&c.structure, &c.start, Held::default(), 1, Effort::SEARCH))
             .collect();
-        explored.extend(fits.into_iter().map(|f| (f.structure.clone(), f)));
+        for fit in fits {
+            let better = explored.get(&fit.structure).is_none_or(|known| fit.rss < known.rss);
+            if better {
+                expanded.retain(|s| *s != fit.structure);
+                explored.insert(fit.structure.clone(), fit);
+            }
+        }
     }
     explored
 }
 
 /// The structures of best score, best first.
-pub fn best(explored: &Explored, evidence: Evidence, count: usize) -> Vec<&Fit> {
+pub fn best<'a>(problem: &Problem<'_>, explored: &'a Explored, evidence: Evidence, count: usize) -> Vec<&'a Fit> {
     let mut ranked: Vec<(f64, &Fit)> =
-        explored.values().filter(|f| usable(f)).map(|f| (evidence.score(f), f)).collect();
+        explored.values().filter(|f| usable(problem, f)).map(|f| (evidence.score(f), f)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.structure.cmp(&b.1.structure)));
     ranked.into_iter().take(count).map(|(_, f)| f).collect()
 }
 
-/// Whether every term adds something and every number is finite.
-fn usable(fit: &Fit) -> bool {
-    fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
+/// Whether every term adds something, every number is finite and no constant has run to the end of its range (the
+/// smoothing of the sign may: then it is a step).
+fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
+    let ranges = problem.ranges(&fit.structure);
+    let inside = fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x));
+    inside && fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
 }
 
 struct Child {
     structure: Structure,
-    start: Vec<(super::structure::Nonlinear, f64)>,
+    start: Vec<(Nonlinear, f64)>,
     rss: f64,
 }
 
@@ -103,7 +115,13 @@ fn promising(
         let structure = change.apply(&parent.structure);
         let mut start = change.carry_over(parent);
         if change.added.is_empty() {
-            sure.push(Child { structure, start, rss: f64::INFINITY });
+            let psi: Vec<f64> = structure
+                .nonlinear()
+                .iter()
+                .filter_map(|n| start.iter().find(|(k, _)| k == n).map(|(_, x)| *x))
+                .collect();
+            let rss = problem.rss_at(&structure, &psi);
+            sure.push(Child { structure, start, rss });
             continue;
         }
         let base = reduced(parent, &change);

@@ -5,6 +5,9 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::expression::{Expr, Unary};
 
+/// Keeps a power of the speed with a negative exponent finite at rest, velocity unit.
+const OFF_ZERO: f64 = 1e-9;
+
 /// How the sign of the velocity is smoothed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SignForm {
@@ -39,8 +42,10 @@ pub enum Shape {
     Viscous,
     /// `v |v|`: churning, windage.
     Quadratic,
-    /// `v |v|^n`.
+    /// `v |v|^n`, faster than linear.
     OddPower,
+    /// `v / |v|^m`, slower than linear; a nano-unit keeps the divisor off zero.
+    OddRoot,
     /// `|S|`: difference of the Coulomb torque between the directions.
     AbsSign,
     /// `|v|`: difference of the viscous friction between the directions.
@@ -90,6 +95,8 @@ pub enum Nonlinear {
     BreakawayVelocity,
     /// Exponent `p` of `S |v|^p`, or `n` of `v |v|^n`.
     Exponent,
+    /// Exponent `m` of `v / |v|^m`, below 1.
+    RootExponent,
     /// Rate `κ` of a decay with a channel.
     Rate(usize),
     /// Order `n` of a ripple over a channel.
@@ -116,7 +123,7 @@ impl Shape {
 
     /// Whether it has a free exponent over the speed.
     pub fn is_power(self) -> bool {
-        matches!(self, Self::SignPower | Self::OddPower)
+        matches!(self, Self::SignPower | Self::OddPower | Self::OddRoot)
     }
 
     fn nonlinear(self) -> &'static [Nonlinear] {
@@ -127,6 +134,7 @@ impl Shape {
             Self::Breakaway => &[Nonlinear::Smoothing, Nonlinear::BreakawayVelocity],
             Self::SignPower => &[Nonlinear::Smoothing, Nonlinear::Exponent],
             Self::OddPower => &[Nonlinear::Exponent],
+            Self::OddRoot => &[Nonlinear::RootExponent],
             Self::Viscous | Self::Quadratic | Self::AbsViscous | Self::Offset => &[],
         }
     }
@@ -319,6 +327,10 @@ impl Builder<'_> {
             Shape::Viscous => Some(self.v()),
             Shape::Quadratic => Some(self.v() * self.v().abs()),
             Shape::OddPower => Some(self.v() * self.v().pow(self.param(Nonlinear::Exponent))),
+            Shape::OddRoot => {
+                let speed = self.v().abs() + Expr::Const(OFF_ZERO);
+                Some(self.v() / speed.pow(self.param(Nonlinear::RootExponent)))
+            }
             Shape::AbsSign => Some(self.sign().abs()),
             Shape::AbsViscous => Some(self.v().abs()),
         }

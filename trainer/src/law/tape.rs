@@ -1,7 +1,9 @@
 //! Several expressions evaluated together over whole columns, common parts once, with forward derivatives with respect
 //! to the parameters.
 
-use super::expression::{Expr, Unary, power, sign};
+use std::borrow::Cow;
+
+use super::expression::{Expr, Unary};
 
 /// Expressions compiled for column-wise evaluation.
 #[derive(Clone, Debug)]
@@ -9,6 +11,9 @@ pub struct Tape {
     ops: Vec<Op>,
     outputs: Vec<usize>,
     params: usize,
+    /// Values that depend on no parameter, computed once; in the order of `ops`.
+    given: Vec<Option<Column>>,
+    rows: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +25,8 @@ enum Op {
     Sub(usize, usize),
     Mul(usize, usize),
     Div(usize, usize),
-    Pow(usize, usize),
+    /// Base, exponent, logarithm of the base.
+    Pow(usize, usize, usize),
     Unary(Unary, usize),
 }
 
@@ -66,10 +72,20 @@ pub struct Columns {
 }
 
 impl Tape {
-    /// Compiles `outputs`, which may use parameters `0..params`.
-    pub fn new(outputs: &[Expr], params: usize) -> Self {
-        let mut tape = Self { ops: Vec::new(), outputs: Vec::new(), params };
+    /// Compiles `outputs`, which may use parameters `0..params`, for `channels[i][row]`.
+    ///
+    /// # Panics
+    /// When an input index is out of range or a channel has fewer than `rows` values.
+    pub fn new(outputs: &[Expr], params: usize, channels: &[&[f64]], rows: usize) -> Self {
+        let mut tape = Self { ops: Vec::new(), outputs: Vec::new(), params, given: Vec::new(), rows };
         tape.outputs = outputs.iter().map(|e| tape.add(e)).collect();
+        for op in &tape.ops {
+            let column = match op {
+                Op::Input(i) => Some(Column::Each(channels[*i][..rows].to_vec())),
+                _ => op.value(&tape.given, &[]),
+            };
+            tape.given.push(column);
+        }
         tape
     }
 
@@ -82,9 +98,17 @@ impl Tape {
             Expr::Sub(a, b) => Op::Sub(self.add(a), self.add(b)),
             Expr::Mul(a, b) => Op::Mul(self.add(a), self.add(b)),
             Expr::Div(a, b) => Op::Div(self.add(a), self.add(b)),
-            Expr::Pow(a, b) => Op::Pow(self.add(a), self.add(b)),
+            Expr::Pow(a, b) => {
+                let base = self.add(a);
+                let log = self.push(Op::Unary(Unary::Log, base));
+                Op::Pow(base, self.add(b), log)
+            }
             Expr::Unary(f, x) => Op::Unary(*f, self.add(x)),
         };
+        self.push(op)
+    }
+
+    fn push(&mut self, op: Op) -> usize {
         if let Some(found) = self.ops.iter().position(|known| *known == op) {
             return found;
         }
@@ -92,44 +116,93 @@ impl Tape {
         self.ops.len() - 1
     }
 
-    /// Values of every output for `channels[i][row]`, with derivatives with respect to all parameters when `slopes`.
+    /// Values of every output, with derivatives with respect to all parameters when `slopes`.
     ///
     /// # Panics
-    /// When an input or parameter index is out of range.
-    pub fn run(&self, channels: &[&[f64]], rows: usize, params: &[f64], slopes: bool) -> Columns {
-        let mut values: Vec<Column> = Vec::with_capacity(self.ops.len());
+    /// When a parameter index is out of range.
+    pub fn run(&self, params: &[f64], slopes: bool) -> Columns {
+        let mut values: Vec<Cow<'_, Column>> = Vec::with_capacity(self.ops.len());
         let mut tangents: Vec<Vec<Option<Column>>> = Vec::with_capacity(self.ops.len());
-        for op in &self.ops {
-            let value = match op {
-                Op::Const(c) => Column::Same(*c),
-                Op::Param(k) => Column::Same(params[*k]),
-                Op::Input(i) => Column::Each(channels[*i][..rows].to_vec()),
-                Op::Add(a, b) => values[*a].zip(&values[*b], |a, b| a + b),
-                Op::Sub(a, b) => values[*a].zip(&values[*b], |a, b| a - b),
-                Op::Mul(a, b) => values[*a].zip(&values[*b], |a, b| a * b),
-                Op::Div(a, b) => values[*a].zip(&values[*b], |a, b| a / b),
-                Op::Pow(a, b) => values[*a].zip(&values[*b], power),
-                Op::Unary(f, x) => values[*x].map(|x| f.apply(x)),
+        for (op, given) in self.ops.iter().zip(&self.given) {
+            let value = match given {
+                Some(column) => Cow::Borrowed(column),
+                None => Cow::Owned(op.value_with(&values, params)),
             };
             if slopes {
-                tangents.push((0..self.params).map(|k| tangent(op, k, &values, &value, &tangents)).collect());
+                let all = 0..self.params;
+                tangents.push(match given {
+                    Some(_) => vec![None; self.params],
+                    None => all.map(|k| tangent(op, k, &values, &value, &tangents)).collect(),
+                });
             }
             values.push(value);
         }
         let slopes = if slopes {
             self.outputs
                 .iter()
-                .map(|&o| tangents[o].iter().map(|t| t.clone().map(|t| t.into_rows(rows))).collect())
+                .map(|&o| tangents[o].iter().map(|t| t.clone().map(|t| t.into_rows(self.rows))).collect())
                 .collect()
         } else {
             Vec::new()
         };
-        Columns { values: self.outputs.iter().map(|&o| values[o].clone().into_rows(rows)).collect(), slopes }
+        Columns {
+            values: self.outputs.iter().map(|&o| values[o].clone().into_owned().into_rows(self.rows)).collect(),
+            slopes,
+        }
     }
 }
 
+impl Op {
+    /// Operands.
+    fn needs(&self) -> impl Iterator<Item = usize> {
+        let (a, b) = match *self {
+            Self::Const(_) | Self::Param(_) | Self::Input(_) => (None, None),
+            Self::Unary(_, x) => (Some(x), None),
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Pow(a, b, _) => {
+                (Some(a), Some(b))
+            }
+        };
+        a.into_iter().chain(b)
+    }
+
+    /// The value where no parameter is needed.
+    fn value(&self, given: &[Option<Column>], params: &[f64]) -> Option<Column> {
+        let known = !matches!(self, Self::Param(_)) && self.needs().all(|i| given[i].is_some());
+        known.then(|| {
+            let empty = Column::Same(0.0);
+            let all: Vec<Cow<'_, Column>> = given.iter().map(|c| Cow::Borrowed(c.as_ref().unwrap_or(&empty))).collect();
+            self.value_with(&all, params)
+        })
+    }
+
+    fn value_with(&self, values: &[Cow<'_, Column>], params: &[f64]) -> Column {
+        match self {
+            Self::Const(c) => Column::Same(*c),
+            Self::Param(k) => Column::Same(params[*k]),
+            Self::Input(_) => unreachable!("inputs are given"),
+            Self::Add(a, b) => values[*a].zip(&values[*b], |a, b| a + b),
+            Self::Sub(a, b) => values[*a].zip(&values[*b], |a, b| a - b),
+            Self::Mul(a, b) => values[*a].zip(&values[*b], |a, b| a * b),
+            Self::Div(a, b) => values[*a].zip(&values[*b], |a, b| a / b),
+            Self::Pow(_, b, log) => values[*log].zip(&values[*b], power_of_log),
+            Self::Unary(f, x) => values[*x].map(|x| f.apply(x)),
+        }
+    }
+}
+
+/// `exp(p l)`, where `l = -∞` stands for the logarithm of zero.
+fn power_of_log(l: f64, p: f64) -> f64 {
+    libm::exp(p * l)
+}
+
 /// Derivative of one operation with respect to parameter `k`; `None` is zero.
-fn tangent(op: &Op, k: usize, values: &[Column], value: &Column, tangents: &[Vec<Option<Column>>]) -> Option<Column> {
+fn tangent(
+    op: &Op,
+    k: usize,
+    values: &[Cow<'_, Column>],
+    value: &Column,
+    tangents: &[Vec<Option<Column>>],
+) -> Option<Column> {
     let of = |i: usize| tangents[i][k].as_ref();
     let scaled = |t: &Column, by: &Column| t.zip(by, |t, c| t * c);
     match op {
@@ -142,15 +215,12 @@ fn tangent(op: &Op, k: usize, values: &[Column], value: &Column, tangents: &[Vec
             of(*a).map(|t| t.zip(&values[*b], |t, b| t / b)),
             of(*b).map(|t| t.zip(value, |t, y| -t * y).zip(&values[*b], |n, b| n / b)),
         ),
-        Op::Pow(a, b) => sum(
+        Op::Pow(a, b, log) => sum(
             of(*a).map(|t| {
-                let slope = values[*a].zip(&values[*b], |x, p| p * power(x, p - 1.0) * sign(x));
-                scaled(t, &slope)
+                let ratio = value.zip(&values[*a], |y, x| if x == 0.0 { 0.0 } else { y / x });
+                scaled(t, &ratio.zip(&values[*b], |r, p| r * p))
             }),
-            of(*b).map(|t| {
-                let slope = values[*a].zip(value, |x, y| if x == 0.0 { 0.0 } else { y * libm::log(x.abs()) });
-                scaled(t, &slope)
-            }),
+            of(*b).map(|t| scaled(t, &value.zip(&values[*log], |y, l| if y == 0.0 { 0.0 } else { y * l }))),
         ),
         Op::Unary(f, x) => of(*x).map(|t| scaled(t, &values[*x].zip(value, |x, y| f.slope(x, y)))),
     }
@@ -173,7 +243,7 @@ pub fn input_slope(expression: &Expr, input: usize, channels: &[&[f64]], rows: u
         Expr::Input(i) if *i == input => Expr::Input(*i) + Expr::Param(0),
         other => other.clone(),
     });
-    let mut columns = Tape::new(&[shifted], 1).run(channels, rows, &[0.0], true);
+    let mut columns = Tape::new(&[shifted], 1, channels, rows).run(&[0.0], true);
     columns.slopes.swap_remove(0).swap_remove(0).unwrap_or_else(|| vec![0.0; rows])
 }
 
@@ -199,7 +269,7 @@ mod tests {
         ) {
             let e = everything();
             let (vs, qs) = ([v], [q]);
-            let columns = Tape::new(std::slice::from_ref(&e), 4).run(&[&vs, &qs], 1, &p, true);
+            let columns = Tape::new(std::slice::from_ref(&e), 4, &[&vs, &qs], 1).run(&p, true);
             prop_assert!((columns.values[0][0] - e.value(&[v, q], &p)).abs() < 1e-12);
             for k in 0..4 {
                 let step = 1e-6;

@@ -7,12 +7,21 @@ use super::structure::Nonlinear;
 use super::tape::Tape;
 
 /// Two-sided 95 % point of the normal distribution.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
+pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// A non-linear constant whose standard error exceeds this share of it may have other optima that are nearly as good.
+const VAGUE: f64 = 0.15;
+/// Values of such a constant that are tried over its range.
+const TRIED: usize = 24;
+
+/// How hard the refits of an interval try.
+const REFIT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
 
 /// What the data say about the constants of a law, in the order of [`Fit::params`].
 #[derive(Clone, Debug)]
 pub struct Uncertainty {
-    /// Standard errors from the linearised covariance; infinite where the data say nothing, zero where held.
+    /// Standard errors: from the linearised covariance or the wider side of the profile interval, whichever is larger;
+    /// infinite where the data say nothing, zero where held.
     pub standard_errors: Vec<f64>,
     /// 95 % intervals.
     pub intervals: Vec<[f64; 2]>,
@@ -44,7 +53,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let free: Vec<usize> = (0..count).filter(|&k| names.get(k).is_none_or(|n| !held.contains(n))).collect();
     let rows = problem.rows();
     let template = fit.structure.template(problem.extents().layout());
-    let mut columns = Tape::new(&[template], count).run(problem.channels(), rows, &fit.params, true);
+    let mut columns = Tape::new(&[template], count, problem.channels(), rows).run(&fit.params, true);
     let slopes = columns.slopes.swap_remove(0);
     let nuisance = &problem.data().nuisance;
     let jacobian: Vec<&[f64]> = nuisance
@@ -70,16 +79,28 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         .map(|&(i, j, r)| (free[i - nuisance.len()], free[j - nuisance.len()], r))
         .collect();
     let exact = noise <= EXACT * (problem.total() / rows as f64).sqrt();
-    let intervals = (0..count)
+    let profiled = kind == Interval::Profile && !exact;
+    let mut intervals: Vec<[f64; 2]> = (0..count)
         .map(|k| {
             let se = standard_errors[k];
-            if !free.contains(&k) || exact || kind == Interval::Linearised {
-                [fit.params[k] - NORMAL_95 * se, fit.params[k] + NORMAL_95 * se]
-            } else {
+            if profiled && free.contains(&k) {
                 profile(problem, fit, held, k, se, spread)
+            } else {
+                [fit.params[k] - NORMAL_95 * se, fit.params[k] + NORMAL_95 * se]
             }
         })
         .collect();
+    if profiled {
+        let vague = |k: &usize| *k < names.len() && standard_errors[*k] > VAGUE * fit.params[*k].abs();
+        for k in free.iter().copied().filter(vague) {
+            other_optima(problem, fit, held, k, spread, &mut intervals);
+        }
+        for &k in &free {
+            let [low, high] = intervals[k];
+            let widest = (fit.params[k] - low).max(high - fit.params[k]) / NORMAL_95;
+            standard_errors[k] = standard_errors[k].max(widest);
+        }
+    }
     let coefficients = problem.nuisance_coefficients(fit);
     let nuisance = coefficients.into_iter().zip(&linear.errors).map(|(c, e)| (c, spread * e)).collect();
     Uncertainty {
@@ -137,6 +158,42 @@ fn linearised(jacobian: &[&[f64]], rows: usize) -> Linearised {
     Linearised { errors, entangled, condition: if smallest > 0.0 { largest / smallest } else { f64::INFINITY } }
 }
 
+/// Widens the intervals by every fit over the range of non-linear constant `k` that the data cannot tell from the best one.
+fn other_optima(
+    problem: &Problem<'_>,
+    fit: &Fit,
+    held: &[Nonlinear],
+    k: usize,
+    spread: f64,
+    intervals: &mut [[f64; 2]],
+) {
+    let names = fit.structure.nonlinear();
+    let range = &problem.ranges(&fit.structure)[k];
+    let mut kept = held.to_vec();
+    kept.push(names[k]);
+    let mut psi = fit.params[..names.len()].to_vec();
+    for i in 0..TRIED {
+        let share = (i as f64 + 0.5) / TRIED as f64;
+        psi[k] = if range.logarithmic {
+            range.lower * libm::pow(range.upper / range.lower, share)
+        } else {
+            range.lower + share * (range.upper - range.lower)
+        };
+        let tried = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient: None }, REFIT);
+        let room = NORMAL_95 * NORMAL_95 - (tried.rss - fit.rss) / (spread * spread);
+        if room <= 0.0 {
+            continue;
+        }
+        let reach = room.sqrt() * spread;
+        let errors = problem.coefficient_errors(&tried);
+        for (j, interval) in intervals.iter_mut().enumerate() {
+            let half = if j < names.len() { 0.0 } else { reach * errors[j - names.len()] };
+            interval[0] = interval[0].min(tried.params[j] - half);
+            interval[1] = interval[1].max(tried.params[j] + half);
+        }
+    }
+}
+
 /// Profile-likelihood interval of constant `k`: where the sum of squares, all else refitted, has risen by 1.96² variances.
 fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f64, spread: f64) -> [f64; 2] {
     let names = fit.structure.nonlinear();
@@ -153,12 +210,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             }
             None => Some((k - names.len(), value)),
         };
-        problem.fit_from(
-            &fit.structure,
-            &psi,
-            Held { nonlinear: &kept, coefficient },
-            Effort { iterations: 30, tolerance: 1e-7 },
-        )
+        problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient }, REFIT)
     };
     let end = |direction: f64| -> f64 {
         let first = if se.is_finite() && se > 0.0 { NORMAL_95 * se } else { best.abs().max(1e-3) };
@@ -166,7 +218,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
         let mut inside = 0.0;
         let mut outside = f64::INFINITY;
         let mut psi = fit.params[..names.len()].to_vec();
-        for _ in 0..14 {
+        for _ in 0..10 {
             let mut value = best + direction * distance;
             if let Some((lower, upper)) = limits {
                 // Half-way in the ratio to a bound that the linearised step would pass.
@@ -189,7 +241,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             } else {
                 outside = distance;
             }
-            if (rise - 1.0).abs() < 0.01 {
+            if (rise - 1.0).abs() < 0.02 {
                 return best + direction * distance;
             }
             let guess = distance / rise.max(1e-3);

@@ -50,6 +50,8 @@ pub struct JointState {
 /// Motion of another joint.
 #[derive(Clone, Debug)]
 pub struct OtherJoint {
+    /// Position in rad or m.
+    pub position: Vec<f64>,
     /// Velocity in rad/s or m/s.
     pub velocity: Vec<f64>,
     /// Acceleration in rad/s2 or m/s2.

@@ -13,6 +13,8 @@ unsafe extern "C" {
     // Defined in `memory.x`; only their addresses mean anything.
     static _image_start: u8;
     static _image_end: u8;
+    // Defined by the start-up crates: the end of the static data.
+    static __sheap: u8;
 }
 
 #[panic_handler]
@@ -30,25 +32,23 @@ pub fn flash() -> &'static [u8] {
     unsafe { core::slice::from_raw_parts(start, bytes) }
 }
 
-/// Bytes below the stack pointer that [`stack_depth`] watches.
-const PAINTED_BYTES: usize = 4096;
 const PAINT: u32 = 0xA5C3_3C5A;
 
-/// Calls `work` and returns its result with the bytes of stack that it used, at most [`PAINTED_BYTES`].
+/// Calls `work` and returns its result with the bytes of stack that it used.
 #[inline(never)]
 pub(crate) fn stack_depth<R>(work: impl FnOnce() -> R) -> (R, u32) {
     let top = stack_pointer();
-    let bottom = top - PAINTED_BYTES;
+    let bottom = (&raw const __sheap as usize).next_multiple_of(4);
     for address in (bottom..top).step_by(4) {
-        // SAFETY: below the stack pointer and above the end of the data (`memory.x` leaves more than that), no
-        // interrupt is enabled, so nobody owns these words. Volatile, so that it does not become a call.
+        // SAFETY: above the static data and below the stack pointer; no interrupt is enabled and there is no heap, so
+        // nobody owns these words. Volatile, so that it does not become a call.
         unsafe { ptr::with_exposed_provenance_mut::<u32>(address).write_volatile(PAINT) };
     }
     let result = work();
     // SAFETY: as above, reading.
     let is_paint = |address: &usize| unsafe { ptr::with_exposed_provenance::<u32>(*address).read_volatile() } == PAINT;
     let untouched = (bottom..top).step_by(4).take_while(is_paint).count();
-    (result, (PAINTED_BYTES - 4 * untouched) as u32)
+    (result, top.saturating_sub(bottom + 4 * untouched) as u32)
 }
 
 #[inline(always)]

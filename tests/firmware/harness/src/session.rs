@@ -47,31 +47,39 @@ fn session<E: Evaluator>() -> Option<()> {
     if !set_floating_point_control(request.floating_point_control) {
         return refuse(&mut answers, BAD_REQUEST);
     }
-    let (decoded, decode_ticks, decode_stack) = ticks_and_stack(|| E::decode(image));
-    let mut evaluator = match decoded {
-        Ok(evaluator) if evaluator.inputs() == request.inputs => evaluator,
-        Ok(_) => return refuse(&mut answers, BAD_REQUEST),
-        Err(reason) => return refuse(&mut answers, reason),
-    };
-    let (_, empty_ticks) = ticks(empty_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
-    let (_, calibration_ticks) = ticks(calibration_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
     let call: Call<E> = core::hint::black_box(evaluate::<E>);
-    let (_, evaluate_stack) = stack_depth(|| call(&mut evaluator, &[0.5; MAX_INPUTS]));
-    let header: [u32; ANSWER_WORDS] =
-        [MAGIC, 0, empty_ticks, calibration_ticks, decode_ticks, decode_stack, evaluate_stack, size_of::<E>() as u32];
-    write_words(&mut answers, &header)?;
-    // State is part of an evaluation: the rows start from a fresh evaluator.
-    let mut evaluator = E::decode(image).ok()?;
-    evaluate_rows(&request, &mut evaluator, call, &mut requests, &mut answers)
+    match measured::<E>(image, request.inputs, call) {
+        Ok(header) => write_words(&mut answers, &header)?,
+        Err(status) => return refuse(&mut answers, status),
+    }
+    evaluate_rows(&request, image, call, &mut requests, &mut answers)
 }
 
+/// The header of the answer to a request for rows of `inputs` inputs, or the status of a refusal.
+///
+/// Decodes for itself: a small target has room for one evaluator at a time, and an evaluation may leave state behind.
+#[inline(never)]
+fn measured<E: Evaluator>(image: &'static [u8], inputs: usize, call: Call<E>) -> Result<[u32; ANSWER_WORDS], u32> {
+    let (decode_ticks, decode_stack) = ticks_and_stack(|| E::decode(image));
+    let mut evaluator = E::decode(image)?;
+    if evaluator.inputs() != inputs {
+        return Err(BAD_REQUEST);
+    }
+    let (_, empty_ticks) = ticks(empty_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
+    let (_, calibration_ticks) = ticks(calibration_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
+    let (_, evaluate_stack) = stack_depth(|| call(&mut evaluator, &[0.5; MAX_INPUTS]));
+    Ok([MAGIC, 0, empty_ticks, calibration_ticks, decode_ticks, decode_stack, evaluate_stack, size_of::<E>() as u32])
+}
+
+#[inline(never)]
 fn evaluate_rows<E: Evaluator>(
     request: &Request,
-    evaluator: &mut E,
+    image: &'static [u8],
     call: Call<E>,
     requests: &mut File,
     answers: &mut File,
 ) -> Option<()> {
+    let mut evaluator = E::decode(image).ok()?;
     // The compiler then knows that the chunks below are not empty.
     let inputs_a_row = request.inputs.max(1);
     let mut left = request.rows;
@@ -86,7 +94,7 @@ fn evaluate_rows<E: Evaluator>(
             for (value, bits) in row.iter_mut().zip(bits) {
                 *value = f32::from_le_bytes(*bits);
             }
-            let (output, ticks) = ticks(call, evaluator, &row);
+            let (output, ticks) = ticks(call, &mut evaluator, &row);
             *outputs.get_mut(written)? = output.to_bits();
             written += 1;
             if request.mode == COUNT {

@@ -1,11 +1,12 @@
-//! The evaluator that every binary of this firmware runs: the friction image in flash, decoded once, then evaluated.
+//! The evaluators of this firmware's binaries: the friction image in flash, decoded once, then evaluated.
 #![no_std]
 #![forbid(unsafe_code)]
 
 use frikan_firmware_harness::{Evaluator, Row};
 use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::integer_table::evaluate_integer;
 use frikan_shared::image::{ImageError, decode};
-use frikan_shared::model::Model;
+use frikan_shared::model::{Law, Model};
 
 /// Cells for which a drive has room.
 pub const CELLS: usize = 128;
@@ -28,6 +29,31 @@ impl Evaluator for Drive {
         evaluate(&self.model, row)
     }
 }
+
+/// A drive without floating-point unit: input and output are counts, in the bits of the row and of the answer.
+pub struct IntegerDrive {
+    model: Model<CELLS>,
+}
+
+impl Evaluator for IntegerDrive {
+    fn decode(image: &'static [u8]) -> Result<Self, u32> {
+        let model = decode(image).map_err(reason)?.model;
+        if matches!(model.law, Law::IntegerTable(_)) { Ok(Self { model }) } else { Err(NOT_AN_INTEGER_TABLE) }
+    }
+
+    fn inputs(&self) -> usize {
+        self.model.inputs.len()
+    }
+
+    fn evaluate(&mut self, row: &Row) -> f32 {
+        let Law::IntegerTable(table) = &self.model.law else { return 0.0 };
+        let [steps, ..] = *row;
+        f32::from_bits(evaluate_integer(table, &self.model.cells, steps.to_bits() as i32) as u32)
+    }
+}
+
+/// The refusal of an image whose law is of another kind.
+const NOT_AN_INTEGER_TABLE: u32 = 10;
 
 /// The number by which the host knows a refusal.
 fn reason(error: ImageError) -> u32 {

@@ -26,11 +26,7 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
     for row in &outcome.relevance {
         let mark = if row.picked { "used" } else { "" };
         let (explained, added) = (100.0 * row.explained, 100.0 * row.added);
-        writeln!(
-            out,
-            "  {:<20} {:>+11.4} {explained:>8.1} % {added:>14.1} %  {mark}",
-            row.input, row.correlation
-        )?;
+        writeln!(out, "  {:<20} {:>+11.4} {explained:>8.1} % {added:>14.1} %  {mark}", row.input, row.correlation)?;
     }
     let network = &outcome.network;
     let edges = |graph: &crate::kan::GraphSummary| graph.edges.iter().filter(|edge| edge.active).count();

@@ -1,0 +1,11 @@
+//! C with a linear table.
+#![no_std]
+#![no_main]
+
+use frikan_firmware_harness::{entry, serve};
+use frikan_firmware_peers::{Peer, c::LinearTableC};
+
+#[entry]
+fn main() -> ! {
+    serve::<Peer<LinearTableC>>()
+}

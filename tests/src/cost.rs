@@ -1,0 +1,45 @@
+//! What a model costs on a target: instructions, flash, RAM, stack, decoding.
+
+use frikan_trainer::emulator::{Answer, Emulator, Mode, Request};
+use frikan_trainer::error::Result;
+
+use crate::models::{self, TestModel};
+use crate::vectors::{counts, one_input, space_filling};
+
+/// Rows that are counted; the special values are among them.
+pub const COUNTED_ROWS: usize = 4096;
+
+/// Rows with which a model of the tests is counted: sweep, special values and random bits of a one-input model, a
+/// space-filling set of others.
+#[must_use]
+pub fn counted_rows(model: &TestModel) -> Vec<f32> {
+    match model.inputs.as_slice() {
+        [input] => one_input(COUNTED_ROWS, input.high, 2),
+        inputs => space_filling(COUNTED_ROWS, &inputs.iter().map(|input| input.high).collect::<Vec<_>>()),
+    }
+}
+
+/// Counts the instructions of every one of [`counted_rows`].
+///
+/// # Errors
+/// Those of [`Emulator::run`].
+pub fn count(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
+    count_rows(emulator, &models::image(model), &counted_rows(model), model.inputs.len())
+}
+
+/// Counts the instructions of an integer table, whose inputs are counts.
+///
+/// # Errors
+/// Those of [`Emulator::run`].
+pub fn count_integer(emulator: &Emulator, model: &TestModel, reach: i32) -> Result<Answer> {
+    let rows: Vec<f32> = counts(COUNTED_ROWS, reach, 2).into_iter().map(|count| f32::from_bits(count as u32)).collect();
+    count_rows(emulator, &models::image(model), &rows, 1)
+}
+
+/// Counts the instructions of every row.
+///
+/// # Errors
+/// Those of [`Emulator::run`].
+pub fn count_rows(emulator: &Emulator, image: &[u8], values: &[f32], inputs: usize) -> Result<Answer> {
+    emulator.run(&Request { image, values, inputs, mode: Mode::Count, floating_point_control: 0 })
+}

@@ -1,0 +1,67 @@
+//! Instructions of an evaluation on the emulated targets: the same for every input, and within the budget.
+
+use frikan_tests::cost::{count, count_integer};
+use frikan_tests::models;
+use frikan_trainer::emulator::{Emulator, Firmware};
+
+/// Every kind of model, constant; those named in `budgets` within their budget.
+fn every_kind_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
+    let emulator = Emulator::new(target).unwrap();
+    let range = |model| count(&emulator, &model).unwrap().instruction_range().unwrap();
+    let counted: Vec<_> = models::every_kind().into_iter().map(|(name, model)| (name, range(model))).collect();
+    for (name, (fewest, most)) in &counted {
+        assert_eq!(fewest, most, "{name} on {target} is not constant: {counted:?}");
+    }
+    for (name, budget) in budgets {
+        let (_, (_, most)) = counted.iter().find(|(counted, _)| counted == name).unwrap();
+        assert!(most <= budget, "{name} on {target} takes {most} instructions, {budget} at most: {counted:?}");
+    }
+}
+
+fn integer_table_is_constant_on(target: &str, budget: u32) {
+    let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-integer").unwrap();
+    let answer = count_integer(&emulator, &models::integer_table(), 1 << 17).unwrap();
+    let (fewest, most) = answer.instruction_range().unwrap();
+    assert_eq!(fewest, most, "the integer table on {target} is not constant");
+    assert!(most <= budget, "the integer table on {target} takes {most} instructions, {budget} at most");
+}
+
+#[test]
+fn every_kind_is_constant_on_cortex_m4f() {
+    let budgets =
+        [("symmetric table", 45), ("sided table", 45), ("network [1,5,1]", 160), ("Stribeck expression", 250)];
+    every_kind_is_constant_on("cortex-m4f", &budgets);
+}
+
+#[test]
+fn every_kind_is_constant_on_cortex_m7() {
+    every_kind_is_constant_on("cortex-m7", &[]);
+}
+
+#[test]
+fn every_kind_is_constant_on_cortex_m33() {
+    every_kind_is_constant_on("cortex-m33", &[]);
+}
+
+#[test]
+fn the_integer_table_is_constant_on_cortex_m0plus() {
+    integer_table_is_constant_on("cortex-m0plus", 50);
+}
+
+#[test]
+fn the_integer_table_is_constant_on_riscv32imac() {
+    integer_table_is_constant_on("riscv32imac", 45);
+}
+
+#[test]
+fn the_integer_table_is_constant_on_riscv32imc() {
+    integer_table_is_constant_on("riscv32imc", 45);
+}
+
+/// Without a floating-point unit the float table does take its time by the input: the count sees the difference.
+#[test]
+fn the_count_sees_a_time_that_varies() {
+    let emulator = Emulator::new("cortex-m0plus").unwrap();
+    let (fewest, most) = count(&emulator, &models::symmetric_table()).unwrap().instruction_range().unwrap();
+    assert!(fewest < most && fewest > 50, "{fewest} to {most}");
+}

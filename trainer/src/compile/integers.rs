@@ -1,0 +1,184 @@
+//! Functions of one variable as an all-integer table, with a certificate of its own.
+//!
+//! The cubic of a cell is rounded to whole coefficients and certified as it then is, in exact arithmetic; to that come the three flooring shifts
+//! of the evaluation, each at most one output step, and the rounding of the input to a step.
+
+use frikan_shared::integer_table::{IntegerShape, IntegerTable, MAX_COEFFICIENT, MAX_SHIFT};
+use frikan_shared::table::{Cell, Symmetry};
+
+use super::cells::{Certificate, Cubic, bound_cell, fit_cell, sampled_error};
+use super::formula::{Curve, Parity};
+use super::tables::TableError;
+
+/// The reach is this many input steps, as a power of two.
+const REACH_BITS: u8 = 18;
+
+/// Most cells of a side that are tried.
+const MOST_CELLS: u32 = 512;
+
+/// Output steps by which flooring shifts can lower a value.
+const FLOORING_STEPS: f64 = 3.0;
+
+/// Output steps that partial sums leave unused, for the rounding of coefficients.
+const SPARE_STEPS: i32 = 8;
+
+/// An integer table with its cells and its certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompiledIntegerTable {
+    /// The layout; its first cell is the one asked for.
+    pub table: IntegerTable,
+    /// Cells in the order of the pool.
+    pub cells: Vec<Cell>,
+    /// Worst cell, in the unit of the output.
+    pub certificate: Certificate,
+}
+
+/// Compiles `curve` on `[low, high]` into the smallest integer table whose certified error is at most `bound`, both in the unit of
+/// the output. The table reaches to the larger end on both sides; between the smaller end and there it continues the curve.
+///
+/// # Errors
+/// [`TableError::Range`], or [`TableError::Bound`] where no table of at most 512 cells a side will do.
+pub fn compile_integer_table(
+    curve: &dyn Curve,
+    low: f64,
+    high: f64,
+    bound: f64,
+    first_cell: u16,
+) -> Result<CompiledIntegerTable, TableError> {
+    if !(low < high && low.is_finite() && high.is_finite()) {
+        return Err(TableError::Range { low, high });
+    }
+    let reach = low.abs().max(high.abs());
+    let symmetry = match curve.parity() {
+        Parity::Odd => Symmetry::Odd,
+        Parity::Even => Symmetry::Even,
+        Parity::Neither => Symmetry::Sided,
+    };
+    let mut shapes = Vec::new();
+    for split_shift in 0..REACH_BITS {
+        for outer_shift in 0..=split_shift.min(MAX_SHIFT) {
+            for inner_shift in 0..=outer_shift {
+                shapes.push(IntegerShape {
+                    first_cell,
+                    inner_shift,
+                    outer_shift,
+                    split_shift,
+                    symmetry,
+                    reach: 1 << REACH_BITS,
+                    input_step: (reach / f64::from(1u32 << REACH_BITS)) as f32,
+                    output_step: 1.0,
+                });
+            }
+        }
+    }
+    let sides = if symmetry == Symmetry::Sided { 2 } else { 1 };
+    shapes.retain(|shape| IntegerTable::new(*shape).cells() <= sides * MOST_CELLS);
+    shapes.sort_by_key(|shape| (IntegerTable::new(*shape).cells(), shape.split_shift, shape.outer_shift));
+    shapes.into_iter().find_map(|shape| fill(curve, shape, bound)).ok_or(TableError::Bound { bound })
+}
+
+/// Ends of the cells, in the order of the pool, in the unit of the input.
+fn edges(shape: &IntegerShape) -> Vec<(f64, f64)> {
+    let split = 1u32 << shape.split_shift;
+    let inner = (0..split).step_by(1 << shape.inner_shift).map(|step| (step, step + (1 << shape.inner_shift)));
+    let outer =
+        (split..shape.reach).step_by(1 << shape.outer_shift).map(|step| (step, step + (1 << shape.outer_shift)));
+    let unit = f64::from(shape.input_step);
+    let side: Vec<(f64, f64)> =
+        inner.chain(outer).map(|(near, far)| (f64::from(near) * unit, f64::from(far) * unit)).collect();
+    let mirrored = side.iter().map(|&(near, far)| (-near, -far));
+    match shape.symmetry {
+        Symmetry::Sided => side.iter().copied().chain(mirrored).collect(),
+        Symmetry::Odd | Symmetry::Even => side,
+    }
+}
+
+fn fill(curve: &dyn Curve, shape: IntegerShape, bound: f64) -> Option<CompiledIntegerTable> {
+    let edges = edges(&shape);
+    let mut cubics: Vec<Cubic> = Vec::with_capacity(edges.len());
+    for &(near, far) in &edges {
+        let cubic = fit_cell(curve, near, far);
+        let acceptable = sampled_error(curve, near, far, &cubic) <= bound;
+        if !acceptable {
+            return None;
+        }
+        cubics.push(cubic);
+    }
+    // The finest output step at which every partial sum keeps to its 17 bits and every value to its 30.
+    let room = f64::from(2 * MAX_COEFFICIENT - SPARE_STEPS);
+    let values = f64::from(1u32 << 29);
+    let output_step = cubics.iter().fold(1.0e-9f64, |step, [c0, c1, c2, c3]| {
+        step.max((c1.abs() + c2.abs() + c3.abs()) / room).max(c0.abs() / values)
+    });
+    let output_step = (output_step as f32).next_up();
+    let unit = f64::from(output_step);
+    let shape = IntegerShape { output_step, ..shape };
+
+    let mut worst = Certificate { approximation: 0.0, rounding: 0.0 };
+    let mut cells = Vec::with_capacity(cubics.len());
+    for (&(near, far), cubic) in edges.iter().zip(&cubics) {
+        let whole = cubic.map(|c| (c / unit).round());
+        let rounded = whole.map(|c| c * unit);
+        let coordinate_error = f64::from(shape.input_step) / (far - near).abs();
+        let (approximation, moved) = bound_cell(curve, near, far, &rounded, coordinate_error);
+        let certificate = Certificate { approximation, rounding: moved + FLOORING_STEPS * unit };
+        if certificate.total() > worst.total() {
+            worst = certificate;
+        }
+        cells.push(Cell::from_integers(whole.map(|c| c as i32)));
+    }
+    (worst.total() <= bound).then(|| CompiledIntegerTable {
+        table: IntegerTable::new(shape),
+        cells,
+        certificate: worst,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::reference::integer_value;
+    use frikan_runtime::integer_table::{evaluate_integer, evaluate_steps};
+    use frikan_shared::pool::Pool;
+
+    #[test]
+    fn the_law_of_the_paper_fits_a_thousandth_of_its_range_in_integers() {
+        let sided = stribeck_law().join(Operator::Add, Formula::Input(0).apply(Function::Cos));
+        for law in [stribeck_law(), sided] {
+            let range = 54.0;
+            let compiled = compile_integer_table(&law, -2.0, 2.0, 1.0e-3 * range, 0).unwrap();
+            println!(
+                "{:?}: {} cells, certified {:.4} % of range",
+                compiled.table.shape(),
+                compiled.cells.len(),
+                100.0 * compiled.certificate.total() / range
+            );
+            let pool = Pool::<128>::from_slice(&compiled.cells).unwrap();
+            for i in -300_000..=300_000 {
+                let v = i as f32 / 100_000.0;
+                let value = f64::from(evaluate_steps(&compiled.table, &pool, v));
+                let want = law.value(f64::from(v.clamp(-2.0, 2.0)));
+                assert!((value - want).abs() <= compiled.certificate.total(), "{v}: {value} {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn integers_agree_exactly() {
+        let sided = stribeck_law().join(Operator::Add, Formula::Constant(0.3));
+        for law in [stribeck_law(), sided] {
+            let compiled = compile_integer_table(&law, -2.0, 2.0, 5.0e-2, 0).unwrap();
+            let shape = compiled.table.shape();
+            let pool = Pool::<128>::from_slice(&compiled.cells).unwrap();
+            let around_the_ends = [i32::MIN, i32::MIN + 1, i32::MAX, -1, 0, 1];
+            for steps in (-300_000..300_000).chain((i32::MIN..i32::MAX).step_by(40_009)).chain(around_the_ends) {
+                assert_eq!(
+                    evaluate_integer(&compiled.table, &pool, steps),
+                    integer_value(&shape, &compiled.cells, steps),
+                    "{steps}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! A fitted model image evaluated at the recorded states, in the arithmetic of the drive, with what its parameters may move.
+
+use super::base::{BaseKind, friction_basis};
+use super::reference::{Reference, tabulated_velocities};
+use crate::error::{Error, Result, codes};
+use crate::physics::JointState;
+use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
+use frikan_shared::expression::Operation;
+use frikan_shared::model::{Input, Law, Model};
+use frikan_shared::table::Symmetry;
+use frikan_shared::units::Quantity;
+
+/// Relative step of the central differences; far above the roundoff of `f32`.
+const STEP: f64 = 1e-2;
+
+/// The model at the states of a recording. `given` is a rigid-body torque that the recording carries.
+///
+/// # Errors
+/// `FRK-D009` when the model reads a channel that the recording does not have.
+pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: Option<&[f64]>) -> Result<Reference> {
+    for input in &model.inputs {
+        let missing = match input.quantity {
+            Quantity::Velocity | Quantity::Position | Quantity::Acceleration => false,
+            Quantity::Load => state.load.is_none(),
+            Quantity::Temperature => state.temperature.is_none(),
+            Quantity::Other(_) => true,
+        };
+        if missing {
+            let name = input.quantity.name();
+            let message = format!("the model reads `{name}`, which the recording does not have");
+            return Err(Error::new(&codes::MISSING_COLUMN, message).in_column(name));
+        }
+    }
+    let rigid_body = state.map(|i| {
+        let given = given.map_or(0.0, |torque| torque[i] as f32);
+        f64::from(rigid_body_torque(&model.rigid_body, state.position[i] as f32, state.acceleration[i] as f32, given))
+    });
+    let friction = friction(model, state);
+    Ok(Reference {
+        torque: friction.iter().zip(&rigid_body).map(|(f, b)| f + b).collect(),
+        rigid_body,
+        jacobian: jacobian(model, state),
+        friction: curve(model, state),
+    })
+}
+
+fn measurement(state: &JointState, i: usize) -> Measurement {
+    let channel = |series: &Option<Vec<f64>>| series.as_ref().map_or(0.0, |values| values[i] as f32);
+    Measurement {
+        velocity: state.velocity[i] as f32,
+        position: state.position[i] as f32,
+        acceleration: state.acceleration[i] as f32,
+        load: channel(&state.load),
+        temperature: channel(&state.temperature),
+        ..Measurement::default()
+    }
+}
+
+/// Law and effects over the recording; memories restart at each segment.
+fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<f64> {
+    let mut friction = vec![0.0; state.len()];
+    for segment in &state.segments {
+        let mut memory = FrictionState::new(&model.effects);
+        for i in segment.clone() {
+            let dt = if i > segment.start { state.period as f32 } else { 0.0 };
+            friction[i] = f64::from(memory.step(model, &measurement(state, i), dt).torque);
+        }
+    }
+    friction
+}
+
+/// The static law over velocity, other channels at their mean.
+fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f64, f64)> {
+    let mean = |series: &[f64]| (series.iter().sum::<f64>() / series.len().max(1) as f64) as f32;
+    let middle = Measurement {
+        position: mean(&state.position),
+        load: state.load.as_deref().map_or(0.0, mean),
+        temperature: state.temperature.as_deref().map_or(0.0, mean),
+        ..Measurement::default()
+    };
+    tabulated_velocities(1.2 * state.top_speed())
+        .map(|velocity| {
+            let mut measurement = middle;
+            measurement.velocity = velocity as f32;
+            (velocity, f64::from(evaluate(model, &measurement.channels(&model.inputs))))
+        })
+        .collect()
+}
+
+/// What may move when an effect is added: every constant of a formula, local hats over a table of velocity, Coulomb and
+/// viscous friction beside anything else.
+fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<Vec<f64>> {
+    let by_velocity = |input: Option<&Input>| input.is_some_and(|input| input.quantity == Quantity::Velocity);
+    match &model.law {
+        Law::Expression(program) => (0..program.operations.len())
+            .filter_map(|place| {
+                let constant = constant(program.operations[place])?;
+                let step = STEP * f64::from(constant).abs().max(1e-3);
+                let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
+                let (up, down) = (shifted(step)?, shifted(-step)?);
+                Some(up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect())
+            })
+            .filter(|column: &Vec<f64>| column.iter().all(|v| v.is_finite()) && column.iter().any(|v| *v != 0.0))
+            .collect(),
+        Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
+            let odd = is_odd(&model.law);
+            let top = state.top_speed();
+            let rows: Vec<Vec<f64>> =
+                state.velocity.iter().map(|v| hats(*v, state.sign_velocity, top, odd)).collect();
+            (0..hats(0.0, 1.0, 1.0, odd).len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
+        }
+        _ => vec![state.sign.clone(), state.velocity.clone()],
+    }
+}
+
+/// Local hat functions of a table of velocity: odd ones, and even ones where the table is not odd.
+pub(crate) fn hats(velocity: f64, sign_velocity: f64, top_speed: f64, odd: bool) -> Vec<f64> {
+    let mut hats = friction_basis(BaseKind::Spline, velocity, sign_velocity, top_speed);
+    if !odd {
+        let even: Vec<f64> = hats.iter().map(|hat| hat * (velocity / sign_velocity).tanh()).collect();
+        hats.extend(even);
+    }
+    hats
+}
+
+/// Whether a law is odd in velocity by its layout.
+pub(crate) fn is_odd(law: &Law) -> bool {
+    match law {
+        Law::Geometric(layout) => layout.shape().symmetry == Symmetry::Odd,
+        Law::IntegerTable(_) => true,
+        _ => false,
+    }
+}
+
+fn constant(operation: Operation) -> Option<f32> {
+    match operation {
+        Operation::ScaledInput(_, value)
+        | Operation::Constant(value)
+        | Operation::Scale(value)
+        | Operation::Offset(value)
+        | Operation::PowerOf(value) => Some(value),
+        _ => None,
+    }
+}
+
+/// The model with one constant of its formula moved; `None` where that is no model.
+pub(crate) fn moved<const CELLS: usize>(mut model: Model<CELLS>, place: usize, by: f64) -> Option<Model<CELLS>> {
+    let Law::Expression(program) = &mut model.law else { return None };
+    let operation = program.operations.get_mut(place)?;
+    let add = |value: f32| (f64::from(value) + by) as f32;
+    *operation = match *operation {
+        Operation::ScaledInput(input, value) => Operation::ScaledInput(input, add(value)),
+        Operation::Constant(value) => Operation::Constant(add(value)),
+        Operation::Scale(value) => Operation::Scale(add(value)),
+        Operation::Offset(value) => Operation::Offset(add(value)),
+        Operation::PowerOf(value) => Operation::PowerOf(add(value)),
+        other => other,
+    };
+    model.validate().ok()?;
+    Some(model)
+}

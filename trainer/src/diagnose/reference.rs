@@ -1,0 +1,44 @@
+//! A law from elsewhere (a simulation, a fitted model) evaluated at the recorded states, as the base of a comparison.
+
+use super::prepare::{Lock, Prepared};
+use super::signals::Signals;
+use crate::physics::JointState;
+
+/// A law at the states of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct Reference {
+    /// Whole torque, one value a sample.
+    pub torque: Vec<f64>,
+    /// Its rigid-body part.
+    pub rigid_body: Vec<f64>,
+    /// Change of the torque with each parameter that may move.
+    pub jacobian: Vec<Vec<f64>>,
+    /// Its friction as pairs (velocity, torque) in ascending velocity.
+    pub friction: Vec<(f64, f64)>,
+}
+
+impl Signals {
+    /// The states at which a reference is evaluated: those behind the filter that the recording asks for.
+    #[must_use]
+    pub fn states(&self) -> JointState {
+        Prepared::new(self, Lock::Nothing).state
+    }
+
+    /// Takes a reference for the model that the recording is compared with.
+    pub fn compare_with(&mut self, reference: Reference) {
+        if self.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
+            self.rigid_body = Some(reference.rigid_body);
+        }
+        self.reference_torque = Some(reference.torque);
+        self.reference_jacobian = reference.jacobian;
+        self.reference_friction = reference.friction;
+    }
+}
+
+/// Velocities at which a reference's friction is tabulated, denser towards zero.
+pub(crate) fn tabulated_velocities(reach: f64) -> impl Iterator<Item = f64> {
+    (-120..=120).map(move |k| {
+        let x = f64::from(k) / 120.0;
+        reach * x * x.abs() * x.abs()
+    })
+}

@@ -1,0 +1,326 @@
+//! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
+
+use super::localise::Region;
+use super::outcome::{Diagnosis, Finding, Verdict};
+use crate::parameter::Parameter;
+use crate::physics::{Action, EffectId};
+
+/// Quantile of the effect's torque that "up to" stands for.
+const UP_TO: f64 = 0.98;
+/// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
+const TELLING_REGION: f64 = 0.12;
+/// Share of the torque that has to point one way before a sentence says "more" or "less".
+const ONE_WAY: f64 = 0.5;
+
+/// What the recording is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Units {
+    /// Unit of the actuator as printed: `N m`, `N` or `A`.
+    pub actuator: &'static str,
+    /// Whether the axis turns (else it slides).
+    pub rotary: bool,
+}
+
+impl Units {
+    /// Unit of a channel or derived axis, as printed.
+    #[must_use]
+    pub fn of_channel(self, channel: &str) -> String {
+        let position = if self.rotary { "rad" } else { "m" };
+        match channel {
+            "velocity" | "other_joint" => format!("{position}/s"),
+            "position" | "distance_since_reversal" => position.to_string(),
+            "acceleration" => format!("{position}/s2"),
+            "load" => self.actuator.to_string(),
+            "temperature" => "degC".to_string(),
+            "time" | "time_since_reversal" | "dwell" => "s".to_string(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// Everything there is to say, in the order in which it should be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Story {
+    /// The answer in one sentence.
+    pub headline: String,
+    /// What is wrong with the measurement.
+    pub health: Vec<String>,
+    /// One sentence a finding.
+    pub findings: Vec<String>,
+    /// Error before and after on locked data.
+    pub proof: Option<String>,
+    /// What was found at first and then withdrawn.
+    pub withdrawn: Option<String>,
+    /// What would have been seen.
+    pub limits: Option<String>,
+}
+
+/// Tells a diagnosis.
+#[must_use]
+pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
+    Story {
+        headline: headline(diagnosis, units),
+        health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
+        findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
+        proof: proof(diagnosis, units),
+        withdrawn: withdrawn(diagnosis),
+        limits: limits(diagnosis, units),
+    }
+}
+
+fn headline(diagnosis: &Diagnosis, units: Units) -> String {
+    let noise = quantity(diagnosis.noise_rmse, units.actuator);
+    match diagnosis.verdict {
+        Verdict::Consistent => {
+            format!("Nothing is missing that this recording could show: what the model leaves, {noise}, is noise.")
+        }
+        Verdict::MissingPhysics => {
+            let count = diagnosis.findings.len();
+            let effects = if count == 1 { "One effect is".to_string() } else { format!("{count} effects are") };
+            format!(
+                "{effects} missing from the model: it is wrong by {}, of which {noise} is noise.",
+                quantity(diagnosis.baseline.rmse, units.actuator)
+            )
+        }
+        Verdict::Unexplained => format!(
+            "Something structured is missing that the catalogue does not hold: the model is wrong by {}, of which \
+             {noise} is noise.",
+            quantity(diagnosis.baseline.rmse, units.actuator)
+        ),
+        Verdict::BadData => "The measurement has to be put right before anything can be said of the physics.".into(),
+    }
+}
+
+/// The sentence of one finding.
+#[must_use]
+pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
+    let found = &diagnosis.findings[index];
+    let telling = found.location.regions.first().filter(|r| r.share_of_excess - r.share_of_samples > TELLING_REGION);
+    let place = telling.map_or_else(|| "Over the whole motion".to_string(), |region| place(region, units));
+    let amount = amount(diagnosis, index, telling, units);
+    let name = plain_name(found.effect);
+    let figures = figures(found);
+    let certainty = certainty(found);
+    format!("{place} {amount}: {name}{figures}. {certainty}{}", action(found))
+}
+
+/// Where a region is, as the start of a sentence.
+fn place(region: &Region, units: Units) -> String {
+    let unit = units.of_channel(region.channel);
+    let between = interval(region.from, region.to, &unit);
+    let from_zero = region.from.abs() < 0.03 * region.to.abs();
+    match region.channel {
+        "velocity" => format!("Between {between}"),
+        "position" => format!("Between positions of {between}"),
+        "load" => format!("Under loads of {between}"),
+        "temperature" => format!("At temperatures of {between}"),
+        "acceleration" => format!("At accelerations of {between}"),
+        "time" => format!("Between {between} of the recording"),
+        "dwell" => format!("After stops of {between}"),
+        "distance_since_reversal" | "time_since_reversal" if from_zero => {
+            format!("Within {} after each reversal", quantity(region.to, &unit))
+        }
+        "distance_since_reversal" | "time_since_reversal" => format!("Between {between} after each reversal"),
+        _ => format!("While the other joint moves at {between}"),
+    }
+}
+
+/// How much torque the real joint needs, and in which direction.
+fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: Units) -> String {
+    let traces = &diagnosis.traces;
+    let Some(effect) = traces.effects.get(index) else { return "the real joint differs".to_string() };
+    let inside: Vec<usize> = match region.and_then(|r| traces.channel(r.channel).map(|values| (r, values))) {
+        Some((r, values)) => (0..effect.len()).filter(|&i| values[i] >= r.from && values[i] <= r.to).collect(),
+        None => (0..effect.len()).collect(),
+    };
+    let mut sizes: Vec<f64> = inside.iter().map(|&i| effect[i].abs()).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    let largest = sizes.get(((sizes.len().max(1) - 1) as f64 * UP_TO).round() as usize).copied().unwrap_or(0.0);
+    let total: f64 = sizes.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let along: f64 = inside.iter().map(|&i| effect[i] * traces.velocity[i].signum()).sum::<f64>() / total;
+    let upward: f64 = inside.iter().map(|&i| effect[i]).sum::<f64>() / total;
+    let size = quantity(largest, units.actuator);
+    if along.abs() > ONE_WAY && along.abs() >= upward.abs() {
+        format!("the real joint needs up to {size} {}", if along > 0.0 { "more" } else { "less" })
+    } else if upward.abs() > ONE_WAY {
+        let direction = if upward > 0.0 { "positive" } else { "negative" };
+        format!("the real joint needs up to {size} more in the {direction} direction")
+    } else {
+        format!("the real joint needs up to {size} more or less")
+    }
+}
+
+/// The parameters that say most, at most two.
+fn figures(found: &Finding) -> String {
+    let told: Vec<String> = telling_parameters(found).into_iter().map(figure).collect();
+    if told.is_empty() { String::new() } else { format!(", {}", told.join(", ")) }
+}
+
+/// Shapes say more than amplitudes, which the sentence has given already.
+fn telling_parameters(found: &Finding) -> Vec<&Parameter> {
+    let linear = found.fitted.coefficients.len().min(found.parameters.len());
+    let (amplitudes, shapes) = found.parameters.split_at(linear);
+    let shapes: Vec<&Parameter> = shapes.iter().take(2).collect();
+    if shapes.is_empty() && linear <= 3 { amplitudes.iter().take(2).collect() } else { shapes }
+}
+
+fn figure(parameter: &Parameter) -> String {
+    let half = 0.5 * (parameter.ci95[1] - parameter.ci95[0]);
+    let name = parameter.name.replace('_', " ");
+    let value = quantity(parameter.value, &parameter.unit);
+    if half > 0.0 && half.is_finite() {
+        format!("{name} {value} (\u{b1} {})", quantity(half, &parameter.unit))
+    } else {
+        format!("{name} {value}")
+    }
+}
+
+fn certainty(found: &Finding) -> String {
+    let sure = format!("Probability {:.0} %", 100.0 * found.probability);
+    let others: Vec<String> = found
+        .alternatives
+        .iter()
+        .map(|(effect, probability)| format!("{} ({})", plain_name(*effect), percent(*probability)))
+        .collect();
+    if others.is_empty() {
+        format!("{sure}.")
+    } else {
+        format!("{sure}; this recording cannot rule out {}.", others.join(" or "))
+    }
+}
+
+fn percent(share: f64) -> String {
+    if share < 0.01 { "below 1 %".to_string() } else { format!("{:.0} %", 100.0 * share) }
+}
+
+fn action(found: &Finding) -> &'static str {
+    match found.action {
+        Action::FeedForward => "",
+        Action::Parameter => " A parameter of the model is to be corrected.",
+        Action::Measurement => " The measurement is to be repaired, not compensated.",
+        Action::Maintenance if found.effect == EffectId::Unknown => " It is not compensated.",
+        Action::Maintenance => " Have the joint looked at; it is not compensated.",
+    }
+}
+
+fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    let proof = diagnosis.proof.as_ref()?;
+    if diagnosis.findings.is_empty() {
+        return None;
+    }
+    let ratio = proof.improved_rmse / proof.baseline_rmse.max(f64::MIN_POSITIVE);
+    let interval = if proof.ratio_ci95[1].is_finite() {
+        format!(", 95 % interval {} to {}", digits(proof.ratio_ci95[0]), digits(proof.ratio_ci95[1]))
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "Held-out error {} -> {} on {} rows that took no part in fitting or choosing (ratio {}{interval}).",
+        digits(proof.baseline_rmse),
+        quantity(proof.improved_rmse, units.actuator),
+        proof.rows,
+        digits(ratio),
+    ))
+}
+
+fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
+    let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
+    (!names.is_empty())
+        .then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
+}
+
+/// The three effects that would have been seen soonest, of those a user asks for first.
+fn limits(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    let mut limits: Vec<_> = diagnosis.limits.iter().collect();
+    limits.sort_by(|a, b| a.torque_rms.total_cmp(&b.torque_rms));
+    let told: Vec<String> = limits
+        .iter()
+        .take(3)
+        .map(|limit| format!("{} above {}", plain_name(limit.effect), quantity(limit.torque_rms, units.actuator)))
+        .collect();
+    (!told.is_empty()).then(|| format!("Would have been seen (root mean square): {}.", told.join(", ")))
+}
+
+/// An effect's name for people.
+#[must_use]
+pub fn plain_name(effect: EffectId) -> &'static str {
+    use EffectId::*;
+    match effect {
+        Stribeck => "Stribeck friction",
+        ViscousNonlinearity => "viscous friction that grows with a power of speed",
+        DirectionAsymmetry => "friction that differs between the directions",
+        Temperature => "friction that depends on temperature",
+        WarmUp => "friction that falls as the joint warms itself up",
+        LoadFriction => "load-dependent friction",
+        DriveBackdrive => "gear losses that differ between driving and backdriving",
+        SlowDrift => "friction that drifts with time",
+        Presliding => "presliding hysteresis",
+        FrictionalLag => "frictional lag",
+        DwellBreakaway => "break-away that grows with the stop before it",
+        PositionRipple => "torque ripple over position",
+        KinematicError => "kinematic error of the gear",
+        PositionFriction => "friction that depends on position",
+        GravityError => "wrong gravity torque",
+        InertiaError => "wrong inertia",
+        TorqueScale => "wrong torque constant",
+        TorqueOffset => "torque offset",
+        Spring => "spring of a cable, hose or balancer",
+        Coupling => "inertial coupling with another joint",
+        Saturation => "saturated actuator",
+        Contact => "hard stop or contact",
+        TransientEvent => "one-off event",
+        RecurrentFault => "local fault that comes back at one angle",
+        Backlash => "backlash",
+        Elasticity => "elastic transmission",
+        WindupHysteresis => "windup hysteresis of the transmission",
+        TimeMisalignment => "torque and position recorded out of step",
+        Quantisation => "encoder too coarse",
+        UnitOrSign => "wrong unit or sign",
+        Unknown => "a structure that the catalogue does not hold",
+    }
+}
+
+/// A value with its unit, three digits, in milli or micro where that reads better.
+#[must_use]
+pub fn quantity(value: f64, unit: &str) -> String {
+    if unit == "1" || unit.is_empty() {
+        return digits(value);
+    }
+    let (factor, prefix) = prefix(value, unit);
+    format!("{} {prefix}{unit}", digits(value * factor))
+}
+
+fn interval(from: f64, to: f64, unit: &str) -> String {
+    let (factor, prefix) = prefix(from.abs().max(to.abs()), unit);
+    format!("{} and {} {prefix}{unit}", digits(from * factor), digits(to * factor))
+}
+
+fn prefix(value: f64, unit: &str) -> (f64, &'static str) {
+    let plain = matches!(unit, "rad" | "m" | "s" | "N" | "N m" | "A" | "rad/s" | "m/s");
+    match value.abs() {
+        size if !plain || size == 0.0 => (1.0, ""),
+        size if size < 1e-4 => (1e6, "u"),
+        size if size < 0.02 => (1e3, "m"),
+        _ => (1.0, ""),
+    }
+}
+
+/// Three significant digits; powers of ten only where plain digits would be long.
+#[must_use]
+pub fn digits(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_string() } else { format!("{value}") };
+    }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (2 - size.log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
+fn capital(sentence: &str) -> String {
+    let mut characters = sentence.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
