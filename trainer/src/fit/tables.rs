@@ -17,31 +17,18 @@ pub(super) struct Tables {
     pub(super) inputs: Vec<usize>,
 }
 
-/// Cells for which the smallest drive has room.
-const DRIVE_CELLS: usize = 128;
+/// How often the bound of a single node is doubled where no layout meets it: bounds for the worst case are strict.
+const RELAXATIONS: i32 = 8;
 
-/// How often the bound may be doubled so that the cells fit into the smallest drive.
-const RELAXATIONS: i32 = 4;
-
-/// Compiles `network` to within `bound` (unit of the output), or a few times that where the cells would not fit into the
-/// smallest drive. `ranges` are those of all its inputs. `None` when it does not fit a drive's tables at all.
+/// Compiles `network` to within `bound` (unit of the output; for several inputs in the worst case, which is far from the
+/// usual one). `ranges` are those of all its inputs. `None` when it does not fit a drive's tables.
 pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2]], bound: f64) -> Option<Tables> {
     let live: Vec<usize> = (0..ranges.len()).filter(|&input| network.live_nodes()[0][input]).collect();
-    let within = |bound: f64| match live[..] {
+    match live[..] {
         [] => None,
         [only] => single(network, only, ranges[only], bound),
         _ => several(network, graph, &live, bound),
-    };
-    let mut tightest = None;
-    for doubling in 0..=RELAXATIONS {
-        if let Some(tables) = within(bound * 2f64.powi(doubling)) {
-            if tables.cells.len() <= DRIVE_CELLS {
-                return Some(tables);
-            }
-            tightest.get_or_insert(tables);
-        }
     }
-    tightest
 }
 
 fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) -> Option<Tables> {
@@ -99,7 +86,7 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
     let mut sources = heapless::Vec::new();
     for node in &nodes {
         let first_cell = u16::try_from(cells.len()).ok()?;
-        let (table, columns) = smallest(node)?;
+        let (table, columns) = (0..=RELAXATIONS).find_map(|k| smallest(node, 2f64.powi(k)))?;
         for row in 0..table.cells() as usize {
             cells.extend(columns.iter().map(|column| column.get(row).copied().unwrap_or_default()));
         }
@@ -126,8 +113,8 @@ fn sensitivity(graph: &GraphSummary, curve: &NetworkCurve, layer: usize, node: u
     if layer >= curve.edges.len() { 1.0 } else { slopes.iter().sum::<f64>().max(1e-12) }
 }
 
-/// The layout of fewest cells in which every activation of the node stays within its bound.
-fn smallest(node: &Node) -> Option<(Table, Vec<Vec<Cell>>)> {
+/// The layout of fewest cells in which every activation of the node stays within its bound times `slack`.
+fn smallest(node: &Node, slack: f64) -> Option<(Table, Vec<Vec<Cell>>)> {
     layouts(node.domain).into_iter().find_map(|table| {
         let mut columns = Vec::new();
         for (edge, bound) in node.edges.iter().zip(&node.bounds) {
@@ -136,7 +123,7 @@ fn smallest(node: &Node) -> Option<(Table, Vec<Vec<Cell>>)> {
                 continue;
             };
             let compiled = compile_layout(edge, table);
-            if compiled.certificate.total() > *bound {
+            if compiled.certificate.total() > bound * slack {
                 return None;
             }
             columns.push(compiled.cells);
