@@ -27,7 +27,7 @@ const LEAST_BAND_HZ: f64 = 10.0;
 /// Factors that a wrong unit leaves: degrees for radians, turns for radians, milli for whole, and their inverses.
 const UNIT_FACTORS: [(f64, &str); 6] = [
     (57.295_78, "deg taken for rad"),
-    (6.283_185, "turns taken for rad"),
+    (std::f64::consts::TAU, "turns taken for rad"),
     (1000.0, "milli-units taken for units"),
     (0.017_453_29, "rad taken for deg"),
     (0.159_154_9, "rad taken for turns"),

@@ -104,8 +104,7 @@ fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
         Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
             let odd = is_odd(&model.law);
             let top = state.top_speed();
-            let rows: Vec<Vec<f64>> =
-                state.velocity.iter().map(|v| hats(*v, state.sign_velocity, top, odd)).collect();
+            let rows: Vec<Vec<f64>> = state.velocity.iter().map(|v| hats(*v, state.sign_velocity, top, odd)).collect();
             (0..hats(0.0, 1.0, 1.0, odd).len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
         }
         _ => vec![state.sign.clone(), state.velocity.clone()],

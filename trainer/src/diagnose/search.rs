@@ -243,14 +243,14 @@ impl<'a> Search<'a> {
     fn backward(&self, mut accepted: Vec<Accepted>, noise: &Noise) -> Vec<Accepted> {
         while accepted.len() > 1 {
             let weakest = (0..accepted.len())
-                .filter_map(|index| {
+                .map(|index| {
                     let bench = self.bench(self.base_with(&accepted, Some(index)), noise);
                     let columns =
                         self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
                     let gain = bench.alone().zip(bench.evidence(&columns)).and_then(|(alone, evidence)| {
                         GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0)
                     });
-                    Some((index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0))))
+                    (index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0)))
                 })
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             match weakest {
@@ -333,12 +333,15 @@ pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) 
     }
 }
 
+/// Evidence of every variant of every group; `None` where a variant depends on the base.
+type Tested = Vec<Vec<Option<VariantEvidence>>>;
+
 struct Round<'s, 'a> {
     search: &'s Search<'a>,
     noise: Noise,
     bench: Bench,
     alone: Option<VariantEvidence>,
-    variants: Vec<Vec<Option<VariantEvidence>>>,
+    variants: Tested,
     white: Vec<Vec<f64>>,
     /// Largest energy that each group explains before whitening.
     explained: Vec<f64>,
@@ -458,12 +461,7 @@ impl<'s, 'a> Round<'s, 'a> {
 }
 
 /// Whitens the design and weighs every variant, held-out folds only where asked for.
-fn weigh_all(
-    search: &Search,
-    base: Vec<Vec<f64>>,
-    noise: &Noise,
-    folds: bool,
-) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
+fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
     let bench = search.bench(base, noise);
     let runs = search.prepared.open_runs();
     let white: Vec<Vec<f64>> = search

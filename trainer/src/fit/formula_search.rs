@@ -66,8 +66,13 @@ pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
     let fit = |structure: &Structure, data: &LawData, smoothing: Option<f64>| fit_structure(structure, data, smoothing);
     let fixed = fixed_smoothing(&discovery);
     let own = fit(&discovery.law.structure, &few, fixed).map_err(|error| refused(&error))?;
-    let rivals: Vec<FormFit> =
-        KnownForm::ALL.par_iter().map(|form| fit_form(*form, &few, fixed).ok()).collect::<Vec<_>>().into_iter().flatten().collect();
+    let rivals: Vec<FormFit> = KnownForm::ALL
+        .par_iter()
+        .map(|form| fit_form(*form, &few, fixed).ok())
+        .collect::<Vec<_>>()
+        .into_iter()
+        .flatten()
+        .collect();
     // One effective number of samples for all, or their criteria would not compare.
     let effective = few.rows() as f64 / own.uncertainty.correlation_length;
     let criterion = |fit: &FormFit| {

@@ -172,9 +172,7 @@ fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
     let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
     let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
     let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
-    let segment = |range: &std::ops::Range<usize>| {
-        filter.apply(&column[range.clone()], Order::Smooth, stride)
-    };
+    let segment = |range: &std::ops::Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
     let long_enough = rows.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
     long_enough.flat_map(segment).collect()
 }

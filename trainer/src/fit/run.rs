@@ -148,7 +148,9 @@ impl Builder<'_> {
         let mut tightest = None;
         for doubling in 0..=DOUBLINGS {
             let slack = 2f64.powi(doubling);
-            let Some(tables) = tables::compile(&learnt.network, &learnt.graph, &ranges, bound * slack) else { continue };
+            let Some(tables) = tables::compile(&learnt.network, &learnt.graph, &ranges, bound * slack) else {
+                continue;
+            };
             let fits = tables.cells.len() <= DRIVE_CELLS;
             let model = self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients);
             let Some(model) = model else { continue };

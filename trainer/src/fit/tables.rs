@@ -65,11 +65,9 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
             let mut edges: Vec<Option<Piecewise>> =
                 terminals.iter().map(|&to| curve.edges[index][to][from].clone()).collect();
             // The output's centre goes into the first activation of the last layer.
-            if first_active {
-                if let Some(edge) = edges.iter_mut().flatten().next() {
-                    *edge = edge.clone().raised(network.output.centre);
-                    first_active = false;
-                }
+            if first_active && let Some(edge) = edges.iter_mut().flatten().next() {
+                *edge = edge.clone().raised(network.output.centre);
+                first_active = false;
             }
             let domain = graph.edges.iter().find(|e| e.layer == index && e.from == from)?.domain;
             let bounds = terminals

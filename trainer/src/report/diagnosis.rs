@@ -76,7 +76,10 @@ fn overview(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     }
     page.heading("What the model leaves, before and after");
     let when: Vec<[f64; 2]> = diagnosis.findings.first().map(|f| f.location.when_s.clone()).unwrap_or_default();
-    page.figure(&over_time(traces, &when, units), "Residual over time. Shaded: where the first finding holds most evidence.");
+    page.figure(
+        &over_time(traces, &when, units),
+        "Residual over time. Shaded: where the first finding holds most evidence.",
+    );
     let channel = diagnosis.findings.first().map_or("position", |found| second_axis(traces, found));
     maps(page, traces, channel, units);
 }
@@ -141,21 +144,33 @@ fn axis_label(channel: &str, units: Units) -> String {
 
 /// One finding: equation, parameters, torque over its channel and time, regions.
 fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
-    page.heading(&format!("{}. {} ({} {})", index + 1, sentence_case(plain_name(found.effect)), found.effect.code(), found.effect.name()));
+    page.heading(&format!(
+        "{}. {} ({} {})",
+        index + 1,
+        sentence_case(plain_name(found.effect)),
+        found.effect.code(),
+        found.effect.name()
+    ));
     page.paragraph(&format!("{}.", sentence_case(&found.evidence)));
     page.equation(&found.equation);
     page.table(&PARAMETER_HEADER, &parameter_rows(&found.parameters));
     figures(page, diagnosis, found, index, units);
-    let regions: Vec<Vec<String>> = found.location.regions.iter().take(5).map(|region| {
-        vec![
-            region.channel.replace('_', " "),
-            digits(region.from),
-            digits(region.to),
-            units.of_channel(region.channel),
-            format!("{:.0} %", 100.0 * region.share_of_excess),
-            format!("{:.0} %", 100.0 * region.share_of_samples),
-        ]
-    }).collect();
+    let regions: Vec<Vec<String>> = found
+        .location
+        .regions
+        .iter()
+        .take(5)
+        .map(|region| {
+            vec![
+                region.channel.replace('_', " "),
+                digits(region.from),
+                digits(region.to),
+                units.of_channel(region.channel),
+                format!("{:.0} %", 100.0 * region.share_of_excess),
+                format!("{:.0} %", 100.0 * region.share_of_samples),
+            ]
+        })
+        .collect();
     page.subheading("Where it sits");
     page.table(&["channel", "from", "to", "unit", "of the evidence", "of the samples"], &regions);
     page.subheading("On the drive");
@@ -183,13 +198,21 @@ fn figures(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize
         chart.band(region.from, region.to);
         chart.dots(&pairs(&without), Ink::Data, "residual without it");
         chart.dots(&pairs(torque), Ink::Two, "its torque");
-        pictures.push((chart.svg(), "Residual of all other terms and the torque of this one, over the channel that locates it.".to_string()));
+        pictures.push((
+            chart.svg(),
+            "Residual of all other terms and the torque of this one, over the channel that locates it.".to_string(),
+        ));
     }
     let (from, to) = window(traces, found);
     let inside: Vec<usize> = (0..traces.len()).filter(|&i| traces.time[i] >= from && traces.time[i] <= to).collect();
     if inside.len() > 4 {
         let pairs = |series: &[f64]| -> Vec<[f64; 2]> { inside.iter().map(|&i| [traces.time[i], series[i]]).collect() };
-        let mut chart = Chart::new((520.0, 320.0), (from, to), Scale::over(inside.iter().map(|&i| without[i])), ["time (s)", &label]);
+        let mut chart = Chart::new(
+            (520.0, 320.0),
+            (from, to),
+            Scale::over(inside.iter().map(|&i| without[i])),
+            ["time (s)", &label],
+        );
         for [begin, end] in &found.location.when_s {
             if *end > from && *begin < to {
                 chart.band(*begin, *end);
@@ -263,7 +286,9 @@ fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
         return;
     }
     page.heading("What would have been seen");
-    page.paragraph("Each of these, had its torque reached the stated root mean square, would have been found nine times in ten.");
+    page.paragraph(
+        "Each of these, had its torque reached the stated root mean square, would have been found nine times in ten.",
+    );
     page.table(&["effect", "torque (root mean square)"], &rows);
 }
 
@@ -271,18 +296,24 @@ fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
 fn on_the_drive(effect: EffectId) -> &'static str {
     use EffectId::*;
     match effect {
-        Presliding => "A bristle, stepped by the exact exponential over the distance of a sample: one exponential, one state, no stability limit on the sample time.",
+        Presliding => {
+            "A bristle, stepped by the exact exponential over the distance of a sample: one exponential, one state, no stability limit on the sample time."
+        }
         FrictionalLag => "One first-order lag on the velocity that the law sees: one state.",
         DwellBreakaway => "A clock of the stop and the distance since: two exponentials, three states.",
         WarmUp => "One thermal state driven by the dissipated power.",
-        Backlash => "The play operator on position: two comparisons, one state; it corrects the position, not the torque.",
+        Backlash => {
+            "The play operator on position: two comparisons, one state; it corrects the position, not the torque."
+        }
         PositionRipple => "A sine and a cosine of the order times position: no state.",
         KinematicError => "A correction of position, sine and cosine of the order: no state, no torque.",
         PositionFriction => "A table over position times the sign of velocity: no state.",
         Stribeck | ViscousNonlinearity | DirectionAsymmetry => "A function of velocity alone: no state.",
         Temperature | LoadFriction | DriveBackdrive => "A product with one measured channel: no state.",
         Spring => "One product with position: no state.",
-        GravityError | InertiaError | TorqueScale | TorqueOffset => "Nothing to run: the rigid-body parameters of the model are corrected.",
+        GravityError | InertiaError | TorqueScale | TorqueOffset => {
+            "Nothing to run: the rigid-body parameters of the model are corrected."
+        }
         SlowDrift => "Frozen at its value at the end of the recording; fit again when it has moved on.",
         _ => match effect.action() {
             Action::Maintenance => "Not compensated: a fault is to be repaired, and compensating it would hide it.",

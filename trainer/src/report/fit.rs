@@ -129,7 +129,8 @@ fn network(page: &mut Page, outcome: &Outcome) {
         ),
         (graph::network(&story.after, &names), "After pruning and refitting.".to_string()),
     ]);
-    let edges = story.after.edges.iter().zip(&story.activations).filter(|(edge, points)| edge.active && !points.is_empty());
+    let edges =
+        story.after.edges.iter().zip(&story.activations).filter(|(edge, points)| edge.active && !points.is_empty());
     let pictures: Vec<(String, String)> = edges
         .take(MOST_ACTIVATIONS)
         .map(|(edge, points)| {
@@ -151,7 +152,13 @@ fn comparison(page: &mut Page, outcome: &Outcome) {
         .iter()
         .map(|row| {
             let picked = if row.picked { "picked" } else { "" };
-            vec![row.input.clone(), digits(row.correlation), digits(row.explained), digits(row.added), picked.to_string()]
+            vec![
+                row.input.clone(),
+                digits(row.correlation),
+                digits(row.explained),
+                digits(row.added),
+                picked.to_string(),
+            ]
         })
         .collect();
     page.table(&["input", "correlation", "variance explained alone", "of what velocity leaves", ""], &rows);

@@ -30,12 +30,14 @@ pub(super) fn network(graph: &GraphSummary, inputs: &[String]) -> String {
     }
     for node in graph.nodes.iter().filter(|node| node.active) {
         let (x, y) = place(node.layer, node.index);
-        let _ = write!(svg, "<circle class=\"f-paper s-ink\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\" stroke-width=\"1.5\"/>");
+        let _ =
+            write!(svg, "<circle class=\"f-paper s-ink\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\" stroke-width=\"1.5\"/>");
         let sign = if node.kind == NodeKind::Product { "\u{d7}" } else { "+" };
         if node.layer > 0 {
             let _ = write!(svg, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{sign}</text>", y + 4.0);
         } else if let Some(name) = inputs.get(node.index) {
-            let _ = write!(svg, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>", y + 25.0, escape(name));
+            let _ =
+                write!(svg, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>", y + 25.0, escape(name));
         }
         if node.layer == layers {
             let _ = write!(svg, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">friction</text>", y - 15.0);
