@@ -26,7 +26,9 @@ impl Outputs {
 
     /// Refuses to write over what was read, and the same file twice.
     pub(crate) fn refuse_overwriting(&self, inputs: &[&Path]) -> Result<()> {
-        let same = |a: &Path, b: &Path| a == b || a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+        let same = |a: &Path, b: &Path| {
+            a == b || a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
+        };
         for (index, (path, _)) in self.files.iter().enumerate() {
             let read = inputs.iter().any(|input| same(path, input));
             let written = self.files[..index].iter().any(|(other, _)| same(path, other));

@@ -43,12 +43,18 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
     for input in &model.inputs {
         let (low, high) = (significant(f64::from(input.low), DIGITS), significant(f64::from(input.high), DIGITS));
         let name = input.quantity.name();
-        writeln!(out, "input       {name} from {low} to {high} {}, held at the nearer end outside", input.unit.symbol())?;
+        writeln!(
+            out,
+            "input       {name} from {low} to {high} {}, held at the nearer end outside",
+            input.unit.symbol()
+        )?;
     }
     let unit = model.output_unit.symbol();
     writeln!(out, "output      {unit}, at most {}", significant(f64::from(model.output_limit), DIGITS))?;
     match &model.law {
-        Law::Geometric(table) => writeln!(out, "law         table of {} cubic cells that grow from zero", table.cells())?,
+        Law::Geometric(table) => {
+            writeln!(out, "law         table of {} cubic cells that grow from zero", table.cells())?
+        }
         Law::Uniform(table) => writeln!(out, "law         table of {} equal cubic cells", table.cells)?,
         Law::IntegerTable(table) => writeln!(out, "law         integer table of {} cubic cells", table.cells())?,
         Law::Network(network) => writeln!(

@@ -31,6 +31,8 @@ pub struct VariantEvidence {
     pub statistic: f64,
     /// Linear coefficients.
     pub degrees: usize,
+    /// Linear coefficients of the candidate, on whitened columns as they were given.
+    pub coefficients: Vec<f64>,
     /// Residual energy over all open blocks.
     pub residual: f64,
     /// Residual energy of the training part of each fold.
@@ -109,7 +111,9 @@ impl Bench {
         }
         let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
         let base_residual = energy - explained(&normal.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
-        let residual = energy - explained(&normal, &right)?;
+        let solution = if right.is_empty() { DVector::zeros(0) } else { solve_symmetric(&normal, &right)? };
+        let residual = energy - solution.dot(&right);
+        let coefficients = solution.iter().skip(p).copied().collect();
         let rows = self.rows();
         let mut fold_train = Vec::with_capacity(blocks.len());
         let mut fold_likelihood = Vec::with_capacity(blocks.len());
@@ -122,7 +126,14 @@ impl Bench {
             fold_train.push(train);
             fold_likelihood.push(-0.5 * sums.rows * variance.ln() - 0.5 * held_out / variance);
         }
-        Some(VariantEvidence { statistic: base_residual - residual, degrees: d, residual, fold_train, fold_likelihood })
+        Some(VariantEvidence {
+            statistic: base_residual - residual,
+            degrees: d,
+            coefficients,
+            residual,
+            fold_train,
+            fold_likelihood,
+        })
     }
 
     /// Energy of a whitened column that the base cannot hold: the non-centrality of unit amplitude.

@@ -2,6 +2,7 @@
 
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::linear::{least_squares, residual};
+use super::prepare::Prepared;
 use super::signals::Signals;
 use crate::physics::EffectId;
 use serde::Serialize;
@@ -21,12 +22,12 @@ pub struct HealthNote {
 const CLIPPED_SHARE: f64 = 0.02;
 /// A torque step of this share of the usual torque hides friction.
 const COARSE_TORQUE_SHARE: f64 = 0.05;
-/// Time in s that one step of the position may take at top speed.
-const COARSE_POSITION_S: f64 = 3e-4;
+/// Band in Hz that the encoder has to leave for friction to be seen.
+const LEAST_BAND_HZ: f64 = 10.0;
 /// Factors that a wrong unit leaves: degrees for radians, turns for radians, milli for whole, and their inverses.
 const UNIT_FACTORS: [(f64, &str); 6] = [
     (57.295_78, "deg taken for rad"),
-    (6.283_185, "turns taken for rad"),
+    (std::f64::consts::TAU, "turns taken for rad"),
     (1000.0, "milli-units taken for units"),
     (0.017_453_29, "rad taken for deg"),
     (0.159_154_9, "rad taken for turns"),
@@ -39,7 +40,6 @@ pub fn examine(signals: &Signals) -> Vec<HealthNote> {
     notes.extend(clipped_torque(signals));
     notes.extend(wrong_sign_or_unit(signals));
     notes.extend(coarse_torque(signals));
-    notes.extend(coarse_position(signals));
     notes
 }
 
@@ -60,23 +60,16 @@ fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
     })
 }
 
-/// An encoder that stands still for most samples of a moving joint.
-fn coarse_position(signals: &Signals) -> Option<HealthNote> {
-    let step = signals.position_resolution;
-    let speeds: Vec<f64> = signals.position.windows(2).map(|pair| (pair[1] - pair[0]).abs() / signals.period).collect();
-    let top = crate::physics::quantile(
-        signals.position.windows(51).map(|w| (w[50] - w[0]).abs() / (50.0 * signals.period)),
-        0.95,
-    );
-    let still = speeds.iter().filter(|speed| **speed == 0.0).count() as f64 / speeds.len().max(1) as f64;
-    // At top speed the encoder should step in at least a good share of the samples.
-    let coarse = step > COARSE_POSITION_S * top && still > 0.5;
+/// An encoder so coarse that its grain alone left only a few hertz of the motion.
+pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
+    let cut_off = prepared.filter.cut_off_hz;
+    let coarse = prepared.grain_limited && cut_off < LEAST_BAND_HZ;
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,
         sentence: format!(
-            "the position is recorded in steps of {step:.2e}: at top speed one step takes {:.1} ms",
-            1e3 * step / top
+            "the position is recorded in steps of {:.2e}: its grain drowns everything above {cut_off} Hz",
+            signals.position_resolution
         ),
     })
 }

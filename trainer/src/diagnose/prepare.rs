@@ -32,6 +32,8 @@ pub struct Prepared {
     pub state: JointState,
     /// The common filter F.
     pub filter: ZeroPhase,
+    /// Whether a wider filter was refused for the encoder's grain.
+    pub grain_limited: bool,
     /// Sample index of each working row.
     pub rows: Vec<usize>,
     /// Blocks of rows.
@@ -64,7 +66,8 @@ impl Prepared {
         let rate = 1.0 / signals.period;
         let mut chosen = None;
         for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
-            let prepared = Self::at_cut_off(signals, cut_off, lock);
+            let mut prepared = Self::at_cut_off(signals, cut_off, lock);
+            prepared.grain_limited = chosen.is_some();
             let fits = encoder_noise_is_small(&prepared, signals);
             let enough_rows = prepared.rows.len() >= 200;
             if fits || (chosen.is_some() && !enough_rows) {
@@ -144,6 +147,7 @@ impl Prepared {
         Self {
             state,
             filter,
+            grain_limited: false,
             rows,
             blocks,
             narrow_velocity,

@@ -5,7 +5,7 @@ use super::base::{Base, BaseKind};
 use super::candidates::Label;
 use super::conclude::{Fitted, Refit, refit, unit_text};
 use super::confidence::{alternatives, probability};
-use super::health::{HealthNote, examine};
+use super::health::{HealthNote, coarse_position, examine};
 use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
@@ -63,8 +63,9 @@ const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer.
 pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
-    let health = examine(signals);
     let mut prepared = Prepared::new(signals, options.lock);
+    let mut health = examine(signals);
+    health.extend(coarse_position(signals, &prepared));
     let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
     if rows < LEAST_ROWS {
         return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });
@@ -115,9 +116,7 @@ fn withdraw_unproven(search: &Search, mut accepted: Vec<Accepted>, baseline: &Re
     while !accepted.is_empty() {
         let gains: Vec<f64> =
             (0..accepted.len()).map(|index| locked_gain(search, &accepted, index, baseline)).collect();
-        let weakest = (0..gains.len())
-            .filter(|&i| accepted[i].effect() != EffectId::TransientEvent)
-            .min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
+        let weakest = (0..gains.len()).min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
         match weakest {
             Some(index) if gains[index] < WITHDRAWN_BELOW_NATS => withdrawn.push(accepted.remove(index).effect()),
             _ => break,

@@ -42,6 +42,12 @@ impl Default for Settings {
     }
 }
 
+/// Share of a free function's explained energy at which a name is good enough.
+const NEARLY_AS_MUCH: f64 = 0.9;
+
+/// Terms at most, repeated ones included.
+const MOST_TERMS: usize = 12;
+
 /// A hypothesis with its score in one round.
 #[derive(Clone, Debug)]
 pub struct Scored {
@@ -59,6 +65,8 @@ pub struct Scored {
     pub(crate) group: usize,
     /// -log p of its best variant by chi-square.
     pub(crate) surprise: f64,
+    /// Energy that its best variant explains before whitening.
+    pub(crate) explained: f64,
 }
 
 /// An accepted finding.
@@ -115,6 +123,20 @@ impl<'a> Search<'a> {
         Self { prepared, base, design, hypotheses, settings, features }
     }
 
+    /// Whether a label may be found in the next round: once, except for effects that repeat with other shapes.
+    fn may_be_found(&self, label: &Label, accepted: &[Accepted]) -> bool {
+        let repeats = match label {
+            Label::Named(effect) => self.hypothesis(*effect).is_some_and(Hypothesis::repeats),
+            Label::Generic(_) => false,
+        };
+        repeats || accepted.iter().all(|found| found.label != *label)
+    }
+
+    /// Effects that count towards the largest number of findings: a repeated one counts once.
+    fn kinds(accepted: &[Accepted]) -> usize {
+        (0..accepted.len()).filter(|&i| accepted[..i].iter().all(|before| before.label != accepted[i].label)).count()
+    }
+
     /// Shapes that a group was allowed to choose from.
     fn grid_size(&self, group: usize) -> f64 {
         let group = &self.design.groups[group];
@@ -147,11 +169,7 @@ impl<'a> Search<'a> {
 
     /// The outcome of a search that was not made: no findings, noise of the base alone.
     pub fn nothing(&self) -> SearchOutcome {
-        SearchOutcome {
-            accepted: Vec::new(),
-            last_round: Vec::new(),
-            noise: self.noise_after(&self.base.columns, None),
-        }
+        SearchOutcome { accepted: Vec::new(), last_round: Vec::new(), noise: self.noise_after(&self.base.columns) }
     }
 
     /// Runs the search.
@@ -172,7 +190,11 @@ impl<'a> Search<'a> {
             }
             let finding = choose(&table, &self.settings, travel);
             match finding {
-                Some(finding) if accepted.len() < self.settings.most_findings => accepted.push(finding),
+                Some(finding)
+                    if Self::kinds(&accepted) < self.settings.most_findings && accepted.len() < MOST_TERMS =>
+                {
+                    accepted.push(finding);
+                }
                 _ => {
                     let accepted = self.backward(accepted, &round.noise);
                     return SearchOutcome { accepted, last_round: table, noise: round.noise };
@@ -221,14 +243,14 @@ impl<'a> Search<'a> {
     fn backward(&self, mut accepted: Vec<Accepted>, noise: &Noise) -> Vec<Accepted> {
         while accepted.len() > 1 {
             let weakest = (0..accepted.len())
-                .filter_map(|index| {
+                .map(|index| {
                     let bench = self.bench(self.base_with(&accepted, Some(index)), noise);
                     let columns =
                         self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
                     let gain = bench.alone().zip(bench.evidence(&columns)).and_then(|(alone, evidence)| {
                         GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0)
                     });
-                    Some((index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0))))
+                    (index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0)))
                 })
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             match weakest {
@@ -274,17 +296,11 @@ impl<'a> Search<'a> {
         Bench::new(self.whitened(&base, noise), target, blocks)
     }
 
-    /// Noise of what the columns leave, fitted by least squares (whitened by an earlier noise where there is one).
-    pub(crate) fn noise_after(&self, columns: &[Vec<f64>], before: Option<&Noise>) -> Noise {
+    /// Noise of what the columns leave after an ordinary least-squares fit: one that is whitened first may leave slow
+    /// errors that pass for noise.
+    pub(crate) fn noise_after(&self, columns: &[Vec<f64>]) -> Noise {
         let runs = self.prepared.open_runs();
-        let coefficients = match before {
-            None => super::linear::least_squares(columns, &self.base.target, &runs),
-            Some(noise) => {
-                let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
-                super::linear::least_squares(&self.whitened(columns, noise), &target, &runs)
-            }
-        };
-        let rest = match coefficients {
+        let rest = match super::linear::least_squares(columns, &self.base.target, &runs) {
             Some(coefficients) => residual(columns, &self.base.target, &coefficients),
             None => self.base.target.clone(),
         };
@@ -317,13 +333,18 @@ pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) 
     }
 }
 
+/// Evidence of every variant of every group; `None` where a variant depends on the base.
+type Tested = Vec<Vec<Option<VariantEvidence>>>;
+
 struct Round<'s, 'a> {
     search: &'s Search<'a>,
     noise: Noise,
     bench: Bench,
     alone: Option<VariantEvidence>,
-    variants: Vec<Vec<Option<VariantEvidence>>>,
+    variants: Tested,
     white: Vec<Vec<f64>>,
+    /// Largest energy that each group explains before whitening.
+    explained: Vec<f64>,
 }
 
 impl<'s, 'a> Round<'s, 'a> {
@@ -331,15 +352,22 @@ impl<'s, 'a> Round<'s, 'a> {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
         let mut noise = Noise::white(search.prepared.rows.len());
+        let mut explained = Vec::new();
         for _ in 0..2 {
             let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            if explained.is_empty() {
+                let largest = |tested: &Vec<Option<VariantEvidence>>| {
+                    tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
+                };
+                explained = variants.iter().map(largest).collect();
+            }
             let mut generous = base.clone();
             generous.extend(best_two(search, &bench, &variants));
-            noise = search.noise_after(&generous, Some(&noise));
+            noise = search.noise_after(&generous);
         }
         let (white, bench, variants) = weigh_all(search, base, &noise, true);
         let alone = bench.alone();
-        Self { search, noise, bench, alone, variants, white }
+        Self { search, noise, bench, alone, variants, white, explained }
     }
 
     fn draw_null(&self) -> NullDraws {
@@ -356,10 +384,10 @@ impl<'s, 'a> Round<'s, 'a> {
             .groups
             .iter()
             .enumerate()
-            .filter(|(_, group)| accepted.iter().all(|found| found.label != group.label))
+            .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
             .filter_map(|(index, group)| {
                 let grid = self.search.grid_size(index);
-                let evidence = GroupEvidence::weigh(alone, &self.variants[index], rows, grid)?;
+                let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
                 let surprise = self.variants[index]
                     .iter()
                     .flatten()
@@ -373,6 +401,7 @@ impl<'s, 'a> Round<'s, 'a> {
                     evidence,
                     group: index,
                     surprise,
+                    explained: self.explained[index],
                 };
                 Some((index, scored))
             })
@@ -381,6 +410,16 @@ impl<'s, 'a> Round<'s, 'a> {
         let mut table: Vec<Scored> = table.into_iter().map(|(_, scored)| scored).collect();
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
+    }
+
+    /// The variants of a group whose coefficients have a possible sign.
+    fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
+        let positive = match self.search.design.groups[group].label {
+            Label::Named(effect) => self.search.hypothesis(effect).is_some_and(Hypothesis::only_positive),
+            Label::Generic(_) => false,
+        };
+        let possible = |e: &VariantEvidence| !positive || e.coefficients.iter().all(|c| *c > 0.0);
+        self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
     }
 
     /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
@@ -405,6 +444,8 @@ impl<'s, 'a> Round<'s, 'a> {
                 let columns = self.search.filtered_columns(&scored.label, shape);
                 self.bench.evidence(&self.search.whitened(&columns, &self.noise))
             };
+            let positive = hypothesis.only_positive();
+            let weigh = |shape: &[f64]| weigh(shape).filter(|e| !positive || e.coefficients.iter().all(|c| *c > 0.0));
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.grid_size(*index);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
@@ -420,12 +461,7 @@ impl<'s, 'a> Round<'s, 'a> {
 }
 
 /// Whitens the design and weighs every variant, held-out folds only where asked for.
-fn weigh_all(
-    search: &Search,
-    base: Vec<Vec<f64>>,
-    noise: &Noise,
-    folds: bool,
-) -> (Vec<Vec<f64>>, Bench, Vec<Vec<Option<VariantEvidence>>>) {
+fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
     let bench = search.bench(base, noise);
     let runs = search.prepared.open_runs();
     let white: Vec<Vec<f64>> = search
@@ -513,10 +549,16 @@ fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted
     let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
     let named = table.iter().filter(is_named).find(passes);
     let generic = table.iter().filter(|s| !is_named(s)).find(passes);
-    // An unnamed structure is measured against every name by the same held-out evidence.
+    // An unnamed structure is measured against every name by the same held-out evidence. Where this runs to hundreds of
+    // nats every formula is a little wrong: then a name that explains nine tenths of what the free function does is kept.
     let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
+    let nearly = |generic: &Scored| {
+        table.iter().filter(is_named).filter(passes).find(|s| s.explained >= NEARLY_AS_MUCH * generic.explained)
+    };
     let best = match (named, generic) {
-        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => generic,
+        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => {
+            nearly(generic).unwrap_or(generic)
+        }
         (Some(named), _) => named,
         (None, Some(generic)) => generic,
         (None, None) => return None,

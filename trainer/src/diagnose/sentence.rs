@@ -95,6 +95,9 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
 #[must_use]
 pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let found = &diagnosis.findings[index];
+    if found.fitted.coefficients.is_empty() {
+        return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
+    }
     let telling = found.location.regions.first().filter(|r| r.share_of_excess - r.share_of_samples > TELLING_REGION);
     let place = telling.map_or_else(|| "Over the whole motion".to_string(), |region| place(region, units));
     let amount = amount(diagnosis, index, telling, units);
@@ -208,7 +211,7 @@ fn action(found: &Finding) -> &'static str {
 
 fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
     let proof = diagnosis.proof.as_ref()?;
-    if diagnosis.findings.is_empty() {
+    if diagnosis.findings.is_empty() || diagnosis.verdict == Verdict::BadData {
         return None;
     }
     let ratio = proof.improved_rmse / proof.baseline_rmse.max(f64::MIN_POSITIVE);

@@ -8,7 +8,7 @@ use super::outcome::{ClassicalLaw, FrontLaw, LawStory};
 use super::rigid;
 use crate::error::{Error, Result, codes};
 use crate::law::known_forms::fit_structure;
-use crate::law::structure::Nonlinear;
+use crate::law::structure::{Nonlinear, Structure};
 use crate::law::{
     self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, discover,
     fit_form, render,
@@ -20,6 +20,9 @@ const MOST_SAMPLES: usize = 12_000;
 
 /// Most samples that the classical laws are fitted to.
 const MOST_CLASSICAL_SAMPLES: usize = 4_000;
+
+/// Difference of the criterion (Schwarz 1978) that counts as clear (Kass & Raftery 1995).
+const CLEARLY_BETTER: f64 = 6.0;
 
 /// The formula with what led to it.
 pub(super) struct Found {
@@ -54,15 +57,37 @@ pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
     }
 }
 
-/// Looks for the formula and fits it.
+/// Looks for the formula and fits it. A classical law that describes the samples better than what the search found, its
+/// constants paid for, takes its place.
 pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
-    let open = data.select(&material.open());
-    let discovery = discover(&open, &SearchOptions::default()).map_err(|error| refused(&error))?;
+    let open_data = data.select(&material.open());
+    let mut discovery = discover(&open_data, &SearchOptions::default()).map_err(|error| refused(&error))?;
+    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
+    let fit = |structure: &Structure, data: &LawData, smoothing: Option<f64>| fit_structure(structure, data, smoothing);
     let fixed = fixed_smoothing(&discovery);
-    let fit = |data: &LawData| {
-        fit_structure(&discovery.law.structure, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error))
+    let own = fit(&discovery.law.structure, &few, fixed).map_err(|error| refused(&error))?;
+    let rivals: Vec<FormFit> = KnownForm::ALL
+        .par_iter()
+        .map(|form| fit_form(*form, &few, fixed).ok())
+        .collect::<Vec<_>>()
+        .into_iter()
+        .flatten()
+        .collect();
+    // One effective number of samples for all, or their criteria would not compare.
+    let effective = few.rows() as f64 / own.uncertainty.correlation_length;
+    let criterion = |fit: &FormFit| {
+        let constants = fit.law.parameters.len() as f64;
+        2.0 * effective * fit.rmse.max(f64::MIN_POSITIVE).ln() + effective.ln() * constants
     };
-    let (open, last) = (fit(&open)?, fit(data)?);
+    let limit = criterion(&own) - CLEARLY_BETTER;
+    let better = rivals.into_iter().filter(|rival| rival.converged && criterion(rival) < limit);
+    let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
+    discovery.law = best.law;
+    let fixed = fixed_smoothing(&discovery);
+    let settled = |data: &LawData| {
+        fit(&discovery.law.structure, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error))
+    };
+    let (open, last) = (settled(&open_data)?, settled(data)?);
     Ok(Found { open, last, discovery })
 }
 

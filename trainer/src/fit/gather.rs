@@ -52,10 +52,13 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
     let label = recordings.first().map_or("", |recording| recording.file());
     let first = velocity.first().copied().unwrap_or(0.0);
     if velocity.iter().all(|v| v.to_bits() == first.to_bits()) {
-        return Err(Error::new(&codes::NO_MOTION, "the velocity is constant, so friction cannot be told from an offset")
-            .in_file(label)
-            .in_column("velocity")
-            .with_value(first.to_string()));
+        return Err(Error::new(
+            &codes::NO_MOTION,
+            "the velocity is constant, so friction cannot be told from an offset",
+        )
+        .in_file(label)
+        .in_column("velocity")
+        .with_value(first.to_string()));
     }
     let (separation, target, friction) = match &samples.friction {
         Some(friction) => (None, friction.clone(), friction.clone()),
@@ -82,9 +85,7 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
 
 fn require_actuator(recording: &Recording) -> Result<()> {
     use crate::recording::Quantity::{Current, Force, FrictionForce, FrictionTorque, Torque};
-    recording
-        .require(&[Torque, Force, Current, FrictionTorque, FrictionForce], "fitting friction")
-        .map(|_| ())
+    recording.require(&[Torque, Force, Current, FrictionTorque, FrictionForce], "fitting friction").map(|_| ())
 }
 
 fn moving(velocity: &[f64]) -> Vec<usize> {

@@ -59,8 +59,7 @@ impl Lesson {
 
     /// Trains on the training blocks and prunes as the validation blocks allow.
     pub(super) fn train(&self, material: &Material, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
-        let blocks =
-            Blocks { train: material.split.train.clone(), validation: material.split.validation.clone() };
+        let blocks = Blocks { train: material.split.train.clone(), validation: material.split.validation.clone() };
         let dataset = self.dataset(&blocks);
         let told = |stage| {
             move |step: &kan::Progress| {

@@ -2,8 +2,8 @@
 
 use crc::{CRC_64_XZ, Crc};
 use frikan_shared::image::{Image, decode, encode};
-use frikan_shared::pool::Pool;
 use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
+use frikan_shared::pool::Pool;
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
 

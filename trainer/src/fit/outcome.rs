@@ -48,7 +48,7 @@ pub struct Outcome {
     pub law: LawStory,
     /// Classical friction laws fitted to the same samples, rigid body identified along with each.
     pub classical: Vec<ClassicalLaw>,
-    /// Constants of the law in the image, then those of the rigid body identified along with it.
+    /// Constants of the formula, then those of the rigid body as it is in the image.
     pub parameters: Vec<Parameter>,
     /// What was compared for the image; exactly one is chosen.
     pub candidates: Vec<Candidate>,
@@ -209,6 +209,6 @@ pub struct Trace {
     pub predicted_friction: Vec<f64>,
     /// On the rows as recorded.
     pub score: Score,
-    /// On the samples that the fit sees: everything through the same low-pass.
+    /// After a low-pass, at 100 samples a second: what is left of noise beyond the motion's band does not count.
     pub filtered_score: Score,
 }

@@ -54,7 +54,9 @@ impl Piecewise {
     pub(super) fn steepest(&self, low: f64, high: f64) -> f64 {
         const POINTS: usize = 200;
         let at = |i: usize| low + (high - low) * i as f64 / POINTS as f64;
-        (0..POINTS).map(|i| ((self.value(at(i + 1)) - self.value(at(i))) / (at(i + 1) - at(i))).abs()).fold(0.0, f64::max)
+        (0..POINTS)
+            .map(|i| ((self.value(at(i + 1)) - self.value(at(i))) / (at(i + 1) - at(i))).abs())
+            .fold(0.0, f64::max)
     }
 
     /// Enclosures of the Taylor coefficients of the function at any point of `over`.
@@ -71,7 +73,13 @@ impl Piecewise {
         let mut hull = hull.unwrap_or([Interval::ENTIRE; ORDERS]);
         // Across a break one derivative beyond the continuous ones is bounded, those above do not exist.
         let outermost = first == 0 || last == self.cells.len() - 1;
-        let bounded = if first == last { ORDERS } else if outermost { 3 } else { self.order + 1 };
+        let bounded = if first == last {
+            ORDERS
+        } else if outermost {
+            3
+        } else {
+            self.order + 1
+        };
         for coefficient in hull.iter_mut().skip(bounded) {
             *coefficient = Interval::ENTIRE;
         }
@@ -161,9 +169,8 @@ impl NetworkCurve {
     /// All activations of a network without outer tanh.
     pub(super) fn of(network: &Network) -> Self {
         let edges = network.layers().iter().enumerate().map(|(index, layer)| {
-            let edge = |from: usize, to: usize| {
-                layer.edge(from, to).active.then(|| Piecewise::of(network, index, from, to))
-            };
+            let edge =
+                |from: usize, to: usize| layer.edge(from, to).active.then(|| Piecewise::of(network, index, from, to));
             (0..layer.nodes.terminals()).map(|to| (0..layer.inputs).map(|from| edge(from, to)).collect()).collect()
         });
         Self {
@@ -208,8 +215,7 @@ impl Curve for NetworkCurve {
     fn series(&self, over: Interval) -> Series {
         let width = self.edges.first().and_then(|layer| layer.first()).map_or(1, Vec::len);
         let inputs = vec![Series::variable(over); width];
-        let sum =
-            self.carry(inputs, Series::constant(0.0), |edge, u| edge.compose(u), |a, b| a + b, |a, b| a * b);
+        let sum = self.carry(inputs, Series::constant(0.0), |edge, u| edge.compose(u), |a, b| a + b, |a, b| a * b);
         Series::constant(self.centre) + sum
     }
 }

@@ -9,7 +9,13 @@ use super::outcome::{Score, Trace};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::Recording;
-use crate::samples::{Preparation, Request, Samples, prepare, prepare_every_row};
+use crate::samples::filter::{GaussianFilter, Order};
+use crate::samples::{Preparation, Request, Samples, prepare_every_row};
+
+/// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
+const COMPARISON_RATE_HZ: f64 = 100.0;
+/// Standard deviation of the low-pass before it, s: 10 dB down at half that rate.
+const COMPARISON_SIGMA_S: f64 = 0.2415 / (0.5 * COMPARISON_RATE_HZ);
 
 /// A prediction, one value a sample, in the unit of the model's output.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,7 +142,7 @@ pub fn every_row(recording: &Recording, joint: &Joint) -> Result<Samples> {
 ///
 /// # Errors
 /// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
-pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint, rate_hz: Option<f64>) -> Result<Trace> {
+pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
     let rows = every_row(recording, joint).map_err(in_file)?;
     let prediction = predict(model, &rows).map_err(in_file)?;
@@ -145,23 +151,30 @@ pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint, rate_hz: O
     })?;
     let measured = channel.values.clone();
     let predicted = prediction.total();
-    let request = Request { rate_hz, ..Request::default() };
-    let preparation = Preparation::plan(&[recording], joint, &request).map_err(in_file)?;
-    let samples = prepare(recording, &preparation).map_err(in_file)?;
-    let filtered = predict(model, &samples).map_err(in_file)?.total();
-    let reference = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+    let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
     let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
     Ok(Trace {
         label: recording.label.clone(),
         time,
         velocity: rows.velocity.clone().unwrap_or_default(),
         score: Score::of(&measured, &predicted),
-        filtered_score: Score::of(reference, &filtered),
+        filtered_score: Score::of(&slow_measured, &slow_predicted),
         friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
         predicted_friction: prediction.friction,
         measured,
         predicted,
     })
+}
+
+/// A column of a recording's rows after a zero-phase low-pass, at the rate of comparison and without the ends that the
+/// filter does not reach; as it is where the recording is not faster.
+fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
+    let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
+    let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
+    let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
+    let segment = |range: &std::ops::Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
+    let long_enough = rows.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
+    long_enough.flat_map(segment).collect()
 }
 
 impl Score {
@@ -181,7 +194,8 @@ impl Score {
     /// Agreement over several recordings taken as one.
     #[must_use]
     pub fn over(traces: &[Trace]) -> Self {
-        let join = |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
+        let join =
+            |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
         Self::of(&join(|trace| &trace.measured), &join(|trace| &trace.predicted))
     }
 }

@@ -23,8 +23,16 @@ use crate::parameter::Parameter;
 use crate::recording::Recording;
 
 /// Tables follow the network to within this share of the residual, and of the range of friction where there is none.
-const TABLE_SHARE_OF_RESIDUAL: f64 = 0.05;
+const TABLE_SHARE_OF_RESIDUAL: f64 = 0.03;
 const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
+/// On the samples a coarser table may be off by this share of the residual, in the root mean square, to save cells.
+const COARSER_SHARE_OF_RESIDUAL: f64 = 0.15;
+/// Cells for which the smallest drive has room.
+const DRIVE_CELLS: usize = 128;
+/// How often the bound of a table is doubled at most, so that its cells fit into the smallest drive.
+const DOUBLINGS: i32 = 12;
+/// Most samples on which a table is compared with its network.
+const COMPARED_SAMPLES: usize = 2000;
 /// The drive never puts out more than this multiple of the largest friction that was seen.
 const LIMIT_OVER_LARGEST: f64 = 1.5;
 /// Most points of a picture.
@@ -76,7 +84,7 @@ pub fn fit(
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;
     tell(Stage::Scoring);
-    let score = |recording: &Recording| trace(&model, recording, joint, options.rate_hz);
+    let score = |recording: &Recording| trace(&model, recording, joint);
     let train = recordings.iter().map(score).collect::<Result<Vec<_>>>()?;
     let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
 
@@ -133,11 +141,46 @@ impl Builder<'_> {
         self.model(Law::Expression(program), &[], &used, &coefficients)
     }
 
+    /// The tightest table that fits into the smallest drive, else the tightest of all.
     fn table(&self, learnt: &Learnt, rmse: f64) -> Option<Box<HostModel>> {
         let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
         let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();
-        let tables = tables::compile(&learnt.network, &learnt.graph, &ranges, bound)?;
-        self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients)
+        let mut tightest = None;
+        for doubling in 0..=DOUBLINGS {
+            let slack = 2f64.powi(doubling);
+            let Some(tables) = tables::compile(&learnt.network, &learnt.graph, &ranges, bound * slack) else {
+                continue;
+            };
+            let fits = tables.cells.len() <= DRIVE_CELLS;
+            let model = self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients);
+            let Some(model) = model else { continue };
+            if self.deviation(&model, learnt) > (COARSER_SHARE_OF_RESIDUAL * rmse).max(bound) {
+                break;
+            }
+            if fits {
+                return Some(model);
+            }
+            tightest.get_or_insert(model);
+        }
+        tightest
+    }
+
+    /// Root mean square of what a model's law differs from its network by, on some of the samples.
+    fn deviation(&self, model: &HostModel, learnt: &Learnt) -> f64 {
+        let rows = self.material.rows.len();
+        let stride = rows.div_ceil(COMPARED_SAMPLES).max(1);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in (0..rows).step_by(stride) {
+            let point: Vec<f64> = self.inputs.iter().map(|input| input.values[row]).collect();
+            let mut channels = [0.0f32; MAX_INPUTS];
+            for (slot, read) in channels.iter_mut().zip(&model.inputs) {
+                let index = self.inputs.iter().position(|input| input.quantity == read.quantity);
+                *slot = index.map_or(0.0, |index| point[index] as f32);
+            }
+            sum += (f64::from(evaluate(model, &channels)) - learnt.network.evaluate(&point)).powi(2);
+            count += 1.0;
+        }
+        (sum / f64::max(count, 1.0)).sqrt()
     }
 
     fn model(
@@ -199,10 +242,8 @@ impl Rivals {
                 (Representation::Table, "the expression does not fit into a program of a drive".to_owned())
             }
         };
-        let forms = [
-            (Representation::Table, &self.table, &table),
-            (Representation::Expression, &self.expression, &expression),
-        ];
+        let forms =
+            [(Representation::Table, &self.table, &table), (Representation::Expression, &self.expression, &expression)];
         let mut candidates = Vec::new();
         for (form, model, trial) in forms {
             let Some((model, trial)) = model.as_ref().zip(trial.as_ref()) else { continue };
@@ -240,18 +281,18 @@ fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
     model.inputs.iter().map(range).collect()
 }
 
+/// Constants of the formula, then the rigid body as it is in the image.
 fn parameters(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Vec<Parameter> {
     let nuisance = &found.last.uncertainty.nuisance;
-    if by_expression {
-        let mut parameters = law_parameters(&found.last.law.parameters);
-        parameters.extend(rigid::parameters(material, nuisance));
-        return parameters;
-    }
     // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
     // formula stand for them.
-    let coefficients: Vec<(f64, f64)> =
-        learnt.coefficients.iter().zip(nuisance).map(|(value, (_, error))| (*value, *error)).collect();
-    rigid::parameters(material, &coefficients)
+    let in_image = |(index, &(value, error)): (usize, &(f64, f64))| {
+        (if by_expression { value } else { learnt.coefficients.get(index).copied().unwrap_or(value) }, error)
+    };
+    let coefficients: Vec<(f64, f64)> = nuisance.iter().enumerate().map(in_image).collect();
+    let mut parameters = law_parameters(&found.last.law.parameters);
+    parameters.extend(rigid::parameters(material, &coefficients));
+    parameters
 }
 
 fn remarks(found: &Found, recordings: &[Recording]) -> Vec<String> {

@@ -15,15 +15,13 @@ pub(super) struct Tables {
     pub(super) cells: Vec<Cell>,
     /// Positions of the inputs that the law reads, in its order.
     pub(super) inputs: Vec<usize>,
-    /// Certified distance from the network, unit of the output; `None` for several inputs, where none is worked out.
-    pub(super) certified: Option<f64>,
 }
 
-/// How often the bound is relaxed by a factor of three before compiling is given up.
-const RELAXATIONS: usize = 6;
+/// How often the bound of a single node is doubled where no layout meets it: bounds for the worst case are strict.
+const RELAXATIONS: i32 = 8;
 
-/// Compiles `network` to within `bound` (unit of the output). `ranges` are those of all its inputs. `None` when it does not fit
-/// a drive's tables.
+/// Compiles `network` to within `bound` (unit of the output; for several inputs in the worst case, which is far from the
+/// usual one). `ranges` are those of all its inputs. `None` when it does not fit a drive's tables.
 pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2]], bound: f64) -> Option<Tables> {
     let live: Vec<usize> = (0..ranges.len()).filter(|&input| network.live_nodes()[0][input]).collect();
     match live[..] {
@@ -35,14 +33,8 @@ pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2
 
 fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) -> Option<Tables> {
     let curve = NetworkCurve::of(network);
-    let compiled =
-        (0..RELAXATIONS).find_map(|k| compile_table(&curve, low, high, bound * 3f64.powi(k as i32), 0).ok())?;
-    Some(Tables {
-        law: compiled.table.into(),
-        certified: Some(compiled.certificate.total()),
-        cells: compiled.cells,
-        inputs: vec![input],
-    })
+    let compiled = compile_table(&curve, low, high, bound, 0).ok()?;
+    Some(Tables { law: compiled.table.into(), cells: compiled.cells, inputs: vec![input] })
 }
 
 /// A node with outgoing activations, before its layout is chosen.
@@ -73,11 +65,9 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
             let mut edges: Vec<Option<Piecewise>> =
                 terminals.iter().map(|&to| curve.edges[index][to][from].clone()).collect();
             // The output's centre goes into the first activation of the last layer.
-            if first_active {
-                if let Some(edge) = edges.iter_mut().flatten().next() {
-                    *edge = edge.clone().raised(network.output.centre);
-                    first_active = false;
-                }
+            if first_active && let Some(edge) = edges.iter_mut().flatten().next() {
+                *edge = edge.clone().raised(network.output.centre);
+                first_active = false;
             }
             let domain = graph.edges.iter().find(|e| e.layer == index && e.from == from)?.domain;
             let bounds = terminals
@@ -94,14 +84,14 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
     let mut sources = heapless::Vec::new();
     for node in &nodes {
         let first_cell = u16::try_from(cells.len()).ok()?;
-        let (table, columns) = (0..RELAXATIONS).find_map(|k| smallest(node, 3f64.powi(k as i32)))?;
+        let (table, columns) = (0..=RELAXATIONS).find_map(|k| smallest(node, 2f64.powi(k)))?;
         for row in 0..table.cells() as usize {
             cells.extend(columns.iter().map(|column| column.get(row).copied().unwrap_or_default()));
         }
         sources.push(Source { table, first_cell }).ok()?;
     }
     let law = Law::Network(TableNetwork { layers, sources, outer: Outer::Linear });
-    Some(Tables { law, cells, inputs: live.to_vec(), certified: None })
+    Some(Tables { law, cells, inputs: live.to_vec() })
 }
 
 fn layer_node(layer: &crate::kan::Layer, terminal: usize) -> usize {

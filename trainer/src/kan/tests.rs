@@ -45,9 +45,13 @@ fn learns_the_paper_s_clean_laws_to_four_millinewtonmetres() {
         let (v, test) = (column(&mut random, 1000), column(&mut random, 2000));
         let torque: Vec<f64> = v.iter().map(|&v| friction(parameters, v)).collect();
         let truth: Vec<f64> = test.iter().map(|&v| friction(parameters, v)).collect();
-        let result = trained(&[v], &torque, &options("[1,5,1]"));
-        let error = rmse(&result.network.evaluate_columns(&[test]), &truth);
-        assert!(error < 4e-3, "axis {}: {error}", axis + 1);
+        let options = FitOptions { restarts: 3, tolerance: 3e-3, ..options("[1,5,1]") };
+        let result = trained(&[v], &torque, &options);
+        let fitted = result.network.evaluate_columns(from_ref(&test));
+        let error = rmse(&fitted, &truth);
+        let miss = |i: &usize| (fitted[*i] - truth[*i]).abs();
+        let worst = (0..test.len()).max_by(|a, b| miss(a).total_cmp(&miss(b))).unwrap();
+        assert!(error < 4e-3, "axis {}: {error}, worst {} at {} rad/s", axis + 1, miss(&worst), test[worst]);
     }
 }
 

@@ -184,7 +184,7 @@ fn collect(e: &Expr, negative: bool, terms: &mut Vec<(bool, Expr)>, constant: &m
 /// A total order of expressions that puts products of sums (the bracket of the smoothed sign) first, then longer terms
 /// before shorter ones.
 fn order(a: &Expr, b: &Expr) -> Ordering {
-    let key = |e: &Expr| (std::cmp::Reverse(e.node_count()), format!("{}", shape(e)), format!("{e:?}"));
+    let key = |e: &Expr| (std::cmp::Reverse(e.node_count()), shape(e).to_string(), format!("{e:?}"));
     key(a).cmp(&key(b))
 }
 

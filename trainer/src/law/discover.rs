@@ -30,11 +30,13 @@ pub struct SearchOptions {
     pub folds: usize,
     /// Nodes that a law may have; one with more is taken only where it reduces the held-out mean square by 15 %.
     pub max_nodes: usize,
+    /// Structures to start from besides the usual ones, for instance read off the activations of a pruned network.
+    pub starts: Vec<Structure>,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { beam_width: 6, rounds: 8, search_samples: 2000, folds: 5, max_nodes: 20 }
+        Self { beam_width: 6, rounds: 8, search_samples: 2000, folds: 5, max_nodes: 20, starts: Vec::new() }
     }
 }
 
@@ -112,7 +114,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let small = thinned.as_ref().map(|d| Problem::new(d, &extents));
     let beam = Beam { width: options.beam_width.max(1), rounds: options.rounds, refits: 5 };
     let searched = small.as_ref().unwrap_or(&problem);
-    let explored = explore(searched, beam, evidence_of(searched, None), &[]);
+    let explored = explore(searched, beam, evidence_of(searched, None), &options.starts);
 
     let rough = evidence_of(searched, best(searched, &explored, evidence_of(searched, None), 1).first().copied());
     let finalists: Vec<Fit> =

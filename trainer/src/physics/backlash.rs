@@ -25,6 +25,10 @@ impl Hypothesis for Backlash {
         [0.02, 0.06, 0.18].into_iter().map(|share| vec![share * typical]).collect()
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(load) = &state.load else { return Vec::new() };
         let side = state.map(|i| (load[i] / shape[0]).tanh());

@@ -24,6 +24,10 @@ impl Hypothesis for Contact {
             .collect()
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         vec![state.map(|i| shape[1] * (shape[1] * (state.position[i] - shape[0])).max(0.0))]
     }

@@ -30,6 +30,10 @@ impl Hypothesis for DwellBreakaway {
             .collect()
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let memory = &state.memory;
         vec![state.map(|i| {

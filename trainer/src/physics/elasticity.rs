@@ -17,6 +17,10 @@ impl Hypothesis for Elasticity {
         if state.rigid_body.is_some() { vec![vec![]] } else { Vec::new() }
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, _shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(torque) = &state.rigid_body else { return Vec::new() };
         let mut column = state.rate_of(&state.rate_of(torque));

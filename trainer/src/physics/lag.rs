@@ -32,6 +32,10 @@ impl Hypothesis for FrictionalLag {
         geometric_grid(low, 0.1f64.max(2.0 * low), 6).into_iter().map(|lag| vec![lag]).collect()
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let lagged = lagged_velocity(state, shape[0]);
         vec![state.map(|i| state.base_friction_at(lagged[i]) - state.base_friction_at(state.velocity[i]))]

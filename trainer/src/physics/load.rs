@@ -26,6 +26,10 @@ impl Hypothesis for LoadFriction {
         if varied_load(state).is_some() { vec![vec![1.0], vec![2.0]] } else { Vec::new() }
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(load) = &state.load else { return Vec::new() };
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);

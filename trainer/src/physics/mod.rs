@@ -109,6 +109,16 @@ pub trait Hypothesis: Sync {
         None
     }
 
+    /// Whether a coefficient may only be positive: break-away lies above Coulomb friction, a stop pushes back.
+    fn only_positive(&self) -> bool {
+        false
+    }
+
+    /// Whether the effect may be found again with another shape (a ripple has several orders).
+    fn repeats(&self) -> bool {
+        false
+    }
+
     /// How many shapes were looked at to propose [`Self::shapes`], where these were chosen by their residual.
     fn scanned(&self, _state: &JointState) -> Option<f64> {
         None

@@ -1,4 +1,5 @@
-//! C1, Dahl 1968; Canudas de Wit et al. 1995: after a reversal friction builds up over a distance, not at once.
+//! C1, Dahl 1968; Canudas de Wit et al. 1995; Al-Bender, Lampaert and Swevers 2005: after a reversal friction builds up
+//! over a distance, not at once; over one distance or over several.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
@@ -28,31 +29,46 @@ impl Hypothesis for Presliding {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = F_b (z - tanh(v/v_eps)), dz/dq = (sign(v) - z) / delta"
+        "dF = sum_i F_i (z_i - tanh(v/v_eps)), dz_i/dq = (sign(v) - z_i) / delta_i, delta_i = delta 4^(i-1)"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let (low, high) = state.travel();
         let travel = high - low;
         let finest = (4.0 * state.resolution).max(3e-5 * travel);
-        geometric_grid(finest, (0.1 * travel).max(finest), 8).into_iter().map(|delta| vec![delta]).collect()
+        geometric_grid(finest, (0.4 * travel).max(finest), 10)
+            .into_iter()
+            .flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]])
+            .collect()
+    }
+
+    fn only_positive(&self) -> bool {
+        true
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let z = bristle(state, shape[0]);
-        vec![state.map(|i| z[i] - state.sign[i])]
+        (0..shape[1] as usize)
+            .map(|element| {
+                let z = bristle(state, shape[0] * 4f64.powi(element as i32));
+                state.map(|i| z[i] - state.sign[i])
+            })
+            .collect()
     }
 
-    fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![("presliding_torque", "F_b", Dimension::Torque)]
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        const SYMBOLS: [&str; 3] = ["F_1", "F_2", "F_3"];
+        SYMBOLS.iter().take(shape[1] as usize).map(|symbol| ("presliding_torque", *symbol, Dimension::Torque)).collect()
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
-        vec![ShapeName::new("breakaway_distance", "delta", Dimension::Position)]
+        vec![
+            ShapeName::new("breakaway_distance", "delta", Dimension::Position),
+            ShapeName::new("elements", "n", Dimension::One),
+        ]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
-        Some((state.resolution.max(1e-9), 0.5 * (high - low)))
+        (index == 0).then(|| (state.resolution.max(1e-9), 1.5 * (high - low)))
     }
 }

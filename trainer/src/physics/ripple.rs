@@ -44,6 +44,10 @@ impl Hypothesis for PositionRipple {
         orders(state, 90).into_iter().flat_map(|k| [vec![k, COGGING], vec![k, FRICTION]]).collect()
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let order = shape[0];
         let (mut cosine, mut sine): (Vec<f64>, Vec<f64>) =

@@ -24,6 +24,10 @@ impl Hypothesis for Saturation {
         shapes
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         vec![state.map(|i| (state.predicted[i].abs() - shape[0]).max(0.0) * state.predicted[i].signum())]
     }

@@ -27,6 +27,10 @@ impl Hypothesis for Stribeck {
         geometric_grid(low, WIDEST * top, 7).into_iter().flat_map(|v| [vec![v, 1.0], vec![v, 2.0]]).collect()
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let (stribeck_velocity, exponent) = (shape[0], shape[1]);
         let decay = |speed: f64| match exponent {

@@ -9,8 +9,8 @@ use crate::fit::outcome::{Score, Soundness, Trace};
 /// The object that `--json` writes.
 pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Value {
     let inputs: Vec<&str> = outcome.inputs.iter().map(|input| input.name.as_str()).collect();
-    let tests: Vec<Value> = outcome.tests.iter().map(|trace| recording(trace)).collect();
-    let train: Vec<Value> = outcome.train.iter().map(|trace| recording(trace)).collect();
+    let tests: Vec<Value> = outcome.tests.iter().map(recording).collect();
+    let train: Vec<Value> = outcome.train.iter().map(recording).collect();
     json!({
         "schema": "frikan.fit/1",
         "joint": outcome.joint,
@@ -67,6 +67,6 @@ fn score(score: Score) -> Value {
 fn recording(trace: &Trace) -> Value {
     let mut value = score(trace.score);
     value["recording"] = json!(trace.label);
-    value["filtered"] = score(trace.filtered_score);
+    value["at_100_hz"] = score(trace.filtered_score);
     value
 }

@@ -26,11 +26,7 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
     for row in &outcome.relevance {
         let mark = if row.picked { "used" } else { "" };
         let (explained, added) = (100.0 * row.explained, 100.0 * row.added);
-        writeln!(
-            out,
-            "  {:<20} {:>+11.4} {explained:>8.1} % {added:>14.1} %  {mark}",
-            row.input, row.correlation
-        )?;
+        writeln!(out, "  {:<20} {:>+11.4} {explained:>8.1} % {added:>14.1} %  {mark}", row.input, row.correlation)?;
     }
     let network = &outcome.network;
     let edges = |graph: &crate::kan::GraphSummary| graph.edges.iter().filter(|edge| edge.active).count();
@@ -71,7 +67,7 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
             significant(candidate.held_out_rmse, DIGITS)
         )?;
     }
-    writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error  (low-passed)")?;
+    writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error   at 100 Hz")?;
     outcome.train.iter().try_for_each(|trace| write_score(out, "train", trace, unit))?;
     outcome.tests.iter().try_for_each(|trace| write_score(out, "test", trace, unit))?;
     for remark in &outcome.remarks {
