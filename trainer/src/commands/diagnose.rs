@@ -7,6 +7,7 @@ use crate::commands::output::Outputs;
 use crate::diagnose::{Reference, model, simulation};
 use crate::fit;
 use crate::joint::Joint;
+use crate::report::{self, DiagnosisPage};
 use crate::recording::{self, Axis, Recording};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -87,6 +88,17 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     if arguments.json.as_deref() != Some(Path::new("-")) {
         outputs.add(Path::new("-"), text_of(&story));
     }
+    if let Some(path) = &arguments.report {
+        let page = DiagnosisPage {
+            recording: &real.label,
+            compared_with: &compared_with(arguments),
+            diagnosis: &diagnosis,
+            story: &story,
+            units,
+            export: &[],
+        };
+        outputs.add(path, report::diagnosis(&page));
+    }
     let inputs = [Some(&arguments.recording), arguments.simulation.as_ref(), arguments.model.as_ref()];
     outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;
@@ -143,6 +155,18 @@ fn same_units(real: &Recording, simulated: &Recording) -> Result<()> {
         units(real).actuator
     );
     Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(simulated.file()))
+}
+
+fn compared_with(arguments: &Diagnose) -> String {
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match (&arguments.simulation, &arguments.model, arguments.base) {
+        (Some(path), _, _) => format!("the simulation {}", name(path)),
+        (None, Some(path), _) => format!("the model {}", name(path)),
+        (None, None, StaticBase::CoulombViscous) => {
+            "symmetric Coulomb and viscous friction, fitted to the same recording".to_string()
+        }
+        (None, None, StaticBase::Spline) => "a symmetric friction curve, fitted to the same recording".to_string(),
+    }
 }
 
 fn base_kind(arguments: &Diagnose) -> BaseKind {

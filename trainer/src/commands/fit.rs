@@ -125,6 +125,9 @@ fn write(arguments: &Fit, outcome: &Outcome, seconds: f64) -> Result<()> {
     if let Some(path) = &arguments.json {
         outputs.add(path, format!("{}\n", json::summary(outcome, seconds)));
     }
+    if let Some(path) = &arguments.report {
+        outputs.add(path, crate::report::fit(outcome));
+    }
     let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);
     outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;

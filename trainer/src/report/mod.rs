@@ -1,1 +1,13 @@
-//! Pictures and pages. Only commands know this room.
+//! Pages to read in a browser: one HTML file each, nothing loaded from anywhere, pictures as inline SVG, the same bytes for the
+//! same result. Knows results, not how they came about.
+
+mod axis;
+mod chart;
+mod diagnosis;
+mod fit;
+mod graph;
+mod heat_map;
+mod page;
+
+pub use diagnosis::{DiagnosisPage, diagnosis};
+pub use fit::fit;
