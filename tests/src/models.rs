@@ -26,8 +26,8 @@ pub fn asymmetric_friction(velocity: f64) -> f64 {
     stribeck_friction(velocity) * if velocity > 0.0 { 1.0 } else { 0.85 } + 0.4 * velocity
 }
 
-/// Cubic coefficients that meet value and slope of `f` at both ends of `[low, high]`, in the local coordinate.
-fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
+/// The cubic that meets value and slope of `f` at both ends of `[low, high]`, in powers of the way through it, from 0 to 1.
+fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> [f64; 4] {
     let width = high - low;
     let step = 1e-4 * width;
     let slope =
@@ -36,9 +36,14 @@ fn hermite(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
     let (rise, fall) = (slope(low, step) * width, slope(high, -step) * width);
     let c2 = 3.0 * (end - start) - 2.0 * rise - fall;
     let c3 = 2.0 * (start - end) + rise + fall;
-    // From powers of x in [0, 1] to powers of the cell's coordinate 1 + x.
-    let coefficients = [start - rise + c2 - c3, rise - 2.0 * c2 + 3.0 * c3, c2 - 3.0 * c3, c3];
-    Cell::from_floats(coefficients.map(|coefficient| coefficient as f32))
+    [start, rise, c2, c3]
+}
+
+/// The same as a cell, whose coordinate goes from 1 to 2.
+fn hermite_cell(f: impl Fn(f64) -> f64, low: f64, high: f64) -> Cell {
+    let [c0, c1, c2, c3] = hermite(f, low, high);
+    let shifted = [c0 - c1 + c2 - c3, c1 - 2.0 * c2 + 3.0 * c3, c2 - 3.0 * c3, c3];
+    Cell::from_floats(shifted.map(|coefficient| coefficient as f32))
 }
 
 /// The cells of one side of a geometric table.
@@ -46,7 +51,7 @@ fn geometric_side(layout: &Geometric, count: u32, f: impl Fn(f64) -> f64) -> Vec
     let magnitude =
         |position: u32| f64::from(f32::from_bits(layout.offset.to_bits() + position)) - f64::from(layout.offset);
     let shift = layout.shape().shift();
-    let cell = |index: u32| hermite(&f, magnitude(index << shift), magnitude((index + 1) << shift));
+    let cell = |index: u32| hermite_cell(&f, magnitude(index << shift), magnitude((index + 1) << shift));
     (0..count).map(cell).collect()
 }
 
@@ -75,7 +80,7 @@ pub fn uniform_table(f: impl Fn(f64) -> f64, cells: u16, low: f32, high: f32) ->
     let layout = Uniform::new(UniformShape { first_cell: 0, cells, low, high });
     let width = (f64::from(high) - f64::from(low)) / f64::from(cells);
     let start = |index: u16| f64::from(low) + width * f64::from(index);
-    let pieces = (0..cells).map(|index| hermite(&f, start(index), start(index) + width)).collect();
+    let pieces = (0..cells).map(|index| hermite_cell(&f, start(index), start(index) + width)).collect();
     (Table::Uniform(layout), pieces)
 }
 
@@ -156,8 +161,7 @@ pub fn integer_table() -> TestModel {
     let narrow = (0..16).map(|index| (f64::from(index) * 512.0, 512.0));
     let wide = (1..16).map(|index| (f64::from(index) * 8192.0, 8192.0));
     let cells = narrow.chain(wide).map(|(start, width)| {
-        let [c0, c1, c2, c3] = hermite(steps, start, start + width).floats();
-        Cell::from_integers([c0, c1, c2, c3].map(|coefficient| coefficient.round() as i32))
+        Cell::from_integers(hermite(steps, start, start + width).map(|coefficient| coefficient.round() as i32))
     });
     let cells: Vec<_> = cells.collect();
     model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &cells)

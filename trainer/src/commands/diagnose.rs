@@ -1,10 +1,10 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
+use crate::commands::output::Outputs;
 use crate::diagnose::sentence::{Story, Units, tell};
 use crate::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose};
-use crate::error::{Error, Result, codes};
-use crate::commands::output::Outputs;
 use crate::diagnose::{Reference, model, simulation};
+use crate::error::{Error, Result, codes};
 use crate::fit;
 use crate::joint::Joint;
 use crate::report::{self, DiagnosisPage};

@@ -63,7 +63,7 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted], noise: &Noise) -> Op
         columns.extend(search.filtered_columns(&effect.label, &effect.shape));
         places.push(begin..columns.len());
     }
-    let noise = search.noise_after(&columns, Some(noise));
+    let noise = search.noise_after(&columns);
     let bench = search.bench(columns, &noise);
     let (solution, covariance) = bench.solve(&[])?;
     let mut effects = Vec::new();

@@ -49,17 +49,14 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let state = &search.prepared.state;
     let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };
     let mut axes = vec![("velocity", at_rows(&state.velocity))];
-    axes.extend(
-        Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))),
-    );
+    axes.extend(Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))));
     let axes: Vec<(&'static str, &[f64])> = axes.iter().map(|(name, values)| (*name, values.as_slice())).collect();
     locate_density(&axes, &at_rows(&state.time), &density)
 }
 
 /// Locates a density of evidence along time and along every axis, given as name and value a row.
 pub(crate) fn locate_density(axes: &[(&'static str, &[f64])], time: &[f64], density: &[f64]) -> Location {
-    let mut regions: Vec<Region> =
-        axes.iter().filter_map(|(name, values)| interval(name, values, density)).collect();
+    let mut regions: Vec<Region> = axes.iter().filter_map(|(name, values)| interval(name, values, density)).collect();
     regions.sort_by(|a, b| contrast(b).total_cmp(&contrast(a)));
     Location { regions, when_s: when(time, density) }
 }

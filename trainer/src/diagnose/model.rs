@@ -45,16 +45,16 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
     })
 }
 
+#[allow(clippy::field_reassign_with_default)] // struct update trips the compiler over the length of `other`
 fn measurement(state: &JointState, i: usize) -> Measurement {
     let channel = |series: &Option<Vec<f64>>| series.as_ref().map_or(0.0, |values| values[i] as f32);
-    Measurement {
-        velocity: state.velocity[i] as f32,
-        position: state.position[i] as f32,
-        acceleration: state.acceleration[i] as f32,
-        load: channel(&state.load),
-        temperature: channel(&state.temperature),
-        ..Measurement::default()
-    }
+    let mut measurement = Measurement::default();
+    measurement.velocity = state.velocity[i] as f32;
+    measurement.position = state.position[i] as f32;
+    measurement.acceleration = state.acceleration[i] as f32;
+    measurement.load = channel(&state.load);
+    measurement.temperature = channel(&state.temperature);
+    measurement
 }
 
 /// Law and effects over the recording; memories restart at each segment.
@@ -71,21 +71,19 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
 }
 
 /// The static law over velocity, other channels at their mean.
+#[allow(clippy::field_reassign_with_default)]
 fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f64, f64)> {
     let mean = |series: &[f64]| (series.iter().sum::<f64>() / series.len().max(1) as f64) as f32;
-    let middle = Measurement {
-        position: mean(&state.position),
-        load: state.load.as_deref().map_or(0.0, mean),
-        temperature: state.temperature.as_deref().map_or(0.0, mean),
-        ..Measurement::default()
-    };
-    tabulated_velocities(1.2 * state.top_speed())
-        .map(|velocity| {
-            let mut measurement = middle;
-            measurement.velocity = velocity as f32;
-            (velocity, f64::from(evaluate(model, &measurement.channels(&model.inputs))))
-        })
-        .collect()
+    let mut measurement = Measurement::default();
+    measurement.position = mean(&state.position);
+    measurement.load = state.load.as_deref().map_or(0.0, mean);
+    measurement.temperature = state.temperature.as_deref().map_or(0.0, mean);
+    let mut curve = Vec::new();
+    for velocity in tabulated_velocities(1.2 * state.top_speed()) {
+        measurement.velocity = velocity as f32;
+        curve.push((velocity, f64::from(evaluate(model, &measurement.channels(&model.inputs)))));
+    }
+    curve
 }
 
 /// What may move when an effect is added: every constant of a formula, local hats over a table of velocity, Coulomb and

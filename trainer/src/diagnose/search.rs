@@ -42,6 +42,9 @@ impl Default for Settings {
     }
 }
 
+/// Share of a free function's explained energy at which a name is good enough.
+const NEARLY_AS_MUCH: f64 = 0.9;
+
 /// Terms at most, repeated ones included.
 const MOST_TERMS: usize = 12;
 
@@ -62,6 +65,8 @@ pub struct Scored {
     pub(crate) group: usize,
     /// -log p of its best variant by chi-square.
     pub(crate) surprise: f64,
+    /// Energy that its best variant explains before whitening.
+    pub(crate) explained: f64,
 }
 
 /// An accepted finding.
@@ -164,11 +169,7 @@ impl<'a> Search<'a> {
 
     /// The outcome of a search that was not made: no findings, noise of the base alone.
     pub fn nothing(&self) -> SearchOutcome {
-        SearchOutcome {
-            accepted: Vec::new(),
-            last_round: Vec::new(),
-            noise: self.noise_after(&self.base.columns, None),
-        }
+        SearchOutcome { accepted: Vec::new(), last_round: Vec::new(), noise: self.noise_after(&self.base.columns) }
     }
 
     /// Runs the search.
@@ -187,7 +188,6 @@ impl<'a> Search<'a> {
                     .iter_mut()
                     .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
             }
-            if std::env::var("DBG").is_ok() { for r in &table { if matches!(r.label, Label::Named(_)) || r.score>50.0 { eprintln!("{:?} S {:.1} d {:.1} c {:.1} T {:.1} {:?}", r.label, r.score, r.evidence.held_out, r.evidence.criterion, r.evidence.statistic, r.shape); } } eprintln!("AR {:?} rms {}", round.noise.autoregression, round.noise.rms); }
             let finding = choose(&table, &self.settings, travel);
             match finding {
                 Some(finding)
@@ -296,17 +296,11 @@ impl<'a> Search<'a> {
         Bench::new(self.whitened(&base, noise), target, blocks)
     }
 
-    /// Noise of what the columns leave, fitted by least squares (whitened by an earlier noise where there is one).
-    pub(crate) fn noise_after(&self, columns: &[Vec<f64>], before: Option<&Noise>) -> Noise {
+    /// Noise of what the columns leave after an ordinary least-squares fit: one that is whitened first may leave slow
+    /// errors that pass for noise.
+    pub(crate) fn noise_after(&self, columns: &[Vec<f64>]) -> Noise {
         let runs = self.prepared.open_runs();
-        let coefficients = match before {
-            None => super::linear::least_squares(columns, &self.base.target, &runs),
-            Some(noise) => {
-                let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
-                super::linear::least_squares(&self.whitened(columns, noise), &target, &runs)
-            }
-        };
-        let rest = match coefficients {
+        let rest = match super::linear::least_squares(columns, &self.base.target, &runs) {
             Some(coefficients) => residual(columns, &self.base.target, &coefficients),
             None => self.base.target.clone(),
         };
@@ -346,6 +340,8 @@ struct Round<'s, 'a> {
     alone: Option<VariantEvidence>,
     variants: Vec<Vec<Option<VariantEvidence>>>,
     white: Vec<Vec<f64>>,
+    /// Largest energy that each group explains before whitening.
+    explained: Vec<f64>,
 }
 
 impl<'s, 'a> Round<'s, 'a> {
@@ -353,15 +349,22 @@ impl<'s, 'a> Round<'s, 'a> {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
         let mut noise = Noise::white(search.prepared.rows.len());
+        let mut explained = Vec::new();
         for _ in 0..2 {
             let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            if explained.is_empty() {
+                let largest = |tested: &Vec<Option<VariantEvidence>>| {
+                    tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
+                };
+                explained = variants.iter().map(largest).collect();
+            }
             let mut generous = base.clone();
             generous.extend(best_two(search, &bench, &variants));
-            noise = search.noise_after(&generous, Some(&noise));
+            noise = search.noise_after(&generous);
         }
         let (white, bench, variants) = weigh_all(search, base, &noise, true);
         let alone = bench.alone();
-        Self { search, noise, bench, alone, variants, white }
+        Self { search, noise, bench, alone, variants, white, explained }
     }
 
     fn draw_null(&self) -> NullDraws {
@@ -395,6 +398,7 @@ impl<'s, 'a> Round<'s, 'a> {
                     evidence,
                     group: index,
                     surprise,
+                    explained: self.explained[index],
                 };
                 Some((index, scored))
             })
@@ -547,11 +551,16 @@ fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted
     let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
     let named = table.iter().filter(is_named).find(passes);
     let generic = table.iter().filter(|s| !is_named(s)).find(passes);
-    // An unnamed structure is measured against every name by the same held-out evidence; where this runs to hundreds of
-    // nats every formula is a little wrong, and a free function has to explain a tenth more than a name.
+    // An unnamed structure is measured against every name by the same held-out evidence. Where this runs to hundreds of
+    // nats every formula is a little wrong: then a name that explains nine tenths of what the free function does is kept.
     let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
+    let nearly = |generic: &Scored| {
+        table.iter().filter(is_named).filter(passes).find(|s| s.explained >= NEARLY_AS_MUCH * generic.explained)
+    };
     let best = match (named, generic) {
-        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin.max(0.1 * held_out) => generic,
+        (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => {
+            nearly(generic).unwrap_or(generic)
+        }
         (Some(named), _) => named,
         (None, Some(generic)) => generic,
         (None, None) => return None,

@@ -225,8 +225,7 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
 
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
     let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
-    (!names.is_empty())
-        .then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
+    (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
 }
 
 /// The three effects that would have been seen soonest, of those a user asks for first.

@@ -46,9 +46,7 @@ impl Traces {
         let effects = improved
             .effects
             .iter()
-            .map(|effect| {
-                weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients)
-            })
+            .map(|effect| weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients))
             .collect();
         let channels = Channel::axes(state)
             .into_iter()

@@ -188,12 +188,18 @@ impl Builder<'_> {
         used: &[usize],
         coefficients: &[f64],
     ) -> Option<Box<HostModel>> {
+        // A table is refused where a cell could exceed the limit, so the limit covers what the cells can put out.
+        let reach = cells.iter().map(|cell| f64::from(cell.bound())).fold(0.0, f64::max);
+        let limit = match law {
+            Law::Geometric(_) | Law::Uniform(_) => reach * (1.0 + 1e-6),
+            _ => 0.0,
+        };
         assemble(&Parts {
             law,
             cells,
             inputs: used.iter().map(|&index| &self.inputs[index]).collect(),
             unit: output_unit(self.material.samples.actuator_unit),
-            limit: LIMIT_OVER_LARGEST * self.largest(),
+            limit: limit.max(LIMIT_OVER_LARGEST * self.largest()),
             rigid_body: rigid::in_force(self.material, self.joint, coefficients),
         })
     }

@@ -36,7 +36,10 @@ impl Hypothesis for Presliding {
         let (low, high) = state.travel();
         let travel = high - low;
         let finest = (4.0 * state.resolution).max(3e-5 * travel);
-        geometric_grid(finest, (0.4 * travel).max(finest), 10).into_iter().flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]]).collect()
+        geometric_grid(finest, (0.4 * travel).max(finest), 10)
+            .into_iter()
+            .flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]])
+            .collect()
     }
 
     fn only_positive(&self) -> bool {

@@ -6,7 +6,9 @@ use frikan_firmware_harness::{Evaluator, Row};
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::integer_table::evaluate_integer;
 use frikan_shared::image::{ImageError, decode};
+use frikan_shared::integer_table::IntegerTable;
 use frikan_shared::model::{Law, Model};
+use frikan_shared::pool::Pool;
 
 /// Cells for which a drive has room.
 pub const CELLS: usize = 128;
@@ -32,23 +34,26 @@ impl Evaluator for Drive {
 
 /// A drive without floating-point unit: input and output are counts, in the bits of the row and of the answer.
 pub struct IntegerDrive {
-    model: Model<CELLS>,
+    table: IntegerTable,
+    cells: Pool<CELLS>,
 }
 
 impl Evaluator for IntegerDrive {
     fn decode(image: &'static [u8]) -> Result<Self, u32> {
-        let model = decode(image).map_err(reason)?.model;
-        if matches!(model.law, Law::IntegerTable(_)) { Ok(Self { model }) } else { Err(NOT_AN_INTEGER_TABLE) }
+        let model = decode::<CELLS>(image).map_err(reason)?.model;
+        match model.law {
+            Law::IntegerTable(table) => Ok(Self { table, cells: model.cells }),
+            _ => Err(NOT_AN_INTEGER_TABLE),
+        }
     }
 
     fn inputs(&self) -> usize {
-        self.model.inputs.len()
+        1
     }
 
     fn evaluate(&mut self, row: &Row) -> f32 {
-        let Law::IntegerTable(table) = &self.model.law else { return 0.0 };
         let [steps, ..] = *row;
-        f32::from_bits(evaluate_integer(table, &self.model.cells, steps.to_bits() as i32) as u32)
+        f32::from_bits(evaluate_integer(&self.table, &self.cells, steps.to_bits() as i32) as u32)
     }
 }
 
