@@ -50,6 +50,25 @@ pub fn fit(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<Outcome> {
+    let first = fit_once(recordings, tests, joint, options, progress);
+    let too_large = first.as_ref().is_err_and(|error| *error == no_image());
+    if !too_large || options.inputs.is_some() {
+        return first;
+    }
+    // Inputs that relevance picked may ask for more than a drive has room for; velocity alone never does.
+    let velocity = Options { inputs: Some(vec!["velocity".to_owned()]), ..options.clone() };
+    let mut outcome = fit_once(recordings, tests, joint, &velocity, progress)?;
+    outcome.remarks.push("A law of all relevant inputs does not fit into an image; this one reads velocity alone.".into());
+    Ok(outcome)
+}
+
+fn fit_once(
+    recordings: &[Recording],
+    tests: &[Recording],
+    joint: &Joint,
+    options: &Options,
+    progress: ProgressCallback<'_>,
+) -> Result<Outcome> {
     let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
     tell(Stage::Separating);
     let material = gather(recordings, joint, options)?;
