@@ -50,6 +50,25 @@ pub fn fit(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<Outcome> {
+    let first = fit_once(recordings, tests, joint, options, progress);
+    let too_large = first.as_ref().is_err_and(|error| *error == no_image());
+    if !too_large || options.inputs.is_some() {
+        return first;
+    }
+    // Inputs that relevance picked may ask for more than a drive has room for; velocity alone never does.
+    let velocity = Options { inputs: Some(vec!["velocity".to_owned()]), ..options.clone() };
+    let mut outcome = fit_once(recordings, tests, joint, &velocity, progress)?;
+    outcome.remarks.push("A law of all relevant inputs does not fit into an image; this one reads velocity alone.".into());
+    Ok(outcome)
+}
+
+fn fit_once(
+    recordings: &[Recording],
+    tests: &[Recording],
+    joint: &Joint,
+    options: &Options,
+    progress: ProgressCallback<'_>,
+) -> Result<Outcome> {
     let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
     tell(Stage::Separating);
     let material = gather(recordings, joint, options)?;
@@ -190,12 +209,18 @@ impl Builder<'_> {
         used: &[usize],
         coefficients: &[f64],
     ) -> Option<Box<HostModel>> {
+        // A table is refused where a cell could exceed the limit, so the limit covers what the cells can put out.
+        let reach = cells.iter().map(|cell| f64::from(cell.bound())).fold(0.0, f64::max);
+        let limit = match law {
+            Law::Geometric(_) | Law::Uniform(_) => reach * (1.0 + 1e-6),
+            _ => 0.0,
+        };
         assemble(&Parts {
             law,
             cells,
             inputs: used.iter().map(|&index| &self.inputs[index]).collect(),
             unit: output_unit(self.material.samples.actuator_unit),
-            limit: LIMIT_OVER_LARGEST * self.largest(),
+            limit: limit.max(LIMIT_OVER_LARGEST * self.largest()),
             rigid_body: rigid::in_force(self.material, self.joint, coefficients),
         })
     }

@@ -1,0 +1,49 @@
+//! Runs the command line as a user does.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+/// The program `trainer` of this build; built first where it is not there yet.
+///
+/// # Panics
+/// When it cannot be built.
+pub fn trainer() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--quiet", "--package", "frikan-trainer", "--bin", "trainer"]);
+        let test = std::env::current_exe().expect("a test has a path");
+        let profile = test.ancestors().nth(2).expect("a test lies in target/PROFILE/deps").to_owned();
+        if profile.ends_with("release") {
+            build.arg("--release");
+        }
+        assert!(build.status().is_ok_and(|status| status.success()), "the command line cannot be built");
+        profile.join("trainer")
+    })
+}
+
+/// What one run brought.
+#[derive(Debug)]
+pub struct Run {
+    /// Exit status.
+    pub status: i32,
+    /// Standard output.
+    pub output: String,
+    /// Standard error.
+    pub messages: String,
+}
+
+/// Runs `trainer` in `folder` with `arguments`.
+///
+/// # Panics
+/// When it cannot be started or is killed.
+pub fn run(folder: &Path, arguments: &[&str]) -> Run {
+    let Output { status, stdout, stderr } =
+        Command::new(trainer()).current_dir(folder).args(arguments).output().expect("trainer starts");
+    Run {
+        status: status.code().expect("trainer ends by itself"),
+        output: String::from_utf8_lossy(&stdout).into_owned(),
+        messages: String::from_utf8_lossy(&stderr).into_owned(),
+    }
+}

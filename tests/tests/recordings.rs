@@ -1,0 +1,73 @@
+//! The whole way on other people's recordings, read from `../shared/recordings`: published figures are reached.
+
+use std::path::{Path, PathBuf};
+
+use frikan_tests::fixtures::{AXIS_1, separated_recording};
+use frikan_trainer::fit::outcome::Outcome;
+use frikan_trainer::fit::{Options, fit};
+use frikan_trainer::joint::Joint;
+use frikan_trainer::recording::{self, Recording};
+
+/// The folder of recordings; `None`, said aloud, where it is absent. In CI its absence is a failure.
+fn folder() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    assert!(std::env::var_os("CI").is_none(), "{} is absent", folder.display());
+    eprintln!("skipped: {} is absent", folder.display());
+    None
+}
+
+fn load(path: &Path) -> Recording {
+    recording::load(path, &Joint::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn fitted(train: &[Recording], tests: &[Recording]) -> Outcome {
+    let options = Options { seed: 1, ..Options::default() };
+    fit(train, tests, &Joint::default(), &options, &|_| ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Janot, Gautier and Brunot (2019) publish 3.11 % and 5.98 % and the parameters below.
+#[test]
+fn emps_reaches_the_published_errors_and_parameters() {
+    let Some(folder) = folder() else { return };
+    let outcome = fitted(&[load(&folder.join("emps/train.csv"))], &[load(&folder.join("emps/pulses.csv"))]);
+    let (train, pulses) = (&outcome.train[0].filtered_score, &outcome.tests[0].filtered_score);
+    println!("train {:.3} %, pulses {:.3} %", 100.0 * train.relative_error, 100.0 * pulses.relative_error);
+    assert!(train.relative_error <= 0.032 && pulses.relative_error <= 0.055);
+    let symmetric = outcome.classical.iter().find(|law| law.name == "Coulomb and viscous").unwrap();
+    for (name, published) in [("mass", 95.1), ("coulomb_force", 20.4), ("viscous_coefficient", 203.0)] {
+        let found = symmetric.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+        assert!((found.value / published - 1.0).abs() < 0.03, "{found:?}");
+    }
+}
+
+/// A hand-made linear model of the same rigid-body terms reaches 385 N m.
+#[test]
+fn kr300_axis_3_predicts_an_unseen_trajectory() {
+    let Some(folder) = folder() else { return };
+    let [a, b, c] = ["A", "B", "C"].map(|run| load(&folder.join(format!("kr300/axis3-{run}.csv"))));
+    let outcome = fitted(&[a, b], &[c]);
+    println!("{:.1} N m on C", outcome.tests[0].score.rmse);
+    assert!(outcome.tests[0].score.rmse <= 395.0);
+    assert!(outcome.parameters.iter().any(|parameter| parameter.name == "torque_scale"));
+    assert!(outcome.parameters.iter().any(|parameter| parameter.name == "extra_inertia"));
+}
+
+/// Wang, Rabczuk and Liu, axis 1, clean: the exported image against an independent set.
+#[test]
+fn the_image_of_the_published_law_explains_an_independent_clean_set() {
+    let parse = |label: &str, seed| {
+        let text = separated_recording(AXIS_1, 1000, seed);
+        recording::parse(label, text.as_bytes(), &Joint::default()).unwrap()
+    };
+    let outcome = fitted(&[parse("train", 1)], &[parse("test", 2)]);
+    println!("1 - R2 = {:e}, {}", 1.0 - outcome.tests[0].score.r2, outcome.law.expression);
+    assert!(outcome.tests[0].score.r2 > 0.9999);
+    let names = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient"];
+    for (name, truth) in names.into_iter().zip(AXIS_1) {
+        let found = outcome.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+        assert!((found.value / truth - 1.0).abs() < 1e-3, "{found:?}");
+    }
+}
