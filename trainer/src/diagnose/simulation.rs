@@ -147,7 +147,7 @@ mod tests {
         let acceleration = sum(|(a, w, x)| -a * w * w * x.sin());
         let torque = (0..time.len())
             .map(|i| {
-                0.4 * acceleration[i] + 3.0 * position[i].sin() + 2.0 * (velocity[i] / 0.01).tanh() + 0.5 * velocity[i]
+                0.4 * acceleration[i] + 3.0 * position[i].sin() + 2.0 * (velocity[i] / 0.002).tanh() + 0.5 * velocity[i]
             })
             .collect();
         Signals {
