@@ -51,8 +51,7 @@ const OUTPUT_ROOM: f64 = 2.0;
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
     let top_speed = state.top_speed();
-    let friction =
-        |velocity: f64| refitted_friction(diagnosis, origin, velocity, state.sign_velocity, top_speed);
+    let friction = |velocity: f64| refitted_friction(diagnosis, origin, velocity, state.sign_velocity, top_speed);
     let dissipated = state.velocity.iter().map(|v| (friction(*v) * v).abs()).fold(1e-6, f64::max);
     let context = Context {
         smoothing_velocity: state.sign_velocity,
@@ -115,7 +114,7 @@ fn refitted_friction(diagnosis: &Diagnosis, origin: Origin<'_>, velocity: f64, e
     let refitted = &diagnosis.improved_refit.base;
     let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(refitted).map(|(b, c)| b * c).sum() };
     match origin {
-        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, eps, top)),
+        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, (velocity / eps).tanh(), top)),
         Origin::Simulation(law) => law.friction(velocity) + sum(vec![(velocity / eps).tanh(), velocity]),
         Origin::Model(model) => {
             let inputs = [velocity as f32, 0.0, 0.0, 0.0];
