@@ -50,7 +50,8 @@ const OUTPUT_ROOM: f64 = 2.0;
 /// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
-    let friction = |velocity: f64| refitted_friction(diagnosis, &state, origin, velocity);
+    let top_speed = state.top_speed();
+    let friction = |velocity: f64| refitted_friction(diagnosis, origin, velocity, state.sign_velocity, top_speed);
     let dissipated = state.velocity.iter().map(|v| (friction(*v) * v).abs()).fold(1e-6, f64::max);
     let context = Context {
         smoothing_velocity: state.sign_velocity,
@@ -109,12 +110,11 @@ fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -
 }
 
 /// Friction of the base over velocity after the refit.
-fn refitted_friction(diagnosis: &Diagnosis, state: &JointState, origin: Origin<'_>, velocity: f64) -> f64 {
+fn refitted_friction(diagnosis: &Diagnosis, origin: Origin<'_>, velocity: f64, eps: f64, top: f64) -> f64 {
     let refitted = &diagnosis.improved_refit.base;
-    let (eps, top) = (state.sign_velocity, state.top_speed());
     let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(refitted).map(|(b, c)| b * c).sum() };
     match origin {
-        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, eps, top)),
+        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, (velocity / eps).tanh(), top)),
         Origin::Simulation(law) => law.friction(velocity) + sum(vec![(velocity / eps).tanh(), velocity]),
         Origin::Model(model) => {
             let inputs = [velocity as f32, 0.0, 0.0, 0.0];

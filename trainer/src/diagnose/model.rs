@@ -124,7 +124,7 @@ pub(crate) fn moving_constants<const CELLS: usize>(model: &Model<CELLS>, state: 
 
 /// Local hat functions of a table of velocity: odd ones, and even ones where the table is not odd.
 pub(crate) fn hats(velocity: f64, sign_velocity: f64, top_speed: f64, odd: bool) -> Vec<f64> {
-    let mut hats = friction_basis(BaseKind::Spline, velocity, sign_velocity, top_speed);
+    let mut hats = friction_basis(BaseKind::Spline, velocity, (velocity / sign_velocity).tanh(), top_speed);
     if !odd {
         let even: Vec<f64> = hats.iter().map(|hat| hat * (velocity / sign_velocity).tanh()).collect();
         hats.extend(even);

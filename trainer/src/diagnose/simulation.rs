@@ -73,7 +73,7 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
 
 /// Friction columns at one velocity: an odd spline, and Coulomb and viscous friction that differ between the directions.
 fn law_friction(velocity: f64, sign_velocity: f64, top_speed: f64) -> Vec<f64> {
-    let mut columns = friction_basis(BaseKind::Spline, velocity, sign_velocity, top_speed);
+    let mut columns = friction_basis(BaseKind::Spline, velocity, (velocity / sign_velocity).tanh(), top_speed);
     columns.extend([(velocity / sign_velocity).tanh().abs(), velocity.abs()]);
     columns
 }
