@@ -7,8 +7,8 @@ use super::inputs::{ChosenInput, symbol};
 use super::outcome::{ClassicalLaw, FrontLaw, LawStory};
 use super::rigid;
 use crate::error::{Error, Result, codes};
-use crate::law::known_forms::fit_structure;
-use crate::law::structure::{Nonlinear, Structure};
+use crate::law::known_forms::refit;
+use crate::law::structure::Nonlinear;
 use crate::law::{
     self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, discover,
     fit_form, render,
@@ -63,9 +63,8 @@ pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
     let open_data = data.select(&material.open());
     let mut discovery = discover(&open_data, &SearchOptions::default()).map_err(|error| refused(&error))?;
     let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
-    let fit = |structure: &Structure, data: &LawData, smoothing: Option<f64>| fit_structure(structure, data, smoothing);
     let fixed = fixed_smoothing(&discovery);
-    let own = fit(&discovery.law.structure, &few, fixed).map_err(|error| refused(&error))?;
+    let own = refit(&discovery.law, &few, fixed).map_err(|error| refused(&error))?;
     let rivals: Vec<FormFit> = KnownForm::ALL
         .par_iter()
         .map(|form| fit_form(*form, &few, fixed).ok())
@@ -84,9 +83,8 @@ pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
     let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
     discovery.law = best.law;
     let fixed = fixed_smoothing(&discovery);
-    let settled = |data: &LawData| {
-        fit(&discovery.law.structure, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error))
-    };
+    let settled =
+        |data: &LawData| refit(&discovery.law, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error));
     let (open, last) = (settled(&open_data)?, settled(data)?);
     Ok(Found { open, last, discovery })
 }

@@ -27,6 +27,8 @@ const TABLE_SHARE_OF_RESIDUAL: f64 = 0.03;
 const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
 /// On the samples a coarser table may be off by this share of the residual, in the root mean square, to save cells.
 const COARSER_SHARE_OF_RESIDUAL: f64 = 0.15;
+/// Where no table comes that close, one that is off by this share still serves.
+const COARSEST_SHARE_OF_RESIDUAL: f64 = 0.5;
 /// Cells for which the smallest drive has room.
 const DRIVE_CELLS: usize = 128;
 /// How often the bound of a table is doubled at most, so that its cells fit into the smallest drive.
@@ -93,8 +95,8 @@ fn fit_once(
     };
     let verdict = rivals.judge(&material, options.representation)?;
     let model = match verdict.representation {
-        Representation::Table => builder.table(&learnt, refitted.train_rmse),
-        Representation::Expression => builder.expression(&found.last),
+        Representation::Table => builder.table(&learnt, refitted.train_rmse).or(rivals.table),
+        Representation::Expression => builder.expression(&found.last).or(rivals.expression),
     }
     .ok_or_else(no_image)?;
 
@@ -173,8 +175,9 @@ impl Builder<'_> {
             let fits = tables.cells.len() <= DRIVE_CELLS;
             let model = self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients);
             let Some(model) = model else { continue };
-            if self.deviation(&model, learnt) > (COARSER_SHARE_OF_RESIDUAL * rmse).max(bound) {
-                break;
+            let deviation = self.deviation(&model, learnt);
+            if deviation > (COARSER_SHARE_OF_RESIDUAL * rmse).max(bound) {
+                return tightest.or((deviation <= COARSEST_SHARE_OF_RESIDUAL * rmse).then_some(model));
             }
             if fits {
                 return Some(model);

@@ -135,6 +135,23 @@ pub fn fit_form(form: KnownForm, data: &LawData, smoothing: Option<f64>) -> Resu
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
 pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
+    fit_from_starts(structure, data, smoothing, None)
+}
+
+/// [`fit_structure`] that also starts from the constants of a law that was fitted to other samples of the same joint.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn refit(law: &Law, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
+    fit_from_starts(&law.structure, data, smoothing, Some(law))
+}
+
+fn fit_from_starts(
+    structure: &Structure,
+    data: &LawData,
+    smoothing: Option<f64>,
+    start: Option<&Law>,
+) -> Result<FormFit, LawError> {
     let extents = Extents::new(data)?;
     let needed = constants(structure) + data.nuisance.len() + 1;
     if data.rows() < needed {
@@ -145,7 +162,12 @@ pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f6
     let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
     let holding = Held { nonlinear: &held, coefficient: None };
     let rough = problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH);
-    let fit = polish(&problem, &rough, &held);
+    let mut fit = polish(&problem, &rough, &held);
+    if let Some(law) = start {
+        let psi: Vec<f64> = law.parameters.iter().take(structure.nonlinear().len()).map(|p| p.value).collect();
+        let resumed = problem.fit_from(structure, &psi, holding, Effort::FINAL);
+        fit = if resumed.rss < fit.rss { resumed } else { fit };
+    }
     let uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     let effective = data.rows() as f64 / uncertainty.correlation_length;
     let free = constants(structure) - held.len() + data.nuisance.len();
