@@ -29,14 +29,28 @@ fn names(folder: &Path) -> Vec<String> {
 fn fit_show_predict_verify_and_export_hang_together() {
     let folder = bench();
     let at = folder.path();
-    let fit = run(at, &["fit", "train.csv", "--test", "test.csv", "-o", "m.frk", "--json", "m.json", "--report", "m.html", "--quiet"]);
+    let fit = run(
+        at,
+        &["fit", "train.csv", "--test", "test.csv", "-o", "m.frk", "--json", "m.json", "--report", "m.html", "--quiet"],
+    );
     assert_eq!((fit.status, fit.messages.as_str()), (0, ""));
     assert!(fit.output.contains("friction = ") && fit.output.contains("coulomb_torque"), "{}", fit.output);
     assert_eq!(names(at), ["m.frk", "m.html", "m.json", "test.csv", "train.csv"]);
 
     let json: Value = serde_json::from_slice(&std::fs::read(at.join("m.json")).unwrap()).unwrap();
     assert_eq!(json["schema"], "frikan.fit/1");
-    for key in ["inputs", "representation", "expression", "expression_nodes", "parameters", "train", "test", "image", "seconds", "seed"] {
+    for key in [
+        "inputs",
+        "representation",
+        "expression",
+        "expression_nodes",
+        "parameters",
+        "train",
+        "test",
+        "image",
+        "seconds",
+        "seed",
+    ] {
         assert!(!json[key].is_null(), "{key}");
     }
     for key in ["name", "symbol", "value", "unit", "ci95"] {
@@ -56,7 +70,10 @@ fn fit_show_predict_verify_and_export_hang_together() {
     let predict = run(at, &["predict", "m.frk", "test.csv", "-o", "p.csv"]);
     assert_eq!((predict.status, predict.messages.as_str()), (0, ""));
     let text = std::fs::read_to_string(at.join("p.csv")).unwrap();
-    assert!(text.starts_with("velocity_rad_s,friction_torque_Nm,predicted_friction_torque_Nm,residual_Nm\n"), "{text:.120}");
+    assert!(
+        text.starts_with("velocity_rad_s,friction_torque_Nm,predicted_friction_torque_Nm,residual_Nm\n"),
+        "{text:.120}"
+    );
     assert_eq!(text.lines().count(), 301);
 
     let verify = run(at, &["verify", "m.frk", "--recording", "test.csv", "--json"]);
@@ -74,7 +91,10 @@ fn fit_show_predict_verify_and_export_hang_together() {
 fn one_seed_one_image_on_any_number_of_threads() {
     let folder = bench();
     let image = |threads: &str, name: &str| {
-        let fit = run(folder.path(), &["fit", "train.csv", "-o", name, "--threads", threads, "--representation", "table", "--quiet"]);
+        let fit = run(
+            folder.path(),
+            &["fit", "train.csv", "-o", name, "--threads", threads, "--representation", "table", "--quiet"],
+        );
         assert_eq!(fit.status, 0, "{}", fit.messages);
         std::fs::read(folder.path().join(name)).unwrap()
     };

@@ -42,8 +42,9 @@ fn bad_recordings_are_refused_with_their_place() {
         let line = line.to_owned();
         swinging(1000, move |row| (row == 98).then(|| line.clone()))
     };
-    let constant: String =
-        (0..1000).fold(HEADER.to_owned(), |text, row| format!("{text}{:.4},{:.6},2.0\n", row as f64 * 0.004, row as f64 * 0.002));
+    let constant: String = (0..1000).fold(HEADER.to_owned(), |text, row| {
+        format!("{text}{:.4},{:.6},2.0\n", row as f64 * 0.004, row as f64 * 0.002)
+    });
     let cases = [
         ("missing column", "torque_Nm\n".to_owned() + &"1.5\n".repeat(500)),
         ("no actuator", swinging(1000, |_| None).replace("torque_Nm", "note")),

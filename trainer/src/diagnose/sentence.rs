@@ -418,7 +418,7 @@ mod tests {
         assert_eq!(
             story.findings[0],
             "Between -0.05 and 0.05 rad/s the real joint needs up to 3.1 N m less: presliding hysteresis, breakaway \
-             distance 1.2 mrad (\u{b1} 0.1 mrad). Probability 97 %; this recording cannot rule out frictional lag (2 %)."
+             distance 1.2 mrad (\u{b1} 100 urad). Probability 97 %; this recording cannot rule out frictional lag (2 %)."
         );
         assert_eq!(
             story.headline,

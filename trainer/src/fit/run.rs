@@ -60,7 +60,9 @@ pub fn fit(
     // Inputs that relevance picked may ask for more than a drive has room for; velocity alone never does.
     let velocity = Options { inputs: Some(vec!["velocity".to_owned()]), ..options.clone() };
     let mut outcome = fit_once(recordings, tests, joint, &velocity, progress)?;
-    outcome.remarks.push("A law of all relevant inputs does not fit into an image; this one reads velocity alone.".into());
+    outcome
+        .remarks
+        .push("A law of all relevant inputs does not fit into an image; this one reads velocity alone.".into());
     Ok(outcome)
 }
 
