@@ -167,19 +167,19 @@ pub fn integer_table() -> TestModel {
     model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &cells)
 }
 
-/// A network [1,5,1] whose inner edges are shifted sigmoids.
+/// A network `[1,5,1]` whose inner edges are shifted sigmoids.
 #[must_use]
 pub fn network_1_5_1() -> TestModel {
     network(1, 5, 0, 0.0)
 }
 
-/// A network of two inputs, [2,[3,1],1]: three sums and a product.
+/// A network of two inputs, `[2,[3,1],1]`: three sums and a product.
 #[must_use]
 pub fn network_two_inputs() -> TestModel {
     network(2, 3, 1, 0.1)
 }
 
-/// A network of three inputs, [3,4,1].
+/// A network of three inputs, `[3,4,1]`.
 #[must_use]
 pub fn network_three_inputs() -> TestModel {
     network(3, 4, 0, 0.05)

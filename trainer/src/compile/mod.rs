@@ -1,7 +1,7 @@
 //! From a network or a law to the model that a drive evaluates, with a certified error.
 //!
 //! A law arrives as a [`formula::Formula`], leaves as cells, programs and tables of a [`frikan_shared::model::Model`], and is
-//! proved against the runtime by [`verify`], with an evaluator of its own in [`reference`].
+//! proved against the runtime by [`verify`], with an evaluator of its own in [`mod@reference`].
 
 pub mod cells;
 pub mod effects;

@@ -1,7 +1,7 @@
 //! Recordings in: formats, columns, units and checks. Knows no model.
 //!
 //! A recording is a text table whose columns are named `<quantity>_<unit>`. [`load`] reads a file and [`parse`] any
-//! stream of bytes; both give every channel in SI or one [`Error`](crate::error::Error) with the place in the file.
+//! stream of bytes; both give every channel in SI or one [`Error`] with the place in the file.
 
 mod columns;
 mod health;
