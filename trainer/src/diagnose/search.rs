@@ -266,7 +266,7 @@ impl<'a> Search<'a> {
     pub(crate) fn whitened(&self, columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
         let runs = self.prepared.open_runs();
         columns
-            .iter()
+            .par_iter()
             .map(|column| {
                 let mut white = column.clone();
                 noise.whiten(&mut white, &runs);
@@ -378,7 +378,7 @@ impl<'s, 'a> Round<'s, 'a> {
     fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
         let Some(alone) = &self.alone else { return Vec::new() };
         let rows = self.bench.rows();
-        let mut table: Vec<(usize, Scored)> = self
+        let mut table: Vec<Scored> = self
             .search
             .design
             .groups
@@ -393,7 +393,7 @@ impl<'s, 'a> Round<'s, 'a> {
                     .flatten()
                     .map(|v| chi_square_surprise(v.statistic, v.degrees))
                     .fold(0.0, f64::max);
-                let scored = Scored {
+                Some(Scored {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
                     score: score_of(&group.label, &evidence, grid),
@@ -402,12 +402,10 @@ impl<'s, 'a> Round<'s, 'a> {
                     group: index,
                     surprise,
                     explained: self.explained[index],
-                };
-                Some((index, scored))
+                })
             })
             .collect();
         self.refine_leaders(&mut table, alone, rows);
-        let mut table: Vec<Scored> = table.into_iter().map(|(_, scored)| scored).collect();
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
     }
@@ -423,17 +421,12 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 
     /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
-    fn refine_leaders(&self, table: &mut [(usize, Scored)], alone: &VariantEvidence, rows: f64) {
+    fn refine_leaders(&self, table: &mut [Scored], alone: &VariantEvidence, rows: f64) {
         const REFINED_WITHIN_NATS: f64 = 15.0;
-        let lead = |table: &[(usize, Scored)]| {
-            table
-                .iter()
-                .filter(|(_, s)| matches!(s.label, Label::Named(_)))
-                .map(|(_, s)| s.score)
-                .fold(f64::NEG_INFINITY, f64::max)
-        };
-        let threshold = (lead(table) - REFINED_WITHIN_NATS).max(0.0);
-        table.par_iter_mut().for_each(|(index, scored)| {
+        let named = table.iter().filter(|s| matches!(s.label, Label::Named(_)));
+        let lead = named.map(|s| s.score).fold(f64::NEG_INFINITY, f64::max);
+        let threshold = (lead - REFINED_WITHIN_NATS).max(0.0);
+        table.par_iter_mut().for_each(|scored| {
             let Label::Named(effect) = scored.label else { return };
             let Some(hypothesis) = self.search.hypothesis(effect) else { return };
             if scored.score < threshold {
@@ -447,7 +440,7 @@ impl<'s, 'a> Round<'s, 'a> {
             let positive = hypothesis.only_positive();
             let weigh = |shape: &[f64]| weigh(shape).filter(|e| !positive || e.coefficients.iter().all(|c| *c > 0.0));
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
-            let grid = self.search.grid_size(*index);
+            let grid = self.search.grid_size(scored.group);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
                 let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
@@ -463,17 +456,7 @@ impl<'s, 'a> Round<'s, 'a> {
 /// Whitens the design and weighs every variant, held-out folds only where asked for.
 fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
     let bench = search.bench(base, noise);
-    let runs = search.prepared.open_runs();
-    let white: Vec<Vec<f64>> = search
-        .design
-        .columns
-        .par_iter()
-        .map(|column| {
-            let mut white = column.clone();
-            noise.whiten(&mut white, &runs);
-            white
-        })
-        .collect();
+    let white = search.whitened(&search.design.columns, noise);
     let variants = search
         .design
         .groups
