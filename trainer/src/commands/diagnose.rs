@@ -267,7 +267,8 @@ fn exit_status(verdict: Verdict) -> u8 {
 
 fn text_of(story: &Story) -> String {
     let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
-    let rest = [&story.proof, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
+    let rest =
+        [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(bullets).chain(rest).collect()
 }
 
@@ -289,6 +290,7 @@ fn summary(diagnosis: &Diagnosis, story: &Story, seconds: f64, seed: u64) -> Val
         "headline": story.headline,
         "health": diagnosis.health,
         "findings": diagnosis.findings.iter().zip(&story.findings).map(finding_json).collect::<Vec<_>>(),
+        "minor": diagnosis.minor.iter().map(|(effect, share)| json!({ "effect": effect, "share": share })).collect::<Vec<_>>(),
         "withdrawn": diagnosis.withdrawn,
         "localisation": { "where": excess.iter().map(region_json).collect::<Vec<_>>(), "when_s": excess_when },
         "detection_limits": diagnosis.limits,

@@ -75,6 +75,9 @@ pub struct Diagnosis {
     pub health: Vec<HealthNote>,
     /// Findings in the order in which they were accepted.
     pub findings: Vec<Finding>,
+    /// Effects that were found beside larger ones but account for little, with their share of the removable error; they are
+    /// not in the improved model.
+    pub minor: Vec<(EffectId, f64)>,
     /// Effects that were found but withdrawn, because locked data did not confirm them.
     pub withdrawn: Vec<EffectId>,
     /// What would have been seen.

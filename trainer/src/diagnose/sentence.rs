@@ -49,6 +49,8 @@ pub struct Story {
     pub findings: Vec<String>,
     /// Error before and after on locked data.
     pub proof: Option<String>,
+    /// What was found beside the findings and accounts for little.
+    pub minor: Option<String>,
     /// What was found at first and then withdrawn.
     pub withdrawn: Option<String>,
     /// What would have been seen.
@@ -63,6 +65,7 @@ pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
         health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
+        minor: minor(diagnosis),
         withdrawn: withdrawn(diagnosis),
         limits: limits(diagnosis, units),
     }
@@ -229,6 +232,14 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
     ))
 }
 
+fn minor(diagnosis: &Diagnosis) -> Option<String> {
+    let named = |(effect, share): &(EffectId, f64)| {
+        format!("{} ({:.1} % of the removable error)", plain_name(*effect), 100.0 * share.max(0.0))
+    };
+    let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
+    (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
+}
+
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
     let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
     (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
@@ -388,6 +399,7 @@ mod tests {
             verdict: Verdict::MissingPhysics,
             health: Vec::new(),
             findings: vec![found],
+            minor: vec![(EffectId::Presliding, 0.042)],
             withdrawn: vec![EffectId::Spring],
             limits: Vec::new(),
             base: BaseKind::CoulombViscous,
@@ -430,6 +442,7 @@ mod tests {
              interval 0.4 to 0.5)."
         );
         assert!(story.withdrawn.unwrap().contains("spring"));
+        assert!(story.minor.unwrap().contains("4.2 %"));
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
     );
     page.lead(&story.headline);
     page.list(&story.findings, "findings");
-    for sentence in [&story.proof, &story.withdrawn, &story.limits].into_iter().flatten() {
+    for sentence in [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten() {
         page.paragraph(sentence);
     }
     if !story.health.is_empty() {
