@@ -121,8 +121,9 @@ fn executed(at: &Path, form: &str, velocities: &[f32]) -> Vec<f64> {
         }
         "rust" => {
             let points = list.join(", ");
-            let main =
-                format!("{source}\nfn main() {{\n    for v in [{points}] {{\n        println!(\"{{:?}}\", friction(v));\n    }}\n}}\n");
+            let main = format!(
+                "{source}\nfn main() {{\n    for v in [{points}] {{\n        println!(\"{{:?}}\", friction(v));\n    }}\n}}\n"
+            );
             std::fs::write(at.join("law.rs"), main).unwrap();
             succeed(Command::new("rustc").current_dir(at).args(["--edition", "2024", "-o", "law-rust", "law.rs"]));
             succeed(&mut Command::new(at.join("law-rust")))
