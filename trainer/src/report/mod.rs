@@ -8,6 +8,7 @@ mod fit;
 mod graph;
 mod heat_map;
 mod page;
+pub mod picture;
 
 pub use diagnosis::{DiagnosisPage, diagnosis};
 pub use fit::fit;
