@@ -10,6 +10,7 @@ use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
+use super::rollout::roll_out;
 use super::search::{Accepted, Scored, Search, SearchOutcome, Settings};
 use super::signals::Signals;
 use super::traces::Traces;
@@ -99,6 +100,7 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
         baseline: score(&baseline),
         improved: score(&improved),
         proof,
+        rollout: roll_out(&search, &baseline, &improved),
         findings,
         withdrawn,
         rivals: last_round,
@@ -173,6 +175,7 @@ fn finding(
         fitted,
         score: found.score,
         margin: found.margin,
+        standings: found.standings.clone(),
         locked_gain_nats: locked,
     }
 }
@@ -253,6 +256,7 @@ fn measurement_finding(note: &HealthNote) -> Finding {
         },
         score: 0.0,
         margin: f64::INFINITY,
+        standings: Vec::new(),
         locked_gain_nats: None,
     }
 }

@@ -86,6 +86,8 @@ pub struct Accepted {
     pub margin: f64,
     /// Named effects within the margin, with their distance in nats.
     pub rivals: Vec<(EffectId, f64)>,
+    /// Every other named effect with its distance in nats, nearest first.
+    pub standings: Vec<(EffectId, f64)>,
 }
 
 /// What the search found.
@@ -548,8 +550,12 @@ fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted
     };
     let mut rivals = Vec::new();
     let mut margin = f64::INFINITY;
+    let mut standings = Vec::new();
     for rival in table.iter().filter(|s| s.label != best.label) {
         let distance = best.score - rival.score;
+        if let Label::Named(effect) = rival.label {
+            standings.push((effect, distance));
+        }
         match rival.label {
             Label::Named(effect) if matches!(best.label, Label::Named(_)) && distance < settings.ambiguity_margin => {
                 rivals.push((effect, distance));
@@ -573,6 +579,7 @@ fn choose(table: &[Scored], settings: &Settings, travel: f64) -> Option<Accepted
         fold_gain: best.evidence.fold_gain.clone(),
         margin,
         rivals,
+        standings,
     })
 }
 

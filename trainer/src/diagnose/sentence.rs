@@ -325,7 +325,7 @@ pub fn digits(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn capital(sentence: &str) -> String {
+pub(crate) fn capital(sentence: &str) -> String {
     let mut characters = sentence.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
@@ -370,6 +370,7 @@ mod tests {
             fitted,
             score: 40.0,
             margin: 9.0,
+            standings: Vec::new(),
             locked_gain_nats: Some(20.0),
         }
     }
@@ -402,6 +403,7 @@ mod tests {
                 gain_nats: 20.0,
                 rows: 300,
             }),
+            rollout: None,
             rivals: Vec::new(),
             baseline_refit: refit(),
             improved_refit: refit(),

@@ -265,6 +265,17 @@ fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
         rows.push(row("locked rows, opened once", proof.baseline_rmse, proof.improved_rmse, proof.rows));
     }
     page.table(&["rows", "before", "after", "number"], &rows);
+    if let Some(rollout) = &diagnosis.rollout {
+        let position = units.of_channel("position");
+        page.paragraph(&format!(
+            "Open-loop rollout: driven by the recorded torque alone from {} recorded states, the model strays from the \
+             recorded position by {} before and {} after, root mean square over {} s.",
+            rollout.starts,
+            quantity(rollout.baseline_rmse, &position),
+            quantity(rollout.improved_rmse, &position),
+            digits(rollout.horizon_s)
+        ));
+    }
     page.paragraph(&format!(
         "Share of the recorded torque's variance that is explained: {:.4} before, {:.4} after.",
         diagnosis.baseline.r2, diagnosis.improved.r2
