@@ -125,6 +125,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
             diagnosis: &diagnosis,
             story: &story,
             units,
+            plan: advice.as_ref(),
             export: &remarks,
         };
         outputs.add(path, report::diagnosis(&page));
