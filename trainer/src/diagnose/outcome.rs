@@ -7,7 +7,7 @@ use super::health::HealthNote;
 use super::localise::Location;
 use super::prove::Proof;
 use super::rollout::Rollout;
-use super::search::Scored;
+use super::round::Scored;
 use super::traces::Traces;
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
