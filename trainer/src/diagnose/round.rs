@@ -208,10 +208,12 @@ impl Round<'_, '_> {
             (None, None) => return None,
         };
         let mut rivals = Vec::new();
+        let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
         for rival in table.iter().filter(|s| s.label != best.label) {
             let Label::Named(effect) = rival.label else { continue };
             let distance = best.score - rival.score;
+            standings.push((effect, distance));
             if distance >= settings.ambiguity_margin && !hangs_on_few_blocks(best, rival, distance) {
                 margin = margin.min(distance);
             } else if matches!(best.label, Label::Named(_)) && !self.merely_contains(rival, best) {
@@ -226,6 +228,7 @@ impl Round<'_, '_> {
             fold_gain: best.evidence.fold_gain.clone(),
             margin,
             rivals,
+            standings,
         })
     }
 

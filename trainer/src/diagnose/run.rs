@@ -10,6 +10,7 @@ use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
+use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Accepted, Search, SearchOutcome, Settings};
 use super::signals::Signals;
@@ -145,6 +146,7 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
         baseline: score(&baseline),
         improved: score(&improved),
         proof,
+        rollout: roll_out(&search, &baseline, &improved),
         findings,
         minor,
         withdrawn,
@@ -245,6 +247,7 @@ fn finding(
         fitted,
         score: found.score,
         margin: found.margin,
+        standings: found.standings.clone(),
         locked_gain_nats: locked,
     }
 }
@@ -325,6 +328,7 @@ fn measurement_finding(note: &HealthNote) -> Finding {
         },
         score: 0.0,
         margin: f64::INFINITY,
+        standings: Vec::new(),
         locked_gain_nats: None,
     }
 }

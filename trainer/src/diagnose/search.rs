@@ -61,6 +61,8 @@ pub struct Accepted {
     pub margin: f64,
     /// Named effects within the margin, with their distance in nats.
     pub rivals: Vec<(EffectId, f64)>,
+    /// Every other named effect with its distance in nats, nearest first.
+    pub standings: Vec<(EffectId, f64)>,
 }
 
 /// What the search found.

@@ -336,7 +336,7 @@ pub fn digits(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn capital(sentence: &str) -> String {
+pub(crate) fn capital(sentence: &str) -> String {
     let mut characters = sentence.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
@@ -381,6 +381,7 @@ mod tests {
             fitted,
             score: 40.0,
             margin: 9.0,
+            standings: Vec::new(),
             locked_gain_nats: Some(20.0),
         }
     }
@@ -391,6 +392,7 @@ mod tests {
             base_deviation: Vec::new(),
             effects: Vec::new(),
             noise: crate::diagnose::Noise::white(0),
+            plain: false,
         };
         let velocity: Vec<f64> = (-50..50).map(|k| 0.002 * f64::from(k) + 0.001).collect();
         let effect: Vec<f64> = velocity.iter().map(|v| -3.1 * v.signum() * f64::from(v.abs() < 0.05)).collect();
@@ -414,6 +416,7 @@ mod tests {
                 gain_nats: 20.0,
                 rows: 300,
             }),
+            rollout: None,
             rivals: Vec::new(),
             baseline_refit: refit(),
             improved_refit: refit(),

@@ -4,9 +4,11 @@
 mod axis;
 mod chart;
 mod diagnosis;
+mod finding;
 mod fit;
 mod graph;
 mod heat_map;
+mod on_the_drive;
 mod page;
 pub mod picture;
 
