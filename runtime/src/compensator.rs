@@ -1,10 +1,12 @@
 //! What the control loop calls: a measurement in, a torque out, within limits that the firmware sets and no image can change.
 
-use frikan_shared::image::{ImageError, decode};
+use frikan_shared::authentication::Trust;
+use frikan_shared::image::ImageError;
 use frikan_shared::model::Model;
 
 use crate::evaluate::limited;
 use crate::friction::{FrictionState, Measurement};
+use crate::slots::load;
 
 /// Longest sample period that a step takes for real, s.
 const LONGEST_SAMPLE: f32 = 1.0;
@@ -62,7 +64,19 @@ impl<const CELLS: usize> Compensator<CELLS> {
     /// Compensation by the model of an image. An image that is refused switches compensation off, and every step says why.
     #[must_use]
     pub fn new(image: &[u8], limits: Limits) -> Self {
-        Self::with_model(decode(image).map(|image| image.model), limits)
+        Self::trusting(image, Trust::Anyone, limits)
+    }
+
+    /// Compensation by an image of whom `trust` names.
+    #[must_use]
+    pub fn trusting(image: &[u8], trust: Trust<'_>, limits: Limits) -> Self {
+        Self::with_model(trust.decode(image).map(|image| image.model), limits)
+    }
+
+    /// Compensation by the newest usable image of two slots of flash.
+    #[must_use]
+    pub fn from_slots(first: &[u8], second: &[u8], trust: Trust<'_>, limits: Limits) -> Self {
+        Self::with_model(load(first, second, trust).map(|(_, image)| image.model), limits)
     }
 
     /// Compensation by a decoded model, or off for the reason given.

@@ -1,19 +1,20 @@
 //! Two slots in flash: the newest valid model wins, and a write that is cut anywhere leaves the one before.
 //!
-//! A slot holds a header of 16 bytes and an image behind it:
+//! A slot holds a header of 16 bytes and an image behind it, with its tag where the drive asks for one:
 //!
 //! | offset | bytes | field |
 //! |---|---|---|
 //! | 0 | 4 | magic, ASCII `FSLT` |
 //! | 4 | 4 | sequence number, little-endian |
-//! | 8 | 4 | bytes of the image, little-endian |
-//! | 12 | 4 | CRC-32 (ISO-HDLC) over bytes 0 to 11 and the image, little-endian |
+//! | 8 | 4 | bytes of the image and its tag, little-endian |
+//! | 12 | 4 | CRC-32 (ISO-HDLC) over bytes 0 to 11, the image and its tag, little-endian |
 //!
 //! To update: ask [`next_write`] for the slot and the sequence number, erase that slot, program the image, program the header of
 //! [`slot_header`] last, reset. The slot in use is never touched, so that a cut at any byte leaves it the newest valid one. Sequence
 //! numbers are compared modulo 2^32.
 
-use frikan_shared::image::{Image, ImageError, checksum, decode};
+use frikan_shared::authentication::Trust;
+use frikan_shared::image::{Image, ImageError, checksum};
 
 /// First bytes of a used slot.
 pub const SLOT_MAGIC: [u8; 4] = *b"FSLT";
@@ -44,15 +45,6 @@ impl Which {
     }
 }
 
-/// Why no model was loaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SlotError {
-    /// Neither slot holds an image with a right checksum.
-    Empty,
-    /// The newest image with a right checksum cannot be used, nor can the other.
-    Image(ImageError),
-}
-
 /// A slot whose checksum is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot<'a> {
@@ -60,7 +52,7 @@ pub struct Slot<'a> {
     pub which: Which,
     /// Its sequence number.
     pub sequence: u32,
-    /// Its image, not yet decoded.
+    /// Its image, with the tag where there is one, not yet decoded.
     pub image: &'a [u8],
 }
 
@@ -110,29 +102,42 @@ pub fn valid_slots<'a>(first: &'a [u8], second: &'a [u8]) -> [Option<Slot<'a>>; 
     }
 }
 
-/// The slot to write next and the sequence number to write: never the slot in use.
-#[must_use]
-pub fn next_write(first: &[u8], second: &[u8]) -> (Which, u32) {
-    match valid_slots(first, second) {
-        [Some(newest), _] => (newest.which.other(), newest.sequence.wrapping_add(1)),
-        [None, _] => (Which::First, 1),
-    }
-}
-
-/// Decodes the newest valid model. Where it is intact but cannot be used (a later format, too many cells), the older one.
-///
-/// # Errors
-/// [`SlotError`]: compensation stays off.
-pub fn load<const CELLS: usize>(first: &[u8], second: &[u8]) -> Result<(Which, Image<CELLS>), SlotError> {
-    let mut error = SlotError::Empty;
+/// The newest slot that can be used, and its image. Where the newest intact one cannot (a later format, too many cells, a tag that is
+/// not of whom `trust` names), the older one.
+fn usable<'a, const CELLS: usize>(
+    first: &'a [u8],
+    second: &'a [u8],
+    trust: Trust<'_>,
+) -> Result<(Slot<'a>, Image<CELLS>), ImageError> {
+    let mut error = ImageError::NoImage;
     for slot in valid_slots(first, second).into_iter().flatten() {
-        match decode(slot.image) {
-            Ok(image) => return Ok((slot.which, image)),
-            Err(fault) if error == SlotError::Empty => error = SlotError::Image(fault),
+        match trust.decode(slot.image) {
+            Ok(image) => return Ok((slot, image)),
+            Err(fault) if error == ImageError::NoImage => error = fault,
             Err(_) => {}
         }
     }
     Err(error)
+}
+
+/// The slot to write next and the sequence number to write: never the slot in use, always a later number than any.
+#[must_use]
+pub fn next_write<const CELLS: usize>(first: &[u8], second: &[u8], trust: Trust<'_>) -> (Which, u32) {
+    let [Some(newest), _] = valid_slots(first, second) else { return (Which::First, 1) };
+    let in_use = usable::<CELLS>(first, second, trust).map_or(newest.which, |(slot, _)| slot.which);
+    (in_use.other(), newest.sequence.wrapping_add(1))
+}
+
+/// Decodes the newest model that can be used.
+///
+/// # Errors
+/// [`ImageError::NoImage`] where no slot is intact, else why the newest intact one cannot be used: compensation stays off.
+pub fn load<const CELLS: usize>(
+    first: &[u8],
+    second: &[u8],
+    trust: Trust<'_>,
+) -> Result<(Which, Image<CELLS>), ImageError> {
+    usable(first, second, trust).map(|(slot, image)| (slot.which, image))
 }
 
 #[cfg(test)]

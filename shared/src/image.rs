@@ -49,6 +49,10 @@ pub enum ImageError {
     InvalidModel(InvalidModel),
     /// The buffer to write to is too small.
     BufferTooSmall,
+    /// Neither slot of flash holds an image with a right checksum.
+    NoImage,
+    /// The tag of whom the drive trusts does not stand behind the image.
+    NotAuthentic,
 }
 
 impl core::fmt::Display for ImageError {
@@ -63,6 +67,8 @@ impl core::fmt::Display for ImageError {
             Self::Malformed => f.write_str("the payload of the image is malformed"),
             Self::InvalidModel(fault) => write!(f, "the model is invalid: {fault:?}"),
             Self::BufferTooSmall => f.write_str("the buffer is too small for the image"),
+            Self::NoImage => f.write_str("there is no intact image"),
+            Self::NotAuthentic => f.write_str("the image is not authentic"),
         }
     }
 }

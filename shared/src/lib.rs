@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod authentication;
 pub mod effect;
 pub mod elementary;
 pub mod expression;

@@ -35,7 +35,8 @@ fn check(bytes: &[u8], data: &[u8]) {
     for x in specials.into_iter().chain(from_data) {
         let value = evaluate(&image.model, &[x, -x, x * 0.5, 1.0]);
         assert!(value.is_finite() && value.abs() <= limit);
-        let measurement = Measurement { velocity: x, position: -x, load: x, temperature: 20.0, ..Measurement::default() };
+        let measurement =
+            Measurement { velocity: x, position: -x, load: x, temperature: 20.0, ..Measurement::default() };
         let answer = compensator.step(&measurement, 1.0e-3);
         assert!(answer.torque.is_finite() && answer.torque.abs() <= limit && answer.position.is_finite());
     }

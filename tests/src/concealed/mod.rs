@@ -93,7 +93,7 @@ pub fn joint_of(case: &Case) -> plant::Joint {
 }
 
 /// Largest number of passes in which the amplitude is brought to the wanted strength.
-const PASSES: usize = 3;
+const PASSES: usize = 6;
 
 /// Hides the effects of a case at the wanted strength and returns recording, joint, non-centrality and effect-to-noise.
 pub fn conceal(case: &Case) -> Result<(SimulatedRecording, plant::Joint, f64, f64), plant::PlantError> {
@@ -129,22 +129,28 @@ fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (
     .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
 }
 
-/// Faults of the measurement that have no torque of their own: their amplitude is taken as it is.
-const WITHOUT_TORQUE: [&str; 3] = ["quantisation", "unit_or_sign", "clock_gaps"];
+/// Faults of the measurement that have no torque of their own, or none below a threshold: their amplitude is taken as it is.
+const WITHOUT_TORQUE: [&str; 4] = ["quantisation", "unit_or_sign", "clock_gaps", "time_misalignment"];
 
 fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {
     if WITHOUT_TORQUE.contains(&name) {
         return Ok(1.0);
     }
-    let mut amplitude = 0.3;
+    let mut amplitude = 0.3f64;
+    // Non-centrality goes with the square of a torque; of a compliance or a play with another power, which two passes show.
+    let mut power = 2.0;
+    let mut before: Option<(f64, f64)> = None;
     for _ in 0..PASSES {
         let recording = plant::conceal(joint, name, amplitude, case.seed)?;
-        let (lambda, _) = reach(&recording, joint, case);
-        let off = (wanted / lambda.max(1e-3)).sqrt();
-        if (off - 1.0).abs() < 0.05 {
+        let lambda = reach(&recording, joint, case).0.max(1e-3);
+        if (wanted / lambda - 1.0).abs() < 0.1 {
             break;
         }
-        amplitude *= off.clamp(0.05, 8.0);
+        if let Some((earlier, reached)) = before {
+            power = ((lambda / reached).ln() / (amplitude / earlier).ln()).clamp(1.0, 5.0);
+        }
+        before = Some((amplitude, lambda));
+        amplitude *= (wanted / lambda).powf(1.0 / power).clamp(0.1, 8.0);
     }
     Ok(amplitude)
 }

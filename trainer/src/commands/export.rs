@@ -5,11 +5,15 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use frikan_shared::image::{Image, image_crc32};
+use frikan_shared::model::Law;
 use serde_json::json;
 
 use super::output::Outputs;
-use crate::error::Result;
+use crate::error::{Error, Result, codes};
 use crate::fit::{CELLS, model};
+use crate::law::canonical::canonical;
+use crate::law::program::expression_of;
+use crate::law::{Language, render};
 
 /// Export an image for a build or a flash tool.
 #[derive(Args, Clone, Debug)]
@@ -39,6 +43,18 @@ pub enum Format {
     CHeader,
     /// Everything that the image says, readable
     Json,
+    /// The law as a C function of doubles
+    C,
+    /// The law as a Rust function
+    Rust,
+    /// The law as a Python function over NumPy arrays
+    Python,
+    /// The law as a string for SymPy
+    Sympy,
+    /// The law in LaTeX
+    Latex,
+    /// The law as text
+    Text,
 }
 
 /// Runs the command.
@@ -52,11 +68,37 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Hex => intel_hex(&bytes, arguments.address).into_bytes(),
         Format::CHeader => c_header(&bytes, &image).into_bytes(),
         Format::Json => readable(&bytes, &image).into_bytes(),
+        Format::C => law(&image, Language::C)?,
+        Format::Rust => law(&image, Language::Rust)?,
+        Format::Python => law(&image, Language::Python)?,
+        Format::Sympy => law(&image, Language::SymPy)?,
+        Format::Latex => law(&image, Language::Latex)?,
+        Format::Text => law(&image, Language::Unicode)?,
     };
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, content);
     outputs.refuse_overwriting(&[arguments.model.as_path()])?;
     outputs.write()
+}
+
+/// The law of an image, inputs by their names, without rigid body and effects.
+fn law(image: &Image<CELLS>, language: Language) -> Result<Vec<u8>> {
+    let Law::Expression(program) = &image.model.law else {
+        let message = "the image holds a table, which has no formula; fit with `--representation expression`";
+        return Err(Error::new(&codes::USAGE, message));
+    };
+    let expression = expression_of(program)
+        .ok_or_else(|| Error::new(&codes::USAGE, "the program holds operations that no formula has"))?;
+    let names: Vec<String> = image.model.inputs.iter().map(|input| identifier(input.quantity.name())).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let text = render(&canonical(&expression), language, "friction", &names);
+    Ok(format!("{}\n", text.trim_end()).into_bytes())
+}
+
+/// A channel's name as every language takes it.
+fn identifier(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain } else { format!("x_{plain}") }
 }
 
 fn address(text: &str) -> std::result::Result<u32, String> {

@@ -4,14 +4,16 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use frikan_shared::expression::{Operation, Program};
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
 use frikan_shared::model::Law;
 
 use super::output::print;
 use crate::error::Result;
 use crate::fit::{CELLS, model};
+use crate::law::canonical::canonical;
+use crate::law::program::expression_of;
 use crate::law::render::significant;
+use crate::law::{Language, render};
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 6;
@@ -65,7 +67,8 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         )?,
         Law::Expression(program) => {
             let names: Vec<&str> = model.inputs.iter().map(|input| input.quantity.name()).collect();
-            writeln!(out, "law         {}", infix(program, &names))?;
+            let expression = expression_of(program).map(|e| render(&canonical(&e), Language::Unicode, "", &names));
+            writeln!(out, "law         {}", expression.as_deref().unwrap_or("a program that no formula says"))?;
             writeln!(out, "            {} operations", program.operations.len())?;
         }
     }
@@ -96,56 +99,4 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         model.cells.len(),
         image_crc32(bytes).unwrap_or(0)
     )
-}
-
-/// The program in infix notation, from the very numbers of the image.
-fn infix(program: &Program, names: &[&str]) -> String {
-    let mut stack: Vec<String> = Vec::new();
-    let number = |x: f32| significant(f64::from(x), DIGITS);
-    let name = |index: u8| names.get(usize::from(index)).copied().unwrap_or("?");
-    for operation in &program.operations {
-        let mut pop = || stack.pop().unwrap_or_default();
-        let text = match *operation {
-            Operation::Input(index) => name(index).to_owned(),
-            Operation::ScaledInput(index, factor) => format!("{} {}", number(factor), name(index)),
-            Operation::Constant(value) => number(value),
-            Operation::Scale(factor) => format!("{} {}", number(factor), bracketed(&pop())),
-            Operation::Offset(summand) => format!("{} + {}", number(summand), pop()),
-            Operation::Add | Operation::Subtract | Operation::Multiply | Operation::Divide | Operation::Power => {
-                let (right, left) = (pop(), pop());
-                match operation {
-                    Operation::Add => format!("{left} + {right}"),
-                    Operation::Subtract => format!("{left} - {}", bracketed(&right)),
-                    Operation::Multiply => format!("{} {}", bracketed(&left), bracketed(&right)),
-                    Operation::Divide => format!("{} / {}", bracketed(&left), bracketed(&right)),
-                    _ => format!("|{left}|^{}", bracketed(&right)),
-                }
-            }
-            Operation::Minimum | Operation::Maximum => {
-                let (right, left) = (pop(), pop());
-                let function = if matches!(operation, Operation::Minimum) { "min" } else { "max" };
-                format!("{function}({left}, {right})")
-            }
-            Operation::PowerOf(exponent) => format!("|{}|^{}", pop(), number(exponent)),
-            Operation::Negate => format!("-{}", bracketed(&pop())),
-            Operation::Absolute => format!("|{}|", pop()),
-            Operation::Square => format!("{}^2", bracketed(&pop())),
-            Operation::Reciprocal => format!("1 / {}", bracketed(&pop())),
-            Operation::Exp => format!("exp({})", pop()),
-            Operation::Log => format!("ln|{}|", pop()),
-            Operation::Sign => format!("sign({})", pop()),
-            Operation::Tanh => format!("tanh({})", pop()),
-            Operation::Sin => format!("sin({})", pop()),
-            Operation::Cos => format!("cos({})", pop()),
-            Operation::Atan => format!("atan({})", pop()),
-            Operation::SquareRoot => format!("sqrt|{}|", pop()),
-        };
-        stack.push(text);
-    }
-    stack.pop().unwrap_or_default()
-}
-
-/// Brackets around what is more than one word.
-fn bracketed(text: &str) -> String {
-    if text.contains(' ') { format!("({text})") } else { text.to_owned() }
 }

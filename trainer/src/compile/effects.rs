@@ -132,7 +132,12 @@ impl Terms {
                 let quadratic = shape[0] != 1.0;
                 let scaled = c[0] / if quadratic { context.load_scale.max(f64::MIN_POSITIVE) } else { 1.0 };
                 let (mean, quadratic) = if quadratic { (0.0, scaled) } else { (scaled, 0.0) };
-                self.load(mean, 0.0, quadratic, smoothing_velocity)
+                let mut effect = self.load(mean, 0.0, quadratic, smoothing_velocity);
+                let extra = c.get(1).filter(|_| c[0] != 0.0);
+                if let (Some(extra), Effect::Load { stribeck, velocity, .. }) = (extra, &mut effect) {
+                    (*stribeck, *velocity) = ((extra / c[0]) as f32, shape[1] as f32);
+                }
+                effect
             }
             EffectId::DriveBackdrive => {
                 let (driving, backdriving) = pair(shape[0]);

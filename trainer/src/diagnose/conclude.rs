@@ -39,26 +39,31 @@ pub struct Refit {
 /// Sweeps over the shapes, one effect at a time with the others in the base.
 const SWEEPS: usize = 2;
 
-/// Refits everything together by generalised least squares; shapes by Gauss-Newton intervals around their optimum.
-/// `None` where the system is singular.
-pub(crate) fn refit(search: &Search, accepted: &[Accepted], noise: &Noise) -> Option<Refit> {
-    let mut accepted = accepted.to_vec();
+/// Moves the shapes of the accepted effects to their joint optimum: one effect at a time, the others in the base.
+pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) {
     let state = &search.prepared.state;
-    for _ in 0..SWEEPS {
+    let sweeps = if accepted.len() > 1 { SWEEPS } else { 1 };
+    for _ in 0..sweeps {
         for index in 0..accepted.len() {
             let Label::Named(effect) = accepted[index].label else { continue };
             let Some(hypothesis) = search.hypothesis(effect) else { continue };
-            let bench = search.bench(columns_without(search, &accepted, index), noise);
+            let bench = search.bench(columns_without(search, accepted, index), noise);
             let label = accepted[index].label.clone();
             accepted[index].shape = refine(hypothesis, state, &accepted[index].shape, |shape| {
-                bench.evidence(&search.whitened(&search.filtered_columns(&label, shape), noise)).map(|e| e.statistic)
+                let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
+                bench.weigh(&columns, false).map(|e| e.statistic)
             });
         }
     }
+}
+
+/// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left;
+/// the shapes' uncertainty by Gauss-Newton. `None` where the system is singular.
+pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let base_width = search.base.columns.len();
     let mut columns = search.base.columns.clone();
     let mut places = Vec::new();
-    for effect in &accepted {
+    for effect in accepted {
         let begin = columns.len();
         columns.extend(search.filtered_columns(&effect.label, &effect.shape));
         places.push(begin..columns.len());
@@ -183,8 +188,8 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
         Dimension::PerTorque => format!("1/({actuator})"),
         Dimension::Velocity => format!("{position}/s"),
         Dimension::Position => position.to_string(),
+        Dimension::RadianPerSecond => "rad/s".to_string(),
         Dimension::Second => "s".to_string(),
-        Dimension::SecondSquared => "s2".to_string(),
         Dimension::TorquePerVelocitySquared => format!("{actuator} s2/{position}2"),
         Dimension::Order => if rotary { "1/turn" } else { "rad/m" }.to_string(),
         Dimension::One => "1".to_string(),

@@ -183,7 +183,14 @@ fn independent(normal: &DMatrix<f64>, base: usize) -> bool {
     })
 }
 
-/// Evidence for a group: the best variant in each fold is chosen on the other folds only.
+/// Logarithm of a sum of exponentials.
+fn log_sum(logarithms: impl Iterator<Item = f64> + Clone) -> f64 {
+    let largest = logarithms.clone().fold(f64::NEG_INFINITY, f64::max);
+    largest + logarithms.map(|l| (l - largest).exp()).sum::<f64>().ln()
+}
+
+/// Evidence for a group: in each fold its variants are averaged with the weights that the other folds give them, so that a
+/// near tie of two shapes does not hang on the one that was chosen.
 #[derive(Clone, Debug)]
 pub struct GroupEvidence {
     /// Index of the variant with the best criterion over all open blocks.
@@ -217,13 +224,15 @@ impl GroupEvidence {
         })?;
         let folds = base.fold_likelihood.len();
         let fold_gain: Vec<f64> = (0..folds)
-            .filter_map(|fold| {
-                tested()
-                    .max_by(|(_, a), (_, b)| {
-                        let of = |v: &VariantEvidence| criterion_of(v, v.fold_train[fold], base.fold_train[fold]);
-                        of(a).total_cmp(&of(b))
+            .map(|fold| {
+                let weighed: Vec<(f64, f64)> = tested()
+                    .map(|(_, v)| {
+                        let trained = criterion_of(v, v.fold_train[fold], base.fold_train[fold]);
+                        (trained, v.fold_likelihood[fold] - base.fold_likelihood[fold])
                     })
-                    .map(|(_, chosen)| chosen.fold_likelihood[fold] - base.fold_likelihood[fold])
+                    .collect();
+                let joint = log_sum(weighed.iter().map(|(trained, gain)| trained + gain));
+                joint - log_sum(weighed.iter().map(|(trained, _)| *trained))
             })
             .collect();
         Some(Self {

@@ -6,7 +6,7 @@ use super::conclude::{Fitted, Refit};
 use super::health::HealthNote;
 use super::localise::Location;
 use super::prove::Proof;
-use super::search::Scored;
+use super::round::Scored;
 use super::traces::Traces;
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};

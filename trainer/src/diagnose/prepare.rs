@@ -70,10 +70,12 @@ impl Prepared {
             prepared.grain_limited = chosen.is_some();
             let fits = encoder_noise_is_small(&prepared, signals);
             let enough_rows = prepared.rows.len() >= 200;
-            if fits || (chosen.is_some() && !enough_rows) {
-                return prepared;
+            match chosen {
+                // A narrower filter that leaves too little to work on is no help.
+                Some(wider) if !enough_rows => return Self { grain_limited: true, ..wider },
+                _ if fits => return prepared,
+                _ => chosen = Some(prepared),
             }
-            chosen = Some(prepared);
         }
         chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, lock))
     }
@@ -111,7 +113,7 @@ impl Prepared {
             sign: Vec::new(),
             rigid_body: signals.rigid_body.as_ref().map(|series| wide.over(series, segments)),
             load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| wide.over(series, segments)),
-            temperature: signals.temperature.as_ref().map(|series| slow(series, segments, period)),
+            temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
             link_position: signals.link_position.as_ref().map(|series| wide.over(series, segments)),
             other_joints: signals
                 .other_positions
@@ -185,20 +187,28 @@ fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
     resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
 }
 
-/// Smooths a slow channel over two seconds, so that its noise does not hand the evidence to a rival.
-fn slow(series: &[f64], segments: &[Range<usize>], period: f64) -> Vec<f64> {
-    let reach = (1.0 / period).round() as usize;
-    let mut smooth = series.to_vec();
-    for segment in segments {
-        let mut sums = Vec::with_capacity(segment.len() + 1);
-        sums.push(0.0);
-        for i in segment.clone() {
-            sums.push(sums[i - segment.start] + series[i]);
+/// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand
+/// the evidence to a rival; a pause of the clock ends the line.
+fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
+    const REACH_S: f64 = 4.0;
+    let mut smooth = Vec::with_capacity(series.len());
+    for piece in time.chunk_by(|a, b| b - a < 1.5 * period) {
+        let (begin, origin) = (smooth.len(), piece[0]);
+        // Sums of 1, t, t^2, y and t y up to each sample.
+        let mut sums = vec![[0.0; 5]];
+        for (i, t) in piece.iter().enumerate() {
+            let (t, y, before) = (t - origin, series[begin + i], sums[i]);
+            let terms = [1.0, t, t * t, y, t * y];
+            sums.push(std::array::from_fn(|k| before[k] + terms[k]));
         }
-        for i in 0..segment.len() {
-            let half = reach.min(i).min(segment.len() - 1 - i);
-            smooth[segment.start + i] = (sums[i + half + 1] - sums[i - half]) / (2 * half + 1) as f64;
-        }
+        smooth.extend(piece.iter().map(|&now| {
+            let low = piece.partition_point(|t| *t < now - REACH_S);
+            let high = piece.partition_point(|t| *t <= now + REACH_S);
+            let [n, t, tt, y, ty]: [f64; 5] = std::array::from_fn(|k| sums[high][k] - sums[low][k]);
+            let spread = tt - t * t / n;
+            let slope = if spread > 1e-9 * tt { (ty - t * y / n) / spread } else { 0.0 };
+            y / n + slope * (now - origin - t / n)
+        }));
     }
     smooth
 }

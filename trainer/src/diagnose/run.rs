@@ -3,14 +3,15 @@
 use super::advise::{Advice, separation};
 use super::base::{Base, BaseKind};
 use super::candidates::Label;
-use super::conclude::{Fitted, Refit, refit, unit_text};
+use super::conclude::{Fitted, Refit, polish, refit, unit_text};
 use super::confidence::{alternatives, probability};
 use super::health::{HealthNote, coarse_position, examine};
 use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
-use super::search::{Accepted, Scored, Search, SearchOutcome, Settings};
+use super::round::Scored;
+use super::search::{Accepted, Search, SearchOutcome, Settings};
 use super::signals::Signals;
 use super::traces::Traces;
 use crate::parameter::Parameter;
@@ -54,15 +55,53 @@ pub enum Refusal {
 /// Least rows of evidence.
 const LEAST_ROWS: usize = 150;
 /// Log-likelihood in nats that locked data may speak against an effect before its name is withdrawn.
-const WITHDRAWN_BELOW_NATS: f64 = -1.0;
+const WITHDRAWN_BELOW_NATS: f64 = -3.0;
+/// Realignments after the first: the linear regressor of a delay falls short of a long one.
+const MOST_REALIGNMENTS: usize = 2;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
 /// Diagnoses one recording. `actuator` is the text of the actuator's unit ("N m", "N" or "A").
 ///
+/// A torque that was recorded at another time than the motion is a finding of its own; physics is looked for once it is
+/// put back.
+///
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer.
 pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+    let as_recorded = diagnose_aligned(signals, actuator, options)?;
+    let Some(mut misaligned) = misalignment(&as_recorded).cloned() else { return Ok(as_recorded) };
+    let mut delay = misaligned.fitted.coefficients[0];
+    let mut aligned = diagnose_aligned(&signals.realigned(delay), actuator, options)?;
+    for _ in 0..MOST_REALIGNMENTS {
+        let Some(rest) = misalignment(&aligned) else { break };
+        delay += rest.fitted.coefficients[0];
+        aligned = diagnose_aligned(&signals.realigned(delay), actuator, options)?;
+    }
+    let moved = delay - misaligned.fitted.coefficients[0];
+    misaligned.fitted.coefficients[0] = delay;
+    if let Some(parameter) = misaligned.parameters.first_mut() {
+        parameter.value += moved;
+        parameter.ci95 = parameter.ci95.map(|end| end + moved);
+    }
+    aligned.findings.retain(|finding| finding.effect != EffectId::TimeMisalignment);
+    aligned.findings.insert(0, misaligned);
+    let rows = aligned.traces.time.len();
+    aligned.traces.effects.insert(0, vec![0.0; rows]);
+    aligned.verdict = verdict(&aligned.findings, false);
+    aligned.baseline = as_recorded.baseline;
+    if let (Some(proof), Some(before)) = (&mut aligned.proof, &as_recorded.proof) {
+        proof.baseline_rmse = before.baseline_rmse;
+    }
+    Ok(aligned)
+}
+
+/// The finding that the torque was recorded at another time than the motion, where it is the first.
+fn misalignment(diagnosis: &Diagnosis) -> Option<&Finding> {
+    diagnosis.findings.first().filter(|f| f.effect == EffectId::TimeMisalignment && !f.fitted.coefficients.is_empty())
+}
+
+fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
     let mut prepared = Prepared::new(signals, options.lock);
     let mut health = examine(signals);
     health.extend(coarse_position(signals, &prepared));
@@ -75,10 +114,14 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let search = Search::new(&prepared, &base, &hypotheses, options.settings);
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
-    let SearchOutcome { accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
-    let baseline = refit(&search, &[], &noise).ok_or(Refusal::Undetermined)?;
-    let (accepted, withdrawn) = withdraw_unproven(&search, accepted, &baseline);
-    let improved = refit(&search, &accepted, &noise).ok_or(Refusal::Undetermined)?;
+    let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
+    let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
+    polish(&search, &mut accepted, &noise);
+    let withdrawn = withdraw_unproven(&search, &mut accepted);
+    if !withdrawn.is_empty() {
+        polish(&search, &mut accepted, &noise);
+    }
+    let improved = refit(&search, &accepted).ok_or(Refusal::Undetermined)?;
     let proof = prove(&search, &baseline, &improved);
     let findings: Vec<Finding> = accepted
         .iter()
@@ -111,26 +154,25 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
 }
 
 /// Drops effects, weakest first, against which the locked data speak.
-fn withdraw_unproven(search: &Search, mut accepted: Vec<Accepted>, baseline: &Refit) -> (Vec<Accepted>, Vec<EffectId>) {
+fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
     while !accepted.is_empty() {
-        let gains: Vec<f64> =
-            (0..accepted.len()).map(|index| locked_gain(search, &accepted, index, baseline)).collect();
+        let gains: Vec<f64> = (0..accepted.len()).map(|index| locked_gain(search, accepted, index)).collect();
         let weakest = (0..gains.len()).min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
         match weakest {
             Some(index) if gains[index] < WITHDRAWN_BELOW_NATS => withdrawn.push(accepted.remove(index).effect()),
             _ => break,
         }
     }
-    (accepted, withdrawn)
+    withdrawn
 }
 
 /// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
-fn locked_gain(search: &Search, accepted: &[Accepted], index: usize, baseline: &Refit) -> f64 {
+fn locked_gain(search: &Search, accepted: &[Accepted], index: usize) -> f64 {
     let mut others = accepted.to_vec();
     others.remove(index);
-    let with = refit(search, accepted, &baseline.noise);
-    let without = refit(search, &others, &baseline.noise);
+    let with = refit(search, accepted);
+    let without = refit(search, &others);
     with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
 }
 
@@ -151,7 +193,7 @@ fn finding(
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
-    let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index, improved));
+    let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index));
     let evidence = format!(
         "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {:.1e}, {} rival{} within reach",
         found.score,

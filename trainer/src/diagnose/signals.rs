@@ -104,6 +104,30 @@ impl Signals {
         Ok(signals)
     }
 
+    /// The same signals with the torque, recorded late by `delay` (s; negative where early), put back to its time by linear
+    /// interpolation; what has no torque then is cut off the segments.
+    pub fn realigned(&self, delay: f64) -> Self {
+        let mut aligned = self.clone();
+        let shift = delay / self.period;
+        let lost = shift.abs().ceil() as usize;
+        for (segment, kept) in self.segments.iter().zip(&mut aligned.segments) {
+            for i in segment.clone() {
+                let place = (i as f64 + shift).clamp(segment.start as f64, (segment.end - 1) as f64);
+                let before = (place as usize).min(segment.end.saturating_sub(2).max(segment.start));
+                let after = (before + 1).min(segment.end - 1);
+                let share = place - before as f64;
+                aligned.torque[i] = self.torque[before] + share * (self.torque[after] - self.torque[before]);
+            }
+            *kept = if shift > 0.0 {
+                kept.start..kept.end.saturating_sub(lost).max(kept.start)
+            } else {
+                (kept.start + lost).min(kept.end)..kept.end
+            };
+        }
+        aligned.segments.retain(|segment| segment.len() > 1);
+        aligned
+    }
+
     /// Gives the nominal rigid body as an inertia (kg m2, or kg on a linear axis) and a gravity torque a sample.
     pub fn give_rigid_body(&mut self, inertia: f64, gravity: Option<&[f64]>) {
         let acceleration = second_derivative(&self.position, &self.segments, self.period);

@@ -2,8 +2,10 @@
 
 use super::base::{Base, BaseKind};
 use super::evidence::Bench;
+use super::linear::{dot, least_squares, residual};
 use super::noise::Noise;
 use super::prepare::{Lock, Prepared};
+use super::search::noise_features;
 use super::signals::Signals;
 
 /// Strength of a torque that a recording conceals.
@@ -17,13 +19,17 @@ pub struct Strength {
     pub absorbed: f64,
 }
 
-/// Strength of `torque` (one value a sample, unfiltered) against `noise` in the same recording.
+/// Strength of `torque` (one value a sample, unfiltered) against `noise` in the same recording. What the diagnosis
+/// whitens with is the noise model of somebody who knows that torque: what base and torque together leave.
 /// `None` where the recording cannot determine the base.
 pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind, lock: Lock) -> Option<Strength> {
     let mut prepared = Prepared::new(signals, lock);
     let base = Base::fit(&mut prepared, signals, base)?;
     let runs = prepared.open_runs();
-    let model = Noise::fit(&prepared.filtered(noise), &runs, &[]);
+    let filtered = prepared.filtered(torque);
+    let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();
+    let coefficients = least_squares(&known, &base.target, &runs)?;
+    let model = Noise::fit(&residual(&known, &base.target, &coefficients), &runs, &noise_features(&prepared));
     let order = model.autoregression.len();
     let trimmed: Vec<_> = runs.iter().map(|r| (r.start + order).min(r.end)..r.end).filter(|r| !r.is_empty()).collect();
     let white = |column: &[f64]| {
@@ -31,17 +37,18 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
         model.whiten(&mut white, &runs);
         white
     };
-    let filtered = prepared.filtered(torque);
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
     let whitened = Bench::new(columns, white(&filtered), vec![trimmed]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
     let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
     let rows: usize = runs.iter().map(|run| run.len()).sum();
-    let energy = super::linear::dot(&filtered, &filtered, &runs);
+    let energy = dot(&filtered, &filtered, &runs);
+    let noise = prepared.filtered(noise);
+    let noise_rms = (dot(&noise, &noise, &runs) / rows as f64).sqrt();
     Some(Strength {
         lambda,
-        effect_to_noise: (kept / rows as f64).sqrt() / model.rms.max(f64::MIN_POSITIVE),
+        effect_to_noise: (kept / rows as f64).sqrt() / noise_rms.max(f64::MIN_POSITIVE),
         absorbed: 1.0 - kept / energy.max(f64::MIN_POSITIVE),
     })
 }

@@ -10,8 +10,8 @@ use crate::error::{Error, Result, codes};
 use crate::law::known_forms::refit;
 use crate::law::structure::Nonlinear;
 use crate::law::{
-    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, discover,
-    fit_form, render,
+    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, Start,
+    discover, fit_form, render,
 };
 use crate::parameter::Parameter;
 
@@ -57,11 +57,12 @@ pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
     }
 }
 
-/// Looks for the formula and fits it. A classical law that describes the samples better than what the search found, its
+/// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
 /// constants paid for, takes its place.
-pub(super) fn search(material: &Material, data: &LawData) -> Result<Found> {
+pub(super) fn search(material: &Material, data: &LawData, starts: Vec<Start>) -> Result<Found> {
     let open_data = data.select(&material.open());
-    let mut discovery = discover(&open_data, &SearchOptions::default()).map_err(|error| refused(&error))?;
+    let options = SearchOptions { starts, ..SearchOptions::default() };
+    let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
     let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
     let fixed = fixed_smoothing(&discovery);
     let own = refit(&discovery.law, &few, fixed).map_err(|error| refused(&error))?;

@@ -1,5 +1,6 @@
 //! The network: trained, pruned, refitted on everything, and as the report shows it.
 
+use super::activations::label;
 use super::gather::Material;
 use super::inputs::ChosenInput;
 use super::options::{Progress, ProgressCallback, Stage};
@@ -97,7 +98,8 @@ impl Lesson {
     pub(super) fn story(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkStory {
         let blocks = Blocks::default();
         let dataset = self.dataset(&blocks);
-        let after = GraphSummary::of(&last.network, &dataset);
+        let mut after = GraphSummary::of(&last.network, &dataset);
+        label(&mut after, &last.network);
         let curve = |index: usize, active: bool| {
             if active { after.curve(&last.network, index, CURVE_POINTS) } else { Vec::new() }
         };

@@ -4,6 +4,7 @@ use frikan_runtime::evaluate::evaluate;
 use frikan_shared::image::Image;
 use frikan_shared::model::{Law, MAX_INPUTS};
 
+use super::activations;
 use super::choose::{Trial, decide};
 use super::formula::formula_of;
 use super::formula_search::{self, Found, classical, law_data, law_parameters, search};
@@ -84,7 +85,7 @@ fn fit_once(
     let (fitted, pruned) = lesson.train(&material, progress)?;
     tell(Stage::Searching);
     let data = law_data(&material, &inputs);
-    let found = search(&material, &data)?;
+    let found = search(&material, &data, activations::starts(&lesson.learnt(&pruned.result), &inputs))?;
     tell(Stage::Comparing);
     let classical = classical(&material, &data);
 

@@ -52,7 +52,7 @@ pub struct GraphEdge {
     pub active: bool,
     /// Range of its argument on the data; physical in the first layer.
     pub domain: [f64; 2],
-    /// The function that took the spline's place, once the symbolic step has found one.
+    /// The function of the library that the activation follows, where the symbolic step found one.
     pub symbolic: Option<String>,
 }
 

@@ -6,15 +6,16 @@ use super::canonical::canonical;
 use super::choice::{Candidate, FrontEntry, choose, finalists, front};
 use super::data::{LawData, LawError};
 use super::expression::Expr;
-use super::fit::{Effort, Fit, Held, Problem};
+use super::fit::{Fit, Problem};
 use super::known_forms::polish;
-use super::library::admissible;
 use super::naming::name_all;
 use super::price::{EXACT, Evidence, correlation_length};
+use super::proposals::Start;
 use super::ranges::Extents;
-use super::render::significant;
+use super::rounding::rounded;
 use super::search::{Beam, best, explore};
-use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
+use super::settle::{allow_for_viscous, drop_undetermined, settle_smoothing};
+use super::structure::{Nonlinear, Structure};
 use super::uncertainty::{Interval, NORMAL_95, Uncertainty, analyse};
 
 /// How to search, and which law is simple enough.
@@ -30,8 +31,8 @@ pub struct SearchOptions {
     pub folds: usize,
     /// Nodes that a law may have; one with more is taken only where it reduces the held-out mean square by 15 %.
     pub max_nodes: usize,
-    /// Structures to start from besides the usual ones, for instance read off the activations of a pruned network.
-    pub starts: Vec<Structure>,
+    /// Where to start besides the usual structures, for instance what the activations of a pruned network suggest.
+    pub starts: Vec<Start>,
 }
 
 impl Default for SearchOptions {
@@ -129,6 +130,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let (fit, held) = settle_smoothing(&problem, chosen, evidence, &mut remarks);
     let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);
+    let fit = rounded(&problem, &fit, &uncertainty);
     let law = describe(&problem, &fit, &uncertainty, &held);
     let nuisance = nuisance_coefficients(&problem, &fit, &uncertainty);
     Ok(Discovery {
@@ -152,112 +154,6 @@ fn evidence_of(problem: &Problem<'_>, fit: Option<&Fit>) -> Evidence {
         rows,
         effective: (rows as f64 / length).max(LEAST_EFFECTIVE.min(rows as f64)),
         exact: EXACT * EXACT * problem.total() / rows as f64,
-    }
-}
-
-/// Takes out, one by one, terms whose coefficients may as well be zero once the correlation of the residuals is counted.
-fn drop_undetermined(problem: &Problem<'_>, mut fit: Fit, remarks: &mut Vec<String>) -> Fit {
-    loop {
-        let uncertainty = analyse(problem, &fit, &[], Interval::Linearised);
-        let first = fit.structure.nonlinear().len();
-        let weight = |i: usize| fit.params[first + i].abs() / uncertainty.standard_errors[first + i];
-        let weakest = (0..fit.structure.terms().len())
-            .filter(|&i| weight(i) < NORMAL_95 && admissible(&fit.structure.without(fit.structure.terms()[i])))
-            .min_by(|a, b| weight(*a).total_cmp(&weight(*b)));
-        let Some(weakest) = weakest else { return fit };
-        let naming =
-            &name_all(&fit.structure, problem.data(), problem.extents().layout(), &fit.params)[first + weakest];
-        remarks.push(format!(
-            "{} = {} ± {} {} is not determined and left out.",
-            naming.name,
-            significant(fit.params[first + weakest], 3),
-            significant(NORMAL_95 * uncertainty.standard_errors[first + weakest], 2),
-            naming.unit
-        ));
-        let simpler = fit.structure.without(fit.structure.terms()[weakest]);
-        let start: Vec<(Nonlinear, f64)> = fit.nonlinear();
-        let rough = problem.fit_grid(&simpler, &start, Held::default(), 1, Effort::SEARCH);
-        fit = polish(problem, &rough, &[]);
-    }
-}
-
-/// Fixes the smoothing of the sign where the data cannot tell it from a step.
-fn settle_smoothing(
-    problem: &Problem<'_>,
-    fit: Fit,
-    evidence: Evidence,
-    remarks: &mut Vec<String>,
-) -> (Fit, Vec<Nonlinear>) {
-    let names = fit.structure.nonlinear();
-    let Some(at) = names.iter().position(|n| *n == Nonlinear::Smoothing) else { return (fit, Vec::new()) };
-    let sign = fit.structure.sign();
-    let held = vec![Nonlinear::Smoothing];
-    let rows = problem.rows() as f64;
-    let with_width = |width: f64| -> (Fit, f64) {
-        let mut psi = fit.params[..names.len()].to_vec();
-        psi[at] = sign.from_width(width);
-        let fixed =
-            problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::SEARCH);
-        let worse = 2.0 * (evidence.misfit(fixed.rss / rows) - evidence.misfit(fit.rss / rows));
-        (fixed, worse)
-    };
-    let steepest = sign.width(problem.extents().steepest(sign));
-    if with_width(steepest).1 > 3.84 {
-        return (fit, Vec::new());
-    }
-    // The widest that is as good, by bisection in the logarithm.
-    let (mut good, mut bad) = (steepest, problem.extents().fastest());
-    for _ in 0..12 {
-        let middle = (good * bad).sqrt();
-        if with_width(middle).1 < 1.0 { good = middle } else { bad = middle }
-    }
-    let fixed = polish(problem, &with_width(good).0, &held);
-    let bound = sign.from_width(good);
-    let constant = match sign {
-        SignForm::Tanh | SignForm::Arctan => "slope",
-        SignForm::Algebraic | SignForm::Parabolic | SignForm::Cubic => "width",
-    };
-    remarks.push(format!(
-        "The smoothing of the sign is not determined: too few samples near zero velocity. Its {constant} is fixed at {}, the smoothest \
-         that fits as well as a step.",
-        significant(bound, 4)
-    ));
-    (fixed, held)
-}
-
-/// Every joint has some viscous friction. Where it cannot be seen, the intervals of the other constants allow for it.
-fn allow_for_viscous(
-    problem: &Problem<'_>,
-    fit: &Fit,
-    held: &[Nonlinear],
-    uncertainty: &mut Uncertainty,
-    remarks: &mut Vec<String>,
-) {
-    let sees_speed = |t: &Term| {
-        matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::OddRoot | Shape::SignPower)
-    };
-    let exact = uncertainty.noise <= EXACT * (problem.total() / problem.rows() as f64).sqrt();
-    if exact || fit.structure.terms().is_empty() || fit.structure.terms().iter().any(sees_speed) {
-        return;
-    }
-    let viscous = Term::plain(Shape::Viscous);
-    let wider = fit.structure.with(viscous);
-    let psi = &fit.params[..fit.structure.nonlinear().len()];
-    let refit = problem.fit_from(&wider, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL);
-    let more = analyse(problem, &refit, held, Interval::Profile);
-    let added = wider.nonlinear().len() + wider.terms().iter().position(|t| *t == viscous).unwrap_or(0);
-    let names = name_all(&wider, problem.data(), problem.extents().layout(), &refit.params);
-    let [low, high] = more.intervals[added];
-    remarks.push(format!(
-        "A viscous term cannot be determined: {:.3} {} with a 95 % interval from {low:.3} to {high:.3}. It is left out; the intervals \
-         of the other constants allow for it.",
-        refit.params[added], names[added].unit
-    ));
-    let others = (0..refit.params.len()).filter(|k| *k != added);
-    for (k, other) in others.enumerate() {
-        let [low, high] = more.intervals[other];
-        uncertainty.intervals[k] = [low.min(fit.params[k]), high.max(fit.params[k])];
-        uncertainty.standard_errors[k] = more.standard_errors[other];
     }
 }
 

@@ -8,6 +8,7 @@ use super::discover::{Law, NuisanceCoefficient, describe, nuisance_coefficients}
 use super::fit::{Effort, Fit, Held, Problem};
 use super::price::constants;
 use super::ranges::Extents;
+use super::rounding::rounded;
 use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 use super::uncertainty::{Interval, Uncertainty, analyse};
 
@@ -169,6 +170,7 @@ fn fit_from_starts(
         fit = if resumed.rss < fit.rss { resumed } else { fit };
     }
     let uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
+    let fit = rounded(&problem, &fit, &uncertainty);
     let effective = data.rows() as f64 / uncertainty.correlation_length;
     let free = constants(structure) - held.len() + data.nuisance.len();
     let mean_square = fit.rss / data.rows() as f64;

@@ -5,7 +5,7 @@ use super::fit::{Fit, Problem};
 use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Most terms of a law.
-const MOST_TERMS: usize = 6;
+pub const MOST_TERMS: usize = 6;
 
 /// A change of a fitted structure: terms taken out, terms put in, the sign form afterwards.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::fit::{Effort, Fit, Held, Problem};
 use super::library::{self, Move};
 use super::price::Evidence;
+use super::proposals::Start;
 use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// How far the search goes.
@@ -38,13 +39,21 @@ fn seeds() -> Vec<Structure> {
 }
 
 /// Explores structures on `problem`. `extra` are more structures to start from.
-pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[Structure]) -> Explored {
+pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[Start]) -> Explored {
     let library = library::terms(problem.data(), problem);
-    let mut start = seeds();
-    start.extend(extra.iter().cloned());
-    let fits: Vec<Fit> =
-        start.par_iter().map(|s| problem.fit_grid(s, &[], Held::default(), 2, Effort::SEARCH)).collect();
-    let mut explored: Explored = fits.into_iter().map(|f| (f.structure.clone(), f)).collect();
+    let mut starts: Vec<Start> =
+        seeds().into_iter().map(|structure| Start { structure, constants: Vec::new() }).collect();
+    starts.extend(extra.iter().cloned());
+    let fits: Vec<Fit> = starts
+        .par_iter()
+        .map(|s| problem.fit_grid(&s.structure, &s.constants, Held::default(), 2, Effort::SEARCH))
+        .collect();
+    let mut explored = Explored::new();
+    for fit in fits {
+        if explored.get(&fit.structure).is_none_or(|known| fit.rss < known.rss) {
+            explored.insert(fit.structure.clone(), fit);
+        }
+    }
     let mut expanded: Vec<Structure> = Vec::new();
     for _ in 0..beam.rounds {
         let parents: Vec<&Fit> = best(problem, &explored, evidence, beam.width)

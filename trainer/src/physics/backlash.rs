@@ -1,10 +1,40 @@
-//! G1, Nordin and Gutman 2002: play between motor and load. With a motor encoder alone it shows as a short loss of the
-//! load while the play is crossed, at each change of sign of the load, and an impact at its end.
+//! G1, Nordin and Gutman 2002: play between motor and load. While it is crossed the motor loses the load, and at its end the
+//! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
 use super::state::quantile;
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use super::transmission::{nominal_inertia, opening};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
 pub(super) struct Backlash;
+
+/// Shares of the whole inertia that may lie behind the play.
+const LINK_SHARES: [f64; 3] = [0.25, 0.42, 0.7];
+/// Shortest and longest time in s in which a play worth testing is crossed.
+const CROSSING_S: (f64, f64) = (0.001, 0.06);
+
+/// Minus the acceleration of the twist within a play: free between the flanks, caught where it reaches one.
+fn crossing(state: &JointState, opening: &[f64], half_width: f64) -> Vec<f64> {
+    const STEPS: usize = 4;
+    let h = state.period / STEPS as f64;
+    let mut column = vec![0.0; state.len()];
+    for segment in &state.segments {
+        let mut twist = half_width * opening[segment.start].signum();
+        let mut rate = 0.0;
+        for i in segment.clone() {
+            let before = rate;
+            for _ in 0..STEPS {
+                rate += h * opening[i];
+                let free = twist + h * rate;
+                twist = free.clamp(-half_width, half_width);
+                if twist != free {
+                    rate = 0.0;
+                }
+            }
+            column[i] = -(rate - before) / state.period;
+        }
+    }
+    column
+}
 
 impl Hypothesis for Backlash {
     fn id(&self) -> EffectId {
@@ -12,17 +42,24 @@ impl Hypothesis for Backlash {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = -c d2/dt2 tanh(tau_l / tau_w), c = load inertia times half the play"
+        "dF = -J_l e'', e'' = a + tau_g / J_l within |e| < b, e' = 0 at the flanks"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let Some(load) = &state.load else { return Vec::new() };
-        let typical = quantile(load.iter().map(|l| l.abs()), 0.7);
-        let crossings = load.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
-        if crossings < 4 || typical <= 0.0 {
-            return Vec::new();
+        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        let mut shapes = Vec::new();
+        for share in LINK_SHARES {
+            let link = share * inertia;
+            let opening = opening(state, link);
+            let typical = quantile(opening.iter().map(|u| u.abs()), 0.5);
+            let changes = opening.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+            if changes >= 4 && typical > 0.0 {
+                let half_width = |crossing_s: f64| 0.25 * typical * crossing_s * crossing_s;
+                let widths = geometric_grid(half_width(CROSSING_S.0), half_width(CROSSING_S.1), 16);
+                shapes.extend(widths.into_iter().map(|width| vec![width, link]));
+            }
         }
-        [0.02, 0.06, 0.18].into_iter().map(|share| vec![share * typical]).collect()
+        shapes
     }
 
     fn only_positive(&self) -> bool {
@@ -30,24 +67,22 @@ impl Hypothesis for Backlash {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(load) = &state.load else { return Vec::new() };
-        let side = state.map(|i| (load[i] / shape[0]).tanh());
-        let rate = state.rate_of(&side);
-        let mut column = state.rate_of(&rate);
-        column.iter_mut().for_each(|value| *value = -*value);
-        vec![column]
+        vec![crossing(state, &opening(state, shape[1]), shape[0])]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![("backlash_inertia", "c", Dimension::Inertia)]
+        vec![("caught_inertia", "J_l", Dimension::Inertia)]
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
-        vec![ShapeName::new("contact_torque", "tau_w", Dimension::Torque)]
+        vec![
+            ShapeName::new("half_width", "b", Dimension::Position),
+            ShapeName::new("link_inertia", "J_l", Dimension::Inertia),
+        ]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let typical = quantile(state.load.as_ref()?.iter().map(|l| l.abs()), 0.7);
-        Some((0.005 * typical, typical))
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        let inertia = nominal_inertia(state)?;
+        Some(if index == 0 { (0.3 * shape[0], 3.0 * shape[0]) } else { (0.1 * inertia, inertia) })
     }
 }

@@ -1,8 +1,18 @@
-//! G2, Spong 1987: an elastic transmission adds -(J/k) d2(tau_l)/dt2 to the torque at the motor side.
+//! G2, Spong 1987: behind an elastic transmission the link swings against the motor. With a motor encoder alone its twist
+//! follows from the motor's own motion, and the motor carries what the link's inertia does beyond it.
 
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use std::f64::consts::TAU;
 
 pub(super) struct Elasticity;
+
+/// Damping ratios of the link on the locked motor that are tried.
+const DAMPING_RATIOS: [f64; 2] = [0.05, 0.2];
+
+/// Highest antiresonance in rad/s whose ringing the sampling shows.
+pub(super) fn highest_antiresonance(state: &JointState) -> f64 {
+    TAU * (0.15 / state.period).min(90.0)
+}
 
 impl Hypothesis for Elasticity {
     fn id(&self) -> EffectId {
@@ -10,25 +20,63 @@ impl Hypothesis for Elasticity {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = -(J/k) d2(tau_l)/dt2"
+        "dF = -J_l e'', e'' + 2 zeta w_a e' + w_a^2 e = a"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        if state.rigid_body.is_some() { vec![vec![]] } else { Vec::new() }
+        if state.rigid_body.is_none() {
+            return Vec::new();
+        }
+        let highest = highest_antiresonance(state);
+        geometric_grid(0.08 * highest, highest, 7)
+            .into_iter()
+            .flat_map(|w| DAMPING_RATIOS.map(|ratio| vec![w, ratio]))
+            .collect()
     }
 
     fn only_positive(&self) -> bool {
         true
     }
 
-    fn columns(&self, state: &JointState, _shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(torque) = &state.rigid_body else { return Vec::new() };
-        let mut column = state.rate_of(&state.rate_of(torque));
-        column.iter_mut().for_each(|value| *value = -*value);
-        vec![column]
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        vec![swinging(state, shape[0], shape[1])]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![("inverse_square_resonance", "J/k", Dimension::SecondSquared)]
+        vec![("link_inertia", "J_l", Dimension::Inertia)]
     }
+
+    fn shape_names(&self) -> Vec<ShapeName> {
+        vec![
+            ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
+            ShapeName::new("damping_ratio", "zeta", Dimension::One),
+        ]
+    }
+
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+        let highest = highest_antiresonance(state);
+        Some(if index == 0 { (0.05 * highest, 1.5 * highest) } else { (0.005, 1.0) })
+    }
+}
+
+/// Minus the second derivative of the twist that the motor's acceleration excites, by the trapezoidal rule.
+fn swinging(state: &JointState, antiresonance: f64, damping_ratio: f64) -> Vec<f64> {
+    let (h, stiffness, damping) = (state.period, antiresonance * antiresonance, 2.0 * damping_ratio * antiresonance);
+    let mut column = vec![0.0; state.len()];
+    for segment in &state.segments {
+        let (mut twist, mut rate) = (0.0, 0.0);
+        let mut bend = 0.0;
+        for i in segment.clone() {
+            // rate' = a - damping rate - stiffness twist, all taken at the middle of the step.
+            let known = state.acceleration[i]
+                - damping * (rate + 0.5 * h * bend)
+                - stiffness * (twist + h * rate + 0.25 * h * h * bend);
+            let next = known / (1.0 + 0.5 * h * damping + 0.25 * h * h * stiffness);
+            twist += h * rate + 0.25 * h * h * (bend + next);
+            rate += 0.5 * h * (bend + next);
+            bend = next;
+            column[i] = -bend;
+        }
+    }
+    column
 }

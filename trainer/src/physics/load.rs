@@ -2,7 +2,7 @@
 //! differently when driving and backdriving.
 
 use super::state::quantile;
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
 pub(super) struct LoadFriction;
 
@@ -19,11 +19,17 @@ impl Hypothesis for LoadFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = mu |tau_l|^m tanh(v/v_eps)"
+        "dF = mu |tau_l|^m (1 + kappa exp(-(v/v_s)^2)) tanh(v/v_eps)"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        if varied_load(state).is_some() { vec![vec![1.0], vec![2.0]] } else { Vec::new() }
+        if varied_load(state).is_none() {
+            return Vec::new();
+        }
+        let top = state.top_speed();
+        let mut shapes = vec![vec![1.0, 0.0], vec![2.0, 0.0]];
+        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity]));
+        shapes
     }
 
     fn only_positive(&self) -> bool {
@@ -34,15 +40,30 @@ impl Hypothesis for LoadFriction {
         let Some(load) = &state.load else { return Vec::new() };
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
         let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
-        vec![state.map(|i| grow(load[i]) * state.sign[i])]
+        let mut columns = vec![state.map(|i| grow(load[i]) * state.sign[i])];
+        if shape[1] > 0.0 {
+            columns.push(state.map(|i| columns[0][i] * (-(state.velocity[i] / shape[1]).powi(2)).exp()));
+        }
+        columns
     }
 
-    fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![("load_friction_coefficient", "mu", Dimension::One)]
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        let mut names = vec![("load_friction_coefficient", "mu", Dimension::One)];
+        if shape[1] > 0.0 {
+            names.push(("load_stribeck_coefficient", "mu kappa", Dimension::One));
+        }
+        names
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
-        vec![ShapeName::new("load_exponent", "m", Dimension::One)]
+        vec![
+            ShapeName::new("load_exponent", "m", Dimension::One),
+            ShapeName::new("load_stribeck_velocity", "v_s", Dimension::Velocity),
+        ]
+    }
+
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        (index == 1 && shape[1] > 0.0).then(|| (0.005 * state.top_speed(), 0.3 * state.top_speed()))
     }
 }
 

@@ -26,6 +26,7 @@ mod state;
 mod stribeck;
 mod temperature;
 mod transient;
+mod transmission;
 mod viscous;
 mod warm_up;
 mod windup;
@@ -64,14 +65,14 @@ pub enum Dimension {
     TorquePerWattVelocity,
     /// Inverse of a torque.
     PerTorque,
+    /// An angular frequency in rad/s.
+    RadianPerSecond,
     /// A velocity.
     Velocity,
     /// A position.
     Position,
     /// A time in seconds.
     Second,
-    /// A time squared, s2.
-    SecondSquared,
     /// Torque per squared velocity.
     TorquePerVelocitySquared,
     /// Periods per joint revolution (rotary) or radians per metre (linear).

@@ -5,8 +5,10 @@ use std::f64::consts::TAU;
 
 pub(super) struct RecurrentFault;
 
-/// Width of the pulse in turns.
+/// Widths of a pulse that comes back in another turn, in turns.
 const WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
+/// Widths of a pulse that is only passed to and fro: what is wider has other names.
+const NARROW_TURNS: [f64; 2] = [0.004, 0.008];
 
 impl Hypothesis for RecurrentFault {
     fn id(&self) -> EffectId {
@@ -19,11 +21,22 @@ impl Hypothesis for RecurrentFault {
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let (low, high) = state.travel();
+        if !state.rotary || high <= low {
+            return Vec::new();
+        }
         let mut orders = vec![1.0];
         orders.extend(state.gear_ratio.filter(|ratio| *ratio > 1.0));
         let mut shapes = Vec::new();
-        // Recurrence shows only where the same angle comes back in another turn.
-        for order in orders.into_iter().filter(|order| state.rotary && order * (high - low) > 1.5 * TAU) {
+        let (once, again): (Vec<f64>, Vec<f64>) =
+            orders.into_iter().partition(|order| order * (high - low) <= 1.5 * TAU);
+        for order in once {
+            for width in NARROW_TURNS {
+                let places = ((high - low) * order / (1.2 * TAU * width)).ceil() as usize;
+                let at = |place: usize| order * (low + (high - low) * (place as f64 + 0.5) / places as f64);
+                shapes.extend((0..places).map(|place| vec![order, at(place), width, 0.0]));
+            }
+        }
+        for order in again {
             for width in WIDTHS_TURNS {
                 let places = (0.7 / width).round() as usize;
                 for place in 0..places {
@@ -57,9 +70,10 @@ impl Hypothesis for RecurrentFault {
         ]
     }
 
-    fn bounds(&self, _state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+    fn bounds(&self, _state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         match index {
             1 => Some((-TAU, 2.0 * TAU)),
+            2 if shape[2] < WIDTHS_TURNS[0] => Some((0.5 * NARROW_TURNS[0], 1.5 * NARROW_TURNS[1])),
             2 => Some((0.003, 0.2)),
             _ => None,
         }

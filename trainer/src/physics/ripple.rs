@@ -9,7 +9,10 @@ pub(crate) const COGGING: f64 = 0.0;
 /// Ripple of the friction: turns with the direction.
 pub(crate) const FRICTION: f64 = 1.0;
 
-/// Orders (rad of phase per unit of position) between one period a travel and what the sampling can follow.
+/// Periods that a wave has to show over the travel: one with fewer is gravity or position-dependent friction.
+const LEAST_PERIODS: f64 = 3.0;
+
+/// Orders (rad of phase per unit of position) between three periods a travel and what the sampling can follow.
 ///
 /// Steps are fine enough that an order between two steps keeps most of its power; whole orders where the joint
 /// turns through more than one turn.
@@ -20,15 +23,17 @@ pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
         return Vec::new();
     }
     let turn = std::f64::consts::TAU;
-    let lowest = 1.5 * turn / travel;
+    let lowest = LEAST_PERIODS * turn / travel;
     let step = if state.rotary && travel > turn { 1.0 } else { 0.5 * turn / travel };
     let typical_speed = super::state::quantile(state.velocity.iter().map(|v| v.abs()), 0.7).max(f64::MIN_POSITIVE);
     // Ten samples a period at a typical speed, or the encoder's own grain.
     let highest = (turn / (10.0 * state.period * typical_speed)).min(turn / (8.0 * state.resolution.max(1e-12)));
     let first = if step == 1.0 { lowest.ceil() } else { lowest };
-    // Bearings and the output turn once or twice a joint turn, also where the travel shows less than a period.
-    let slow = [1.0, 2.0].into_iter().filter(|order| state.rotary && *order < first);
-    slow.chain((0..most).map(|i| first + step * i as f64)).take_while(|order| *order <= highest).collect()
+    let mut orders: Vec<f64> = (0..most).map(|i| first + step * i as f64).collect();
+    // What the motor and its wave generator turn with, where the free scan does not come to it.
+    orders.extend(state.gear_ratio.iter().flat_map(|ratio| [1.0, 2.0, 4.0].map(|times| times * ratio)));
+    orders.retain(|order| (lowest..=highest).contains(order));
+    orders
 }
 
 impl Hypothesis for PositionRipple {
@@ -71,8 +76,9 @@ impl Hypothesis for PositionRipple {
         ]
     }
 
-    fn bounds(&self, _state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        (index == 0).then_some((0.0, f64::INFINITY))
+    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+        let (low, high) = state.travel();
+        (index == 0).then(|| (LEAST_PERIODS * std::f64::consts::TAU / (high - low), f64::INFINITY))
     }
 
     fn step(&self, state: &JointState, _index: usize, _shape: &[f64]) -> f64 {

@@ -2,9 +2,15 @@
 //! the recorded one, whose noise would explain itself.
 
 use super::state::quantile;
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
 pub(super) struct Saturation;
+
+/// Lowest and highest limit worth testing: near the largest torques, since a limit far below would be a wrong scale.
+fn levels(state: &JointState) -> (f64, f64) {
+    let at = |share| quantile(state.predicted.iter().map(|t| t.abs()), share);
+    (at(0.7).max(0.45 * at(0.998)), at(0.995))
+}
 
 impl Hypothesis for Saturation {
     fn id(&self) -> EffectId {
@@ -16,12 +22,12 @@ impl Hypothesis for Saturation {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let mut shapes: Vec<Shape> = [0.7, 0.8, 0.87, 0.92, 0.96, 0.985]
-            .into_iter()
-            .map(|share| vec![quantile(state.predicted.iter().map(|t| t.abs()), share)])
-            .collect();
-        shapes.dedup();
-        shapes
+        let (low, high) = levels(state);
+        if high <= low {
+            Vec::new()
+        } else {
+            geometric_grid(low, high, 6).into_iter().map(|level| vec![level]).collect()
+        }
     }
 
     fn only_positive(&self) -> bool {
@@ -41,7 +47,6 @@ impl Hypothesis for Saturation {
     }
 
     fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let at = |share| quantile(state.predicted.iter().map(|t| t.abs()), share);
-        Some((at(0.5), at(0.995)))
+        Some(levels(state))
     }
 }

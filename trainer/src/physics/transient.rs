@@ -9,12 +9,11 @@ pub(super) struct TransientEvent;
 const WINDOWS_S: [f64; 4] = [0.12, 0.35, 1.0, 3.0];
 
 /// Windows of a length that are proposed.
-const PROPOSED: usize = 10;
+const PROPOSED: usize = 6;
 
-/// Of all windows at half-window steps, those in which the residual of the base deviates most on one side. Slow samples
-/// do not count: near standstill the residual is that of stiction.
-fn most_deviating(state: &JointState, window: f64) -> Vec<Shape> {
-    let slow = 0.03 * state.top_speed();
+/// Of all windows at half-window steps, those in which the residual of the base deviates most on one side. Samples slower
+/// than `slow` do not count: near standstill the residual is that of stiction.
+fn most_deviating(state: &JointState, window: f64, slow: f64) -> Vec<Shape> {
     let rest: Vec<f64> = state.torque.iter().zip(&state.predicted).map(|(t, p)| t - p).collect();
     let moving: Vec<bool> = state.velocity.iter().map(|v| v.abs() > slow).collect();
     let count = moving.iter().filter(|m| **m).count().max(1) as f64;
@@ -26,7 +25,8 @@ fn most_deviating(state: &JointState, window: f64) -> Vec<Shape> {
         while begin < segment.end {
             let end = (begin + length).min(segment.end);
             let sum: f64 = (begin..end).filter(|&i| moving[i]).map(|i| rest[i] - mean).sum();
-            windows.push((sum.abs(), begin, end));
+            let moved = (begin..end).filter(|&i| moving[i]).count().max(1) as f64;
+            windows.push((sum * sum / moved, begin, end));
             begin += (length / 2).max(1);
         }
     }
@@ -48,7 +48,11 @@ impl Hypothesis for TransientEvent {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        WINDOWS_S.into_iter().flat_map(|window| most_deviating(state, window)).collect()
+        let speeds = [0.03 * state.top_speed(), 2.0 * state.sign_velocity];
+        WINDOWS_S
+            .into_iter()
+            .flat_map(|window| speeds.into_iter().flat_map(move |slow| most_deviating(state, window, slow)))
+            .collect()
     }
 
     fn scanned(&self, state: &JointState) -> Option<f64> {

@@ -1,33 +1,48 @@
-//! G3, Taghirad and Belanger 1998; Ruderman et al. 2009: torsion of the transmission with hysteresis over the load.
+//! G3, Taghirad and Belanger 1998; Ruderman et al. 2009: the transmission winds up in a loop, stiffer after each reversal of
+//! the torque that it carries (a spring beside Dahl's element, both over the twist). With a motor encoder alone the twist
+//! follows from the motor's motion and the load.
 
-use super::state::quantile;
+use super::elasticity::highest_antiresonance;
+use super::transmission::{nominal_inertia, opening};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
 pub(super) struct WindupHysteresis;
 
-/// Normalised hysteresis in [-1, 1] of a driving series with memory length `reach` (the exact exponential step).
-pub(crate) fn hysteresis(state: &JointState, drive: &[f64], reach: f64) -> Vec<f64> {
-    let mut memory = vec![0.0; state.len()];
+/// Share of the inertia that lies behind the transmission, where nothing tells it.
+const LINK_SHARE: f64 = 0.5;
+/// Stiffness of the loop at a reversal over that of the spring.
+const LOOP_STIFFNESS: f64 = 1.5;
+/// Damping ratio of the spring.
+const DAMPING_RATIO: f64 = 0.1;
+
+/// Minus the acceleration of the twist: `e'' = u - w^2 (e + r L z) - 2 zeta w e'`, `dz = (sign(de) - z) |de| / L`.
+fn winding(state: &JointState, drive: &[f64], antiresonance: f64, loop_twist: f64) -> Vec<f64> {
+    const STEPS: usize = 4;
+    let h = state.period / STEPS as f64;
+    let (stiffness, damping) = (antiresonance * antiresonance, 2.0 * DAMPING_RATIO * antiresonance);
+    let mut column = vec![0.0; state.len()];
     for segment in &state.segments {
-        let mut z = 0.0;
+        let (mut twist, mut rate, mut memory) = (drive[segment.start] / stiffness, 0.0, 0.0);
         for i in segment.clone() {
-            if i > segment.start {
-                let step = drive[i] - drive[i - 1];
-                let target = if step > 0.0 { 1.0 } else { -1.0 };
-                z = target + (z - target) * (-step.abs() / reach).exp();
+            let before: f64 = rate;
+            for _ in 0..STEPS {
+                let restoring = stiffness * (twist + LOOP_STIFFNESS * loop_twist * memory);
+                // The damping is taken at the end of the step, so that no stiffness makes it unstable.
+                rate = (rate + h * (drive[i] - restoring)) / (1.0 + h * damping);
+                let step = h * rate;
+                twist += step;
+                let settled = step.signum();
+                memory = settled + (memory - settled) * (-step.abs() / loop_twist).exp();
             }
-            memory[i] = z;
+            column[i] = -(rate - before) / state.period;
         }
     }
-    memory
+    column
 }
 
-/// What winds the transmission: the torsion where a second encoder shows it, else the load.
-fn winding(state: &JointState) -> Option<Vec<f64>> {
-    if let Some(link) = &state.link_position {
-        return Some(state.map(|i| state.position[i] - link[i]));
-    }
-    state.load.clone()
+/// Twist that the usual drive causes in a spring of that antiresonance.
+fn usual_twist(drive: &[f64], antiresonance: f64) -> f64 {
+    super::state::quantile(drive.iter().map(|u| u.abs()), 0.8) / (antiresonance * antiresonance)
 }
 
 impl Hypothesis for WindupHysteresis {
@@ -36,35 +51,44 @@ impl Hypothesis for WindupHysteresis {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = F_h z, dz = (sign(dw) - z) |dw| / w_h, w = torsion or transmitted load"
+        "dF = -J_l e'', e'' + 2 zeta w_a e' + w_a^2 (e + r L z) = a + tau_g / J_l, dz = (sign(de) - z) |de| / L"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let Some(winding) = winding(state) else { return Vec::new() };
-        let spread = |share| quantile(winding.iter().copied(), share);
-        let travel = spread(0.98) - spread(0.02);
-        if travel <= 0.0 {
+        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        let drive = opening(state, LINK_SHARE * inertia);
+        if usual_twist(&drive, 1.0) <= 0.0 {
             return Vec::new();
         }
-        geometric_grid(0.05 * travel, travel, 4).into_iter().map(|reach| vec![reach]).collect()
+        let highest = highest_antiresonance(state);
+        geometric_grid(0.12 * highest, 0.8 * highest, 5)
+            .into_iter()
+            .flat_map(|w| [0.05, 0.25].map(|share| vec![w, share * usual_twist(&drive, w)]))
+            .collect()
+    }
+
+    fn only_positive(&self) -> bool {
+        true
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        winding(state).map(|winding| hysteresis(state, &winding, shape[0])).into_iter().collect()
+        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        vec![winding(state, &opening(state, LINK_SHARE * inertia), shape[0], shape[1])]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
-        vec![("hysteresis_torque", "F_h", Dimension::Torque)]
+        vec![("link_inertia", "J_l", Dimension::Inertia)]
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
-        vec![ShapeName::new("windup_reach", "w_h", Dimension::One)]
+        vec![
+            ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
+            ShapeName::new("loop_twist", "L", Dimension::Position),
+        ]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let winding = winding(state)?;
-        let spread = |share| quantile(winding.iter().copied(), share);
-        let travel = spread(0.98) - spread(0.02);
-        Some((0.01 * travel, 3.0 * travel))
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        let highest = highest_antiresonance(state);
+        Some(if index == 0 { (0.05 * highest, 1.5 * highest) } else { (0.1 * shape[1], 10.0 * shape[1]) })
     }
 }

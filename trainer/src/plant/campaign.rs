@@ -86,18 +86,18 @@ fn twelve() -> [Motion; 12] {
         lines: 7,
     };
     [
-        multisine(1.4, 0.17, 0.9),
-        Motion::StopAndGo { step_rad: 0.25, speed_rad_s: 1.1, dwells_s: vec![0.05, 0.15, 0.4, 0.9] },
-        Motion::Triangles { amplitude_rad: 1.1, speed_rad_s: 2.3 },
+        multisine(2.2, 0.17, 0.9),
+        Motion::StopAndGo { step_rad: 0.4, speed_rad_s: 1.6, dwells_s: vec![0.05, 0.15, 0.4, 0.9] },
+        Motion::Triangles { amplitude_rad: 1.9, speed_rad_s: 2.6 },
         Motion::SmallReversals { smallest_rad: 0.002, largest_rad: 0.08, frequency_hz: 2.0 },
         multisine(0.7, 0.3, 3.2),
-        Motion::Plateaus { speeds_rad_s: vec![0.06, 0.35, 1.3, 0.15, 0.7], hold_s: 0.5 },
-        Motion::Trapezoids { amplitude_rad: 1.3, speed_rad_s: 2.8, dwells_s: vec![0.1, 0.3, 0.8] },
+        Motion::Plateaus { speeds_rad_s: vec![0.06, 0.35, 2.0, 0.15, 0.9], hold_s: 0.5 },
+        Motion::Trapezoids { amplitude_rad: 2.3, speed_rad_s: 3.2, dwells_s: vec![0.1, 0.3, 0.8] },
         Motion::Sweep { amplitude_rad: 0.9, lowest_hz: 0.3, highest_hz: 6.0 },
         Motion::Triangles { amplitude_rad: 0.35, speed_rad_s: 0.5 },
         Motion::UnidirectionalSwing { speed_rad_s: 0.45, swing: 0.8, frequency_hz: 1.7 },
         Motion::StopAndGo { step_rad: 0.12, speed_rad_s: 0.4, dwells_s: vec![0.08, 0.25, 0.7] },
-        multisine(1.6, 0.14, 1.4),
+        multisine(2.5, 0.14, 1.4),
     ]
 }
 

@@ -146,7 +146,7 @@ pub(super) fn small_reversals(
     let mut centre = draws.sign() * draws.between(0.1, 0.4);
     for i in 0..count {
         if i % 4 == 0 {
-            centre = -centre.signum() * draws.between(0.1, 0.9);
+            centre = -centre.signum() * draws.between(0.1, 1.2);
             moves.push(Move::new(centre, 1.5, 0.05));
         }
         let amplitude = smallest * (largest / smallest).powf(draws.unit());

@@ -22,10 +22,16 @@ pub(super) fn network(graph: &GraphSummary, inputs: &[String]) -> String {
     for edge in graph.edges.iter().filter(|edge| edge.active) {
         let ((x1, y1), (x2, y2)) = (place(edge.layer, edge.from), place(edge.layer + 1, edge.to));
         let depth = 0.06 + 0.94 * (edge.score / strongest).clamp(0.0, 1.0);
+        // An activation that follows a function of the library is of another colour and says which.
+        let (class, function) = match &edge.symbolic {
+            Some(function) => ("s-two", format!(", {function}")),
+            None => ("s-one", String::new()),
+        };
         let _ = write!(
             svg,
-            "<path class=\"s-one\" fill=\"none\" stroke-width=\"2.5\" stroke-opacity=\"{depth:.2}\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"><title>attribution {:.4}</title></path>",
-            edge.score
+            "<path class=\"{class}\" fill=\"none\" stroke-width=\"2.5\" stroke-opacity=\"{depth:.2}\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"><title>attribution {:.4}{}</title></path>",
+            edge.score,
+            escape(&function)
         );
     }
     for node in graph.nodes.iter().filter(|node| node.active) {

@@ -4,11 +4,14 @@ use super::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 use std::f64::consts::TAU;
 
-/// Torque or friction ripple at one or two orders that a gear of this ratio can have (Holtz & Springob 1996).
+/// Torque or friction ripple at one or two orders that a gear of this ratio can have (Holtz & Springob 1996), of which the
+/// range shows three periods: with fewer it is gravity or position-dependent friction to any observer.
 pub(super) fn ripple(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let ratio = setting.joint.drive.gear_ratio;
     let is_friction = draws.choice("friction_type", 2) == 1;
-    let orders = [1.0, 2.0, ratio, 2.0 * ratio];
+    let travel = (setting.range.1 - setting.range.0) / TAU;
+    let mut orders = vec![1.0, 2.0, 8.0, ratio, 2.0 * ratio];
+    orders.retain(|order| *order == ratio || order * travel >= 3.0);
     let first = orders[draws.index(orders.len())];
     draws.note("order", first);
     let size = draws.uniform("amplitude_Nm", 0.25, 0.5);

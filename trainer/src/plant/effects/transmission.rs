@@ -33,17 +33,18 @@ pub(super) fn elasticity(draws: &mut Draws, setting: &Setting) -> Mechanism {
 /// A gap between motor and link; the amplitude multiplies its width. The flanks are stiff, so that what is left of a
 /// narrow gap is next to nothing.
 pub(super) fn backlash(draws: &mut Draws, setting: &Setting) -> Mechanism {
-    let stiffness = draws.log_uniform("stiffness_Nm_rad", 20_000.0, 50_000.0);
+    let stiffness = draws.log_uniform("stiffness_Nm_rad", 150_000.0, 400_000.0);
     let half_gap = setting.amplitude * draws.log_uniform("half_gap_rad", 5e-4, 2e-3);
     let gear = Compliant { half_gap, ..compliant(stiffness, 0.3, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))
 }
 
-/// A stiff gear whose wind-up has a loop; the amplitude multiplies the twist over which it builds up.
+/// A gear whose wind-up has a loop that stiffens it at each reversal; the amplitude multiplies its compliance.
 pub(super) fn windup_hysteresis(draws: &mut Draws, setting: &Setting) -> Mechanism {
     let stiffness = draws.log_uniform("stiffness_Nm_rad", 2_000.0, 6_000.0) / setting.amplitude.max(1e-3);
     let level = draws.uniform("loop_torque_Nm", 0.8, 2.0);
-    let twist = setting.amplitude.max(1e-3) * draws.log_uniform("loop_twist_rad", 5e-4, 2e-3);
+    let twist = level / (stiffness * draws.uniform("loop_stiffness_share", 1.0, 2.5));
+    draws.note("loop_twist_rad", twist);
     let gear = Compliant { hysteresis: (level, twist), ..compliant(stiffness, 0.1, setting) };
     Mechanism::Transmission(Transmission::Compliant(gear))
 }

@@ -1,0 +1,305 @@
+//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, one of them chosen.
+
+use super::candidates::Label;
+use super::evidence::{Bench, GroupEvidence, VariantEvidence};
+use super::linear::{dot, orthonormal, project_out};
+use super::noise::Noise;
+use super::null::{Directions, NullDraws, chi_square_surprise};
+use super::refine::refine;
+use super::search::{Accepted, Search};
+use crate::physics::{EffectId, Hypothesis, Shape};
+use rayon::prelude::*;
+
+/// Share of a free function's explained energy at which a name is good enough.
+const NEARLY_AS_MUCH: f64 = 0.9;
+
+/// A hypothesis with its score in one round.
+#[derive(Clone, Debug)]
+pub struct Scored {
+    /// What it stands for.
+    pub label: Label,
+    /// Shape after refinement.
+    pub shape: Shape,
+    /// Score in nats.
+    pub score: f64,
+    /// Family-wise probability under the null; 1 in a round in which nothing reached the least score.
+    pub family_wise: f64,
+    /// Evidence behind the score.
+    pub evidence: GroupEvidence,
+    /// Place of the group in the design.
+    pub(crate) group: usize,
+    /// -log p of its best variant by chi-square.
+    pub(crate) surprise: f64,
+    /// Energy that its best variant explains before whitening.
+    pub(crate) explained: f64,
+}
+
+/// Score: the mean of held-out gain and Bayesian criterion for a named effect; held-out gain for a generic rival;
+/// the criterion with a scan penalty for a one-off event, which no other block can confirm.
+pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
+    match label {
+        Label::Named(EffectId::TransientEvent) => evidence.criterion - 0.5 * grid_size.ln(),
+        Label::Named(_) => 0.5 * (evidence.held_out + evidence.criterion),
+        Label::Generic(_) => evidence.held_out,
+    }
+}
+
+/// Evidence of every variant of every group; `None` where a variant depends on the base.
+type Tested = Vec<Vec<Option<VariantEvidence>>>;
+
+pub(crate) struct Round<'s, 'a> {
+    search: &'s Search<'a>,
+    pub(crate) noise: Noise,
+    bench: Bench,
+    alone: Option<VariantEvidence>,
+    variants: Tested,
+    white: Vec<Vec<f64>>,
+    /// Largest energy that each group explains before whitening.
+    explained: Vec<f64>,
+}
+
+impl<'s, 'a> Round<'s, 'a> {
+    pub(crate) fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
+        // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
+        // effect for colour. So the first candidates are chosen as if the noise were white.
+        let mut noise = Noise::white(search.prepared.rows.len());
+        let mut explained = Vec::new();
+        for _ in 0..2 {
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            if explained.is_empty() {
+                let largest = |tested: &Vec<Option<VariantEvidence>>| {
+                    tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
+                };
+                explained = variants.iter().map(largest).collect();
+            }
+            let mut generous = base.clone();
+            generous.extend(best_two(search, &bench, &variants));
+            noise = search.noise_after(&generous);
+        }
+        let (white, bench, variants) = weigh_all(search, base, &noise, true);
+        let alone = bench.alone();
+        Self { search, noise, bench, alone, variants, white, explained }
+    }
+
+    pub(crate) fn draw_null(&self) -> NullDraws {
+        let best = best_two(self.search, &self.bench, &self.variants);
+        draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
+    }
+
+    pub(crate) fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
+        let Some(alone) = &self.alone else { return Vec::new() };
+        let rows = self.bench.rows();
+        let mut table: Vec<Scored> = self
+            .search
+            .design
+            .groups
+            .iter()
+            .enumerate()
+            .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
+            .filter_map(|(index, group)| {
+                let grid = self.search.grid_size(index);
+                let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
+                let surprise = self.variants[index]
+                    .iter()
+                    .flatten()
+                    .map(|v| chi_square_surprise(v.statistic, v.degrees))
+                    .fold(0.0, f64::max);
+                Some(Scored {
+                    label: group.label.clone(),
+                    shape: group.variants[evidence.best].shape.clone(),
+                    score: score_of(&group.label, &evidence, grid),
+                    family_wise: 1.0,
+                    evidence,
+                    group: index,
+                    surprise,
+                    explained: self.explained[index],
+                })
+            })
+            .collect();
+        self.refine_leaders(&mut table, alone, rows);
+        table.sort_by(|a, b| b.score.total_cmp(&a.score));
+        table
+    }
+
+    /// The variants of a group whose coefficients have a possible sign.
+    fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
+        let positive = match self.search.design.groups[group].label {
+            Label::Named(effect) => self.search.hypothesis(effect).is_some_and(Hypothesis::only_positive),
+            Label::Generic(_) => false,
+        };
+        let possible = |e: &VariantEvidence| !positive || e.coefficients.iter().all(|c| *c > 0.0);
+        self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
+    }
+
+    /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
+    fn refine_leaders(&self, table: &mut [Scored], alone: &VariantEvidence, rows: f64) {
+        const REFINED_WITHIN_NATS: f64 = 15.0;
+        let named = table.iter().filter(|s| matches!(s.label, Label::Named(_)));
+        let lead = named.map(|s| s.score).fold(f64::NEG_INFINITY, f64::max);
+        let threshold = (lead - REFINED_WITHIN_NATS).max(0.0);
+        table.par_iter_mut().for_each(|scored| {
+            let Label::Named(effect) = scored.label else { return };
+            let Some(hypothesis) = self.search.hypothesis(effect) else { return };
+            if scored.score < threshold {
+                return;
+            }
+            let state = &self.search.prepared.state;
+            let weigh = |shape: &[f64]| {
+                let columns = self.search.filtered_columns(&scored.label, shape);
+                self.bench.evidence(&self.search.whitened(&columns, &self.noise))
+            };
+            let positive = hypothesis.only_positive();
+            let weigh = |shape: &[f64]| weigh(shape).filter(|e| !positive || e.coefficients.iter().all(|c| *c > 0.0));
+            let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
+            let grid = self.search.grid_size(scored.group);
+            if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
+                let score = score_of(&scored.label, &evidence, grid);
+                if score > scored.score {
+                    scored.shape = shape;
+                    scored.score = score;
+                    scored.evidence = evidence;
+                }
+            }
+        });
+    }
+}
+
+impl Round<'_, '_> {
+    /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
+    pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
+        let settings = &self.search.settings;
+        let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
+        let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
+        let named = table.iter().filter(is_named).find(passes);
+        let generic = table.iter().filter(|s| !is_named(s)).find(passes);
+        // An unnamed structure is measured against every name by the same held-out evidence. Where this runs to hundreds
+        // of nats every formula is a little wrong: then a name that explains nine tenths of what the free function does is kept.
+        let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
+        let nearly = |generic: &Scored| {
+            table.iter().filter(is_named).filter(passes).find(|s| s.explained >= NEARLY_AS_MUCH * generic.explained)
+        };
+        let best = match (named, generic) {
+            (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => {
+                nearly(generic).unwrap_or(generic)
+            }
+            (Some(named), _) => named,
+            (None, Some(generic)) => generic,
+            (None, None) => return None,
+        };
+        let mut rivals = Vec::new();
+        let mut margin = f64::INFINITY;
+        for rival in table.iter().filter(|s| s.label != best.label) {
+            let Label::Named(effect) = rival.label else { continue };
+            let distance = best.score - rival.score;
+            if distance >= settings.ambiguity_margin {
+                margin = margin.min(distance);
+            } else if matches!(best.label, Label::Named(_)) && !self.merely_contains(rival, best) {
+                rivals.push((effect, distance));
+            }
+        }
+        Some(Accepted {
+            label: best.label.clone(),
+            shape: best.shape.clone(),
+            score: best.score,
+            family_wise: best.family_wise,
+            fold_gain: best.evidence.fold_gain.clone(),
+            margin,
+            rivals,
+        })
+    }
+
+    /// Whether a rival is the best hypothesis with more coefficients: then it is no other explanation.
+    fn merely_contains(&self, rival: &Scored, best: &Scored) -> bool {
+        const SHARE_OUTSIDE: f64 = 0.01;
+        if rival.evidence.degrees <= best.evidence.degrees {
+            return false;
+        }
+        let runs = self.bench.runs();
+        let white = |scored: &Scored| {
+            self.search.whitened(&self.search.filtered_columns(&scored.label, &scored.shape), &self.noise)
+        };
+        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(rival)).collect::<Vec<_>>(), &runs);
+        let base = orthonormal(&self.bench.base, &runs);
+        white(best).iter().all(|column| {
+            let outside = |basis: &[Vec<f64>]| {
+                let mut rest = column.clone();
+                project_out(&mut rest, basis, &runs);
+                dot(&rest, &rest, &runs)
+            };
+            outside(&span) < SHARE_OUTSIDE * outside(&base)
+        })
+    }
+}
+
+/// Whitens the design and weighs every variant, held-out folds only where asked for.
+fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
+    let bench = search.bench(base, noise);
+    let white = search.whitened(&search.design.columns, noise);
+    let variants = search
+        .design
+        .groups
+        .par_iter()
+        .map(|group| group.variants.iter().map(|variant| bench.weigh(&white[variant.columns.clone()], folds)).collect())
+        .collect();
+    (white, bench, variants)
+}
+
+/// Unwhitened columns of the two groups whose best variants surprise most.
+fn best_two(search: &Search, bench: &Bench, variants: &[Vec<Option<VariantEvidence>>]) -> Vec<Vec<f64>> {
+    let rows = bench.rows();
+    let mut gains: Vec<(f64, usize, usize)> = Vec::new();
+    for (group, tested) in variants.iter().enumerate() {
+        let best = tested
+            .iter()
+            .enumerate()
+            .filter_map(|(i, v)| v.as_ref().map(|v| (v.statistic - v.degrees as f64 * rows.ln(), i)))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((gain, variant)) = best {
+            gains.push((gain, group, variant));
+        }
+    }
+    gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+    gains
+        .iter()
+        .take(2)
+        .flat_map(|(_, group, variant)| {
+            search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
+        })
+        .collect()
+}
+
+fn draw_null(
+    search: &Search,
+    bench: &Bench,
+    white: &[Vec<f64>],
+    variants: &[Vec<Option<VariantEvidence>>],
+    best: &[Vec<f64>],
+) -> NullDraws {
+    let runs = bench.runs();
+    let base_directions = orthonormal(&bench.base, &runs);
+    let directions: Directions = search
+        .design
+        .groups
+        .par_iter()
+        .zip(variants)
+        .map(|(group, tested)| {
+            group
+                .variants
+                .iter()
+                .zip(tested)
+                .filter(|(_, evidence)| evidence.is_some())
+                .map(|(variant, _)| {
+                    let mut columns = white[variant.columns.clone()].to_vec();
+                    columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
+                    orthonormal(&columns, &runs)
+                })
+                .collect()
+        })
+        .collect();
+    let mut rest = bench.target.clone();
+    project_out(&mut rest, &base_directions, &runs);
+    let mut extended = base_directions.clone();
+    extended.extend(best.to_vec());
+    project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
+    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, search.settings.seed)
+}
