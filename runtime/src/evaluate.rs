@@ -64,11 +64,7 @@ fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_I
 }
 
 #[inline(never)]
-fn evaluate_expression<const CELLS: usize>(
-    model: &Model<CELLS>,
-    program: &Program,
-    inputs: &[f32; MAX_INPUTS],
-) -> f32 {
+fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, program: &Program, inputs: &[f32; MAX_INPUTS]) -> f32 {
     let inputs = held(&model.inputs, inputs);
     let any_nan = inputs.iter().fold(false, |any, input| any | input.is_nan());
     limited(unless(any_nan, run(program, &inputs)), model.output_limit)

@@ -36,9 +36,7 @@ fn place_input(table: &Table, input: f32) -> Place {
 #[inline(always)]
 fn cubic(cell: &Cell, x: Coordinate) -> i32 {
     let [a0, a1, a2, a3] = cell.integers();
-    let step = |sum: i32, coefficient: i32| {
-        coefficient.wrapping_add(((i64::from(sum) * i64::from(x)) >> 32) as i32)
-    };
+    let step = |sum: i32, coefficient: i32| coefficient.wrapping_add(((i64::from(sum) * i64::from(x)) >> 32) as i32);
     step(step(step(a3, a2), a1), a0)
 }
 

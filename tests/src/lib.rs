@@ -14,3 +14,9 @@ pub mod vectors;
 pub fn exhaustive() -> bool {
     std::env::var("FRIKAN_EXHAUSTIVE").is_ok_and(|value| value == "1")
 }
+
+/// Whether the long forms of the tests were asked for, by `FRIKAN_EXHAUSTIVE=1`.
+#[must_use]
+pub fn exhaustive() -> bool {
+    std::env::var_os("FRIKAN_EXHAUSTIVE").is_some_and(|value| value == "1")
+}

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
+use frikan_tests::exhaustive;
 use frikan_tests::laws::reference::{self, identifiable};
 use frikan_tests::laws::simple::{Truth, too_rich};
 use frikan_tests::laws::{channel, data, joint, other, velocity};
 use frikan_tests::paper::{JOINTS, SAMPLES, SMOOTHING, with_noise};
-use frikan_tests::exhaustive;
 use frikan_trainer::kan::Random;
 use frikan_trainer::law::{ChannelRole, Nuisance, SearchOptions, discover};
 

@@ -85,7 +85,8 @@ type OfVelocity = (&'static str, fn(f64) -> f64, Vec<Structure>);
 
 fn of_velocity() -> Vec<OfVelocity> {
     use Shape::{
-        AbsSign, AbsViscous, Offset, OddRoot, Quadratic, Sign, SignPower, StribeckExponential, StribeckGaussian, Viscous,
+        AbsSign, AbsViscous, OddRoot, Offset, Quadratic, Sign, SignPower, StribeckExponential, StribeckGaussian,
+        Viscous,
     };
     let tanh = |shapes: &[Shape]| plain(SignForm::Tanh, shapes);
     vec![

@@ -9,12 +9,7 @@ use crate::paper::{JOINTS, NOISE, SAMPLES, SMOOTHING};
 /// Constants of the law that can be identified under the paper's noise, with their true values for a joint.
 #[must_use]
 pub fn identifiable(k: [f64; 4]) -> [(&'static str, f64); 4] {
-    [
-        ("coulomb_torque", k[0]),
-        ("stribeck_extra_torque", k[1]),
-        ("stribeck_velocity", k[2]),
-        ("smoothing", SMOOTHING),
-    ]
+    [("coulomb_torque", k[0]), ("stribeck_extra_torque", k[1]), ("stribeck_velocity", k[2]), ("smoothing", SMOOTHING)]
 }
 
 /// The whole law, which clean samples determine.
@@ -49,7 +44,8 @@ pub struct Tally {
 /// When the samples cannot be used, which they can.
 #[must_use]
 pub fn noisy(index: usize, seed: u64) -> Discovery {
-    discover(&joint(JOINTS[index], SAMPLES, NOISE[index] / 2.0, seed), &SearchOptions::default()).expect("usable samples")
+    discover(&joint(JOINTS[index], SAMPLES, NOISE[index] / 2.0, seed), &SearchOptions::default())
+        .expect("usable samples")
 }
 
 /// Many draws of joint `index`, their seeds given.

@@ -219,6 +219,7 @@ impl Builder<'_> {
         let reach = cells.iter().map(|cell| f64::from(cell.bound())).fold(0.0, f64::max);
         let limit = match law {
             Law::Geometric(_) | Law::Uniform(_) => reach * (1.0 + 1e-6),
+            Law::Network(ref network) => tables::output_bound(network),
             _ => 0.0,
         };
         assemble(&Parts {
@@ -294,7 +295,10 @@ impl Rivals {
 fn describe(law: &Law, cells: usize) -> String {
     match law {
         Law::Expression(program) => format!("program of {} operations", program.operations.len()),
-        Law::Network(network) => format!("network of {} nodes, {cells} cells", network.sources.len()),
+        Law::Network(network) => format!(
+            "network of {} hidden nodes, {cells} cells",
+            network.layers.iter().map(|layer| layer.nodes()).sum::<usize>()
+        ),
         _ => format!("table of {cells} cells"),
     }
 }

@@ -65,7 +65,9 @@ pub fn proposals(sums: &[Activation], products: &[[Activation; 2]]) -> Vec<Start
         }
     }
     for [left, right] in products {
-        let (Some((left, mut constants)), Some((right, more))) = (recognised(left), recognised(right)) else { continue };
+        let (Some((left, mut constants)), Some((right, more))) = (recognised(left), recognised(right)) else {
+            continue;
+        };
         if let Some((term, sign)) = product(&left, &right) {
             constants.extend(more);
             found.push(Suggestion { terms: with_quadrature(term), sign, constants });
@@ -81,7 +83,8 @@ pub fn proposals(sums: &[Activation], products: &[[Activation; 2]]) -> Vec<Start
         .collect();
     let mut together = Start { structure: Structure::new(SignForm::Tanh, base), constants: Vec::new() };
     for one in &found {
-        let wider = one.terms.iter().fold(together.structure.clone(), |wider, term| wider.with(*term)).with_sign(one.sign);
+        let wider =
+            one.terms.iter().fold(together.structure.clone(), |wider, term| wider.with(*term)).with_sign(one.sign);
         if wider.terms().len() <= MOST_TERMS && admissible(&wider) {
             together.structure = wider;
             together.constants.extend(&one.constants);
@@ -167,13 +170,13 @@ mod tests {
 
     #[test]
     fn a_product_of_a_step_and_a_decline_proposes_stribeck_friction_with_its_constants() {
-        let pair =
-            [over(0, ChannelRole::Velocity, |v| (30.0 * v).tanh()), over(0, ChannelRole::Velocity, |v| 1.0 - (-(v / 0.2).abs()).exp())];
+        let pair = [
+            over(0, ChannelRole::Velocity, |v| (30.0 * v).tanh()),
+            over(0, ChannelRole::Velocity, |v| 1.0 - (-(v / 0.2).abs()).exp()),
+        ];
         let starts = proposals(&[over(0, ChannelRole::Velocity, |v| 2.0 * v)], &[pair]);
-        let stribeck = Structure::new(
-            SignForm::Tanh,
-            [Shape::Sign, Shape::StribeckExponential, Shape::Viscous].map(Term::plain),
-        );
+        let stribeck =
+            Structure::new(SignForm::Tanh, [Shape::Sign, Shape::StribeckExponential, Shape::Viscous].map(Term::plain));
         let start = starts.iter().find(|s| s.structure == stribeck).unwrap();
         let constant = |which| start.constants.iter().find(|(n, _)| *n == which).unwrap().1;
         assert!((constant(Nonlinear::Smoothing) - 30.0).abs() < 0.3);
