@@ -1,4 +1,4 @@
-//! What the generated fixtures hold: the published law, and outputs of golden images as bits.
+//! What the generated fixtures hold: recordings of the published law, and outputs of golden images as bits.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -9,6 +9,8 @@ use frikan_trainer::fit::HostModel;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
+use crate::paper::friction;
+
 /// Points at which a golden image is held still.
 const GOLDEN_POINTS: usize = 400;
 
@@ -18,15 +20,6 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")
 }
 
-/// `F(v) = (k1 + k2 exp(-|v/k3|)) tanh(50 v) + k4 v` in N m and rad/s (Wang, Rabczuk and Liu).
-#[must_use]
-pub fn stribeck_law([k1, k2, k3, k4]: [f64; 4], v: f64) -> f64 {
-    (k1 + k2 * (-(v / k3).abs()).exp()) * (50.0 * v).tanh() + k4 * v
-}
-
-/// Constants of axis 1 of the publication.
-pub const AXIS_1: [f64; 4] = [22.0, 8.0, 0.10, 0.03];
-
 /// A recording of separated friction: `rows` velocities uniform in `[-1, 1]` rad/s from a seed.
 #[must_use]
 pub fn separated_recording(constants: [f64; 4], rows: usize, seed: u64) -> String {
@@ -35,7 +28,7 @@ pub fn separated_recording(constants: [f64; 4], rows: usize, seed: u64) -> Strin
     for _ in 0..rows {
         let velocity = 2.0 * (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 1.0;
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{velocity},{}", stribeck_law(constants, velocity));
+        let _ = writeln!(text, "{velocity},{}", friction(constants, velocity));
     }
     text
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use frikan_tests::command::run;
-use frikan_tests::fixtures::{AXIS_1, separated_recording};
+use frikan_tests::fixtures::separated_recording;
+use frikan_tests::paper::JOINTS;
 use serde_json::Value;
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -13,8 +14,8 @@ fn write(folder: &Path, name: &str, text: &str) {
 /// A folder with two separated recordings of the published law.
 fn bench() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "train.csv", &separated_recording(AXIS_1, 600, 1));
-    write(folder.path(), "test.csv", &separated_recording(AXIS_1, 300, 2));
+    write(folder.path(), "train.csv", &separated_recording(JOINTS[0], 600, 1));
+    write(folder.path(), "test.csv", &separated_recording(JOINTS[0], 300, 2));
     folder
 }
 

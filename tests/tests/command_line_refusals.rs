@@ -72,7 +72,7 @@ fn a_folder_a_missing_file_and_a_missing_target_folder_are_input_and_output() {
     assert!(refusal(folder.path()).starts_with("5 arm.csv: FRK-I003"));
     std::fs::remove_dir(folder.path().join("arm.csv")).unwrap();
     assert!(refusal(folder.path()).starts_with("5 arm.csv: FRK-I002"));
-    let text = frikan_tests::fixtures::separated_recording(frikan_tests::fixtures::AXIS_1, 300, 1);
+    let text = frikan_tests::fixtures::separated_recording(frikan_tests::paper::JOINTS[0], 300, 1);
     std::fs::write(folder.path().join("arm.csv"), text).unwrap();
     let fit = run(folder.path(), &["fit", "arm.csv", "-o", "absent/out.frk", "--json", "out.json", "--quiet"]);
     assert_eq!(fit.status, 5, "{}", fit.messages);
@@ -93,7 +93,7 @@ fn a_line_of_a_gigabyte_is_refused_at_once() {
 #[test]
 fn wrong_usage_is_2() {
     let folder = tempfile::tempdir().unwrap();
-    let text = frikan_tests::fixtures::separated_recording(frikan_tests::fixtures::AXIS_1, 300, 1);
+    let text = frikan_tests::fixtures::separated_recording(frikan_tests::paper::JOINTS[0], 300, 1);
     std::fs::write(folder.path().join("arm.csv"), text).unwrap();
     for arguments in [
         &["fit", "arm.csv"][..],

@@ -1,8 +1,11 @@
 //! Instructions of an evaluation on the emulated targets: the same for every input where there is a floating-point unit,
 //! and within the budget.
 
+use frikan_runtime::shared::expression::{Operation, Program};
+use frikan_runtime::shared::model::Law;
 use frikan_tests::cost::{count, count_integer};
 use frikan_tests::models;
+use frikan_trainer::compile::cost::instructions;
 use frikan_trainer::emulator::{Emulator, Firmware};
 
 /// Every kind of model, constant; those named in `budgets` within their budget.
@@ -65,4 +68,27 @@ fn the_count_sees_a_time_that_varies() {
     let emulator = Emulator::new("cortex-m0plus").unwrap();
     let (fewest, most) = count(&emulator, &models::symmetric_table()).unwrap().instruction_range().unwrap();
     assert!(fewest < most && fewest > 50, "{fewest} to {most}");
+}
+
+/// The cost by which a fit chooses the form of a law is the cost on the target.
+#[test]
+fn the_cost_worked_out_beforehand_is_the_count_on_cortex_m4f() {
+    let emulator = Emulator::new("cortex-m4f").unwrap();
+    for (name, model) in models::every_kind() {
+        let (_, most) = count(&emulator, &model).unwrap().instruction_range().unwrap();
+        let expected = instructions(&model);
+        println!("{name}: {expected} expected, {most} counted");
+        assert!(most.abs_diff(expected) * 50 <= most, "{name}: {expected} expected, {most} counted");
+    }
+    let mut model = models::stribeck_expression();
+    use Operation::{
+        Atan, Constant, Cos, Input, Log, Maximum, Minimum, Power, PowerOf, Reciprocal, Sign, Sin, SquareRoot, Subtract,
+    };
+    let two = |operation| vec![Input(0), Constant(2.0), operation];
+    let programs = [Atan, Cos, Log, PowerOf(1.5), Reciprocal, Sign, Sin, SquareRoot].map(|o| vec![Input(0), o]);
+    for operations in programs.into_iter().chain([Maximum, Minimum, Power, Subtract].map(two)) {
+        model.law = Law::Expression(Program { operations: operations.iter().copied().collect() });
+        let (_, most) = count(&emulator, &model).unwrap().instruction_range().unwrap();
+        assert_eq!(instructions(&model), most, "{operations:?}");
+    }
 }

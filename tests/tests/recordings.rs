@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use frikan_tests::fixtures::{AXIS_1, separated_recording};
+use frikan_tests::fixtures::separated_recording;
+use frikan_tests::paper::JOINTS;
 use frikan_trainer::fit::outcome::Outcome;
 use frikan_trainer::fit::{Options, fit};
 use frikan_trainer::joint::Joint;
@@ -59,14 +60,14 @@ fn kr300_axis_3_predicts_an_unseen_trajectory() {
 #[test]
 fn the_image_of_the_published_law_explains_an_independent_clean_set() {
     let parse = |label: &str, seed| {
-        let text = separated_recording(AXIS_1, 1000, seed);
+        let text = separated_recording(JOINTS[0], 1000, seed);
         recording::parse(label, text.as_bytes(), &Joint::default()).unwrap()
     };
     let outcome = fitted(&[parse("train", 1)], &[parse("test", 2)]);
     println!("1 - R2 = {:e}, {}", 1.0 - outcome.tests[0].score.r2, outcome.law.expression);
     assert!(outcome.tests[0].score.r2 > 0.9999);
     let names = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient"];
-    for (name, truth) in names.into_iter().zip(AXIS_1) {
+    for (name, truth) in names.into_iter().zip(JOINTS[0]) {
         let found = outcome.parameters.iter().find(|parameter| parameter.name == name).unwrap();
         assert!((found.value / truth - 1.0).abs() < 1e-3, "{found:?}");
     }

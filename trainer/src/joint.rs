@@ -30,6 +30,9 @@ pub struct Joint {
     /// Parameters of the drive.
     #[serde(default)]
     pub drive: Drive,
+    /// Within which the joint may be moved.
+    #[serde(default)]
+    pub limits: Limits,
     /// Tables that other commands read (the simulated plant, for one), untouched.
     #[serde(flatten)]
     pub other: toml::Table,
@@ -98,6 +101,24 @@ pub struct Drive {
     pub rate_hz: Option<f64>,
 }
 
+/// Within which the joint may be moved; what is absent is taken from a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Lowest position, rad (m on a linear axis).
+    #[serde(alias = "lowest_position_m")]
+    pub lowest_position_rad: Option<f64>,
+    /// Highest position, rad (m).
+    #[serde(alias = "highest_position_m")]
+    pub highest_position_rad: Option<f64>,
+    /// Largest speed, rad/s (m/s); above zero.
+    #[serde(alias = "velocity_m_s")]
+    pub velocity_rad_s: Option<f64>,
+    /// Largest acceleration, rad/s2 (m/s2); above zero.
+    #[serde(alias = "acceleration_m_s2")]
+    pub acceleration_rad_s2: Option<f64>,
+}
+
 impl Drive {
     /// Joint torque per ampere of motor current, N m/A, when known.
     #[must_use]
@@ -164,11 +185,15 @@ impl Joint {
             ("drive.counts_per_turn", drive.counts_per_turn),
             ("drive.torque_limit_Nm", drive.torque_limit_nm),
             ("drive.rate_Hz", drive.rate_hz),
+            ("limits.velocity_rad_s", self.limits.velocity_rad_s),
+            ("limits.acceleration_rad_s2", self.limits.acceleration_rad_s2),
         ];
         let finite = [
             ("rigid_body.gravity_torque_Nm", self.rigid_body.gravity_torque_nm),
             ("rigid_body.gravity_phase_rad", self.rigid_body.gravity_phase_rad),
             ("drive.gear_ratio", drive.gear_ratio),
+            ("limits.lowest_position_rad", self.limits.lowest_position_rad),
+            ("limits.highest_position_rad", self.limits.highest_position_rad),
         ];
         for (key, value) in above_zero {
             refuse(key, value, "this has to be a finite number above zero", |x| x.is_finite() && x > 0.0)?;
@@ -176,6 +201,10 @@ impl Joint {
         for (key, value) in finite {
             refuse(key, value, "this has to be a finite number", f64::is_finite)?;
         }
+        let (lowest, highest) = (self.limits.lowest_position_rad, self.limits.highest_position_rad);
+        refuse("limits.highest_position_rad", highest, "this has to lie above the lowest position", |high| {
+            lowest.is_none_or(|low| low < high)
+        })?;
         refuse("drive.gear_ratio", drive.gear_ratio, "a gear ratio cannot be zero", |x| x.abs() > 0.0)?;
         for (quantity, mapping) in &self.columns {
             let key = format!("columns.{quantity}.scale");
@@ -225,6 +254,11 @@ mod tests {
             counts_per_turn = 8192
             torque_limit_Nm = 50
             rate_Hz = 1000
+            [limits]
+            lowest_position_rad = -1.5
+            highest_position_rad = 2.0
+            velocity_rad_s = 3.0
+            acceleration_rad_s2 = 20.0
             [plant]
             anything = 1
             "#,
@@ -244,7 +278,12 @@ mod tests {
 
     #[test]
     fn impossible_numbers_are_refused_by_key() {
-        for text in ["[drive]\ncounts_per_turn = 0", "[drive]\ngear_ratio = nan", "[rigid_body]\ninertia_kgm2 = -1"] {
+        for text in [
+            "[drive]\ncounts_per_turn = 0",
+            "[drive]\ngear_ratio = nan",
+            "[rigid_body]\ninertia_kgm2 = -1",
+            "[limits]\nlowest_position_rad = 1\nhighest_position_rad = 0",
+        ] {
             let error = Joint::parse(text).unwrap_err();
             assert_eq!(error.code(), &codes::BAD_JOINT_FILE);
             assert!(error.column().is_some() && error.value().is_some());

@@ -3,14 +3,15 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use frikan_tests::fixtures::{AXIS_1, output_bits, separated_recording};
+use frikan_tests::fixtures::{output_bits, separated_recording};
+use frikan_tests::paper::JOINTS;
 use frikan_trainer::error::Result;
 use frikan_trainer::files::write_whole;
 use frikan_trainer::fit::model;
 
 fn recordings(folder: &Path) -> Result<()> {
     for (name, seed) in [("stribeck.csv", 1), ("stribeck-test.csv", 2)] {
-        write_whole(&folder.join(name), separated_recording(AXIS_1, 1000, seed).as_bytes())?;
+        write_whole(&folder.join(name), separated_recording(JOINTS[0], 1000, seed).as_bytes())?;
     }
     Ok(())
 }

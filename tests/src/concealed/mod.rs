@@ -2,6 +2,7 @@
 //!
 //! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
 
+pub mod advised;
 pub mod summary;
 
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};

@@ -1,31 +1,35 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
+mod compare;
+mod summary;
+
 use crate::commands::output::Outputs;
+use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::diagnose::improve::{Origin, improve};
-use crate::diagnose::sentence::{Story, Units, tell};
-use crate::diagnose::simulation::{self, InverseLaw};
+use crate::diagnose::sentence::{Story, Units, capital, tell};
 use crate::diagnose::{
-    BaseKind, Diagnosis, Finding, Lock, Options, Refusal, Settings, Signals, Verdict, diagnose, model,
+    BaseKind, Diagnosis, Limits, Lock, Options, Plan, Question, Refusal, Settings, Signals, Verdict, diagnose, plan,
 };
 use crate::error::{Error, Result, codes};
-use crate::fit::{self, HostModel};
-use crate::joint::{self, Joint};
+use crate::fit;
+use crate::joint::Joint;
+use crate::physics::JointState;
 use crate::recording::{self, Axis, Quantity, Recording};
 use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
+use compare::{Compared, compared_signals};
 use frikan_shared::image::Image;
-use frikan_shared::model::RigidBody;
 use frikan_shared::units::Unit;
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use summary::summary;
 
 /// Compare a recording with a simulation, a model or the best static model of itself, and name the physics that is missing.
 #[derive(Args, Clone, Debug)]
 pub struct Diagnose {
-    /// Recording of the real joint
-    #[arg(value_name = "REAL")]
-    pub recording: PathBuf,
+    /// Recording of the real joint; several are taken one behind the other
+    #[arg(value_name = "REAL", required = true)]
+    pub recordings: Vec<PathBuf>,
     /// Simulation of the same commanded motion; its inverse law is learned and evaluated at the recorded states
     #[arg(long, value_name = "SIM", conflicts_with_all = ["model", "base"])]
     pub simulation: Option<PathBuf>,
@@ -44,6 +48,9 @@ pub struct Diagnose {
     /// Improved model to write
     #[arg(short, long, value_name = "IMPROVED.frk")]
     pub output: Option<PathBuf>,
+    /// Trajectory to write that would tell apart what this recording cannot: time, position, velocity, acceleration
+    #[arg(long, value_name = "TRAJECTORY.csv")]
+    pub advise: Option<PathBuf>,
     /// Write the diagnosis as JSON; `-` for standard output, in place of the text
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -74,31 +81,42 @@ pub enum StaticBase {
 /// written then.
 pub fn run(arguments: &Diagnose) -> Result<u8> {
     let begin = Instant::now();
+    let reporter = Reporter::new(arguments.quiet);
+    reporter.say("reading");
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let real = recording::load(&arguments.recording, &joint)?;
-    let (signals, compared) = compared_signals(arguments, &real, &joint)?;
-    let units = units(&real);
+    let recordings =
+        arguments.recordings.iter().map(|path| recording::load(path, &joint)).collect::<Result<Vec<Recording>>>()?;
+    let real = &recordings[0];
+    let (signals, compared) = compared_signals(arguments, &recordings, &joint)?;
+    let units = units(real);
     let options = Options {
         base: base_kind(arguments),
         lock: arguments.lock,
         settings: Settings { seed: arguments.seed, ..Settings::default() },
     };
-    let diagnosis = diagnose(&signals, units.actuator, &options).map_err(|refusal| refused(&refusal, &real))?;
+    reporter.say("weighing every effect against the noise");
+    let mut diagnosis = diagnose(&signals, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
+    reporter.say("choosing what to record next");
+    let advice = advice(&signals, &diagnosis, options, &joint, (&compared, real));
+    if let Some(plan) = &advice {
+        heed(&mut diagnosis, plan);
+    }
     let story = tell(&diagnosis, units);
-    let seconds = begin.elapsed().as_secs_f64();
-    let summary = arguments.json.as_ref().map(|_| summary(&diagnosis, &story, seconds, arguments.seed).to_string());
+    reporter.say("writing");
     let mut outputs = Outputs::default();
-    if let (Some(path), Some(text)) = (&arguments.json, summary) {
-        outputs.add(path, text + "\n");
+    let seconds = begin.elapsed().as_secs_f64();
+    if let Some(path) = &arguments.json {
+        let summary = summary(&diagnosis, &story, advice.as_ref(), seconds, arguments.seed);
+        outputs.add(path, summary.to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        outputs.add(Path::new("-"), text_of(&story));
+        outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
     }
-    let mut export = Vec::new();
+    let mut remarks = Vec::new();
     if let Some(path) = &arguments.output {
-        let (image, remarks) = improved_image(arguments, (&real, &joint), &diagnosis, &signals, &compared)?;
+        let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &signals, &compared)?;
         outputs.add(path, image);
-        export = remarks;
+        remarks = export;
     }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {
@@ -107,74 +125,61 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
             diagnosis: &diagnosis,
             story: &story,
             units,
-            export: &export,
+            plan: advice.as_ref(),
+            export: &remarks,
         };
         outputs.add(path, report::diagnosis(&page));
     }
-    let inputs = [Some(&arguments.recording), arguments.simulation.as_ref(), arguments.model.as_ref()];
-    outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
-    outputs.write()?;
-    if !arguments.quiet {
-        export.iter().for_each(|sentence| eprintln!("{sentence}"));
+    match (&arguments.advise, &advice) {
+        (Some(path), Some(plan)) => outputs.add(path, plan.to_csv(units.rotary)),
+        (Some(_), None) => remarks.push("no trajectory is needed: nothing that was found has a rival".to_string()),
+        (None, _) => {}
     }
+    let inputs = [arguments.joint.as_ref(), arguments.simulation.as_ref(), arguments.model.as_ref()];
+    let inputs = arguments.recordings.iter().chain(inputs.into_iter().flatten());
+    outputs.refuse_overwriting(&inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.write()?;
+    drop(reporter);
     if !arguments.quiet {
-        let rows = diagnosis.rows;
-        eprintln!("{}: {rows} rows behind {:.0} Hz in {seconds:.1} s", real.label, diagnosis.cut_off_hz);
+        remarks.iter().for_each(|sentence| eprintln!("{sentence}"));
+        let memory = peak_memory_mb().map_or_else(String::new, |mb| format!(", {mb:.0} MB of memory"));
+        let (samples, rows, hz) = (signals.time.len(), diagnosis.rows, diagnosis.cut_off_hz);
+        eprintln!("{}: {samples} samples, {rows} rows behind {hz:.0} Hz, {seconds:.1} s{memory}", real.label);
     }
     Ok(exit_status(diagnosis.verdict))
 }
 
-/// What the recording is compared with.
-enum Compared {
-    Itself(Box<RigidBody>),
-    Simulation(Box<InverseLaw>),
-    Model(Box<HostModel>),
+/// The motion that would tell apart what cannot be told, within the limits of the joint.
+fn advice(
+    signals: &Signals,
+    diagnosis: &Diagnosis,
+    options: Options,
+    joint: &Joint,
+    (compared, real): (&Compared, &Recording),
+) -> Option<Plan> {
+    let limits = Limits {
+        lowest_position: joint.limits.lowest_position_rad,
+        highest_position: joint.limits.highest_position_rad,
+        speed: joint.limits.velocity_rad_s,
+        acceleration: joint.limits.acceleration_rad_s2,
+    };
+    let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
+    let at = |state: &JointState| compared.at(state, recorded_body);
+    plan(&Question { signals, diagnosis, options, limits, reference: Some(&at) })
 }
 
-/// Signals of the real recording beside what they are compared with.
-fn compared_signals(arguments: &Diagnose, real: &Recording, joint: &Joint) -> Result<(Signals, Compared)> {
-    if let Some(path) = &arguments.simulation {
-        let simulated = recording::load(path, joint)?;
-        same_units(real, &simulated)?;
-        let mut signals = Signals::of(real, joint)?;
-        let simulation = Signals::of(&simulated, joint)?;
-        let law = simulation::learn(&simulation, signals.rigid_body.is_some())
-            .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
-        let reference = law.at(&states(&signals, real)?);
-        signals.compare_with(reference);
-        Ok((signals, Compared::Simulation(Box::new(law))))
-    } else if let Some(path) = &arguments.model {
-        let (_, image) = fit::model::load(path)?;
-        // The image carries the rigid body of the joint file already; what is recorded is handed to it.
-        let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
-        let mut signals = Signals::of(real, &bare)?;
-        let state = states(&signals, real)?;
-        let reference =
-            model::at(&image.model, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real.file()))?;
-        signals.compare_with(reference);
-        Ok((signals, Compared::Model(Box::new(image.model))))
-    } else {
-        Ok((Signals::of(real, joint)?, Compared::Itself(Box::new(given_rigid_body(real, joint)))))
+/// Puts the plan before the general advice of every finding that it concerns.
+fn heed(diagnosis: &mut Diagnosis, plan: &Plan) {
+    for found in diagnosis.findings.iter_mut().filter(|found| !found.alternatives.is_empty()) {
+        let general = &mut found.separate_by.sentence;
+        *general = format!("{}; in general: {general}", plan.sentence());
     }
-}
-
-/// The rigid body of the joint file, where it stands for the recording's own.
-fn given_rigid_body(real: &Recording, joint: &Joint) -> RigidBody {
-    let mut body = RigidBody::default();
-    if real.channel(Quantity::RigidBodyTorque).is_none() {
-        let (gravity, phase) = (joint.rigid_body.gravity_torque_nm, joint.rigid_body.gravity_phase_rad);
-        let (gravity, phase) = (gravity.unwrap_or(0.0), phase.unwrap_or(0.0));
-        body.inertia = joint.rigid_body.inertia_kgm2.unwrap_or(0.0) as f32;
-        body.gravity_sin = (gravity * phase.cos()) as f32;
-        body.gravity_cos = (gravity * phase.sin()) as f32;
-    }
-    body
 }
 
 /// The improved image, with what it holds in sentences.
 fn improved_image(
     arguments: &Diagnose,
-    (real, joint): (&Recording, &Joint),
+    (recordings, joint): (&[Recording], &Joint),
     diagnosis: &Diagnosis,
     signals: &Signals,
     compared: &Compared,
@@ -184,7 +189,7 @@ fn improved_image(
         Compared::Simulation(law) => Origin::Simulation(law),
         Compared::Model(model) => Origin::Model(model),
     };
-    let unit = match units(real).actuator {
+    let unit = match units(&recordings[0]).actuator {
         "N" => Unit::Newton,
         "A" => Unit::Ampere,
         _ => Unit::NewtonMetre,
@@ -192,30 +197,9 @@ fn improved_image(
     let improved = improve(diagnosis, signals, origin, unit)
         .ok_or_else(|| Error::new(&codes::BAD_IMAGE, "the findings and the law together make no valid model"))?;
     let name = joint.name.as_deref().unwrap_or_default();
-    let provenance = fit::model::provenance(name, std::slice::from_ref(real), arguments.seed);
+    let provenance = fit::model::provenance(name, recordings, arguments.seed);
     let image = Image { provenance, model: *improved.model };
     Ok((fit::model::to_bytes(&image)?, improved.remarks))
-}
-
-/// The states of the recording, which need a segment longer than its filter.
-fn states(signals: &Signals, real: &Recording) -> Result<crate::physics::JointState> {
-    let moving = signals.position.iter().any(|q| *q != signals.position[0]);
-    if moving {
-        return Ok(signals.states());
-    }
-    Err(Error::new(&codes::NO_MOTION, "the joint does not move in this recording").in_file(real.file()))
-}
-
-fn same_units(real: &Recording, simulated: &Recording) -> Result<()> {
-    if units(real) == units(simulated) {
-        return Ok(());
-    }
-    let message = format!(
-        "the simulation gives {}, the real recording {}; both have to be of one axis and one actuator quantity",
-        units(simulated).actuator,
-        units(real).actuator
-    );
-    Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(simulated.file()))
 }
 
 fn compared_with(arguments: &Diagnose) -> String {
@@ -265,86 +249,12 @@ fn exit_status(verdict: Verdict) -> u8 {
     }
 }
 
-fn text_of(story: &Story) -> String {
+fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
-    let rest = [&story.proof, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
-    std::iter::once(format!("{}\n", story.headline)).chain(bullets).chain(rest).collect()
-}
-
-fn summary(diagnosis: &Diagnosis, story: &Story, seconds: f64, seed: u64) -> Value {
-    let held_out = diagnosis.proof.as_ref().map(|proof| {
-        json!({
-            "baseline_rmse": proof.baseline_rmse,
-            "improved_rmse": proof.improved_rmse,
-            "ratio": proof.improved_rmse / proof.baseline_rmse.max(f64::MIN_POSITIVE),
-            "ci95": proof.ratio_ci95,
-            "gain_nats": proof.gain_nats,
-            "n": proof.rows,
-        })
-    });
-    let (excess, excess_when) = diagnosis.traces.excess();
-    json!({
-        "schema": "frikan.diagnose/1",
-        "verdict": diagnosis.verdict,
-        "headline": story.headline,
-        "health": diagnosis.health,
-        "findings": diagnosis.findings.iter().zip(&story.findings).map(finding_json).collect::<Vec<_>>(),
-        "withdrawn": diagnosis.withdrawn,
-        "localisation": { "where": excess.iter().map(region_json).collect::<Vec<_>>(), "when_s": excess_when },
-        "detection_limits": diagnosis.limits,
-        "rivals": diagnosis.rivals.iter().map(rival_json).collect::<Vec<_>>(),
-        "base": match diagnosis.base {
-            BaseKind::CoulombViscous => "coulomb_viscous",
-            BaseKind::Spline => "spline",
-            BaseKind::Reference => "reference",
-        },
-        "base_parameters": diagnosis.base_parameters,
-        "fit": {
-            "noise_rmse": diagnosis.noise_rmse,
-            "baseline": diagnosis.baseline,
-            "improved": diagnosis.improved,
-            "held_out": held_out,
-            "cut_off_Hz": diagnosis.cut_off_hz,
-            "n": diagnosis.rows,
-        },
-        "seconds": seconds,
-        "seed": seed,
-    })
-}
-
-fn finding_json((found, sentence): (&Finding, &String)) -> Value {
-    json!({
-        "effect": found.effect,
-        "probability": found.probability,
-        "alternatives": found.alternatives.iter()
-            .map(|(effect, probability)| json!({"effect": effect, "probability": probability}))
-            .collect::<Vec<_>>(),
-        "action": found.action,
-        "equation": found.equation,
-        "parameters": found.parameters,
-        "where": found.location.regions.iter().map(region_json).collect::<Vec<_>>(),
-        "when_s": found.location.when_s,
-        "evidence": found.evidence,
-        "separate_by": found.separate_by.sentence,
-        "sentence": sentence,
-        "score_nats": found.score,
-        "margin_nats": found.margin,
-        "locked_gain_nats": found.locked_gain_nats,
-    })
-}
-
-fn region_json(region: &crate::diagnose::Region) -> Value {
-    json!({
-        "channel": region.channel,
-        "from": region.from,
-        "to": region.to,
-        "share_of_excess": region.share_of_excess,
-        "share_of_samples": region.share_of_samples,
-    })
-}
-
-fn rival_json(rival: &crate::diagnose::Scored) -> Value {
-    json!({ "name": rival.label.to_string(), "score_nats": rival.score, "family_wise_p": rival.family_wise })
+    let rest =
+        [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
+    let advice = advice.map(|plan| format!("{}.\n", capital(&plan.sentence())));
+    std::iter::once(format!("{}\n", story.headline)).chain(bullets).chain(rest).chain(advice).collect()
 }
 
 fn parse_lock(text: &str) -> std::result::Result<Lock, String> {

@@ -12,7 +12,7 @@ use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::{Representation, Soundness};
-use crate::fit::{Options, Outcome, Progress, fit};
+use crate::fit::{Budget, Options, Outcome, Progress, fit};
 use crate::joint::Joint;
 use crate::recording::{self, Recording};
 
@@ -37,6 +37,12 @@ pub struct Fit {
     /// Rate at which samples are fitted, Hz; follows the filter when absent
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
+    /// Bytes that the image may have, provenance not counted
+    #[arg(long, value_name = "BYTES")]
+    pub max_bytes: Option<usize>,
+    /// Instructions that one evaluation may take on a Cortex-M4F
+    #[arg(long, value_name = "N")]
+    pub max_instructions: Option<u32>,
     /// Image to write
     #[arg(short, long, value_name = "MODEL.frk")]
     pub output: PathBuf,
@@ -87,6 +93,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
             Form::Expression => Representation::Expression,
         }),
         rate_hz: arguments.rate,
+        budget: Budget { bytes: arguments.max_bytes, instructions: arguments.max_instructions },
     };
     let reporter = Reporter::new(arguments.quiet);
     let outcome = in_pool(arguments.threads, || {

@@ -91,3 +91,10 @@ impl Drop for Reporter {
         }
     }
 }
+
+/// Largest memory that this process has held, in MB (10^6 bytes); known on Linux.
+pub(crate) fn peak_memory_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let kibibytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().strip_suffix(" kB")?;
+    Some(kibibytes.parse::<f64>().ok()? * 1024e-6)
+}

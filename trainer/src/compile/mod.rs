@@ -4,6 +4,7 @@
 //! proved against the runtime by [`verify`], with an evaluator of its own in [`mod@reference`].
 
 pub mod cells;
+pub mod cost;
 pub mod effects;
 pub mod formula;
 pub mod integers;

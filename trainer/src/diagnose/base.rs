@@ -42,12 +42,25 @@ pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed
     match kind {
         BaseKind::CoulombViscous => vec![sign, velocity],
         BaseKind::Spline => {
-            // Knots by a square law: dense at low speed, where friction bends.
-            let place = (velocity.abs() / top_speed.max(f64::MIN_POSITIVE)).sqrt().min(1.0) * (SPLINE_KNOTS - 1) as f64;
-            (0..SPLINE_KNOTS).map(|j| (1.0 - (place - j as f64).abs()).max(0.0) * sign).collect()
+            speed_hats(velocity.abs() / top_speed.max(f64::MIN_POSITIVE), SPLINE_KNOTS).map(|hat| hat * sign).collect()
         }
         BaseKind::Reference => Vec::new(),
     }
+}
+
+/// Hat functions over speed as a share of the top speed, knots by a square law: dense at low speed, where friction
+/// bends. The last two continue beyond the top speed, which only most samples stay below.
+pub(super) fn speed_hats(share: f64, knots: usize) -> impl Iterator<Item = f64> {
+    let last = (knots - 1) as f64;
+    let place = share.sqrt() * last;
+    (0..knots).map(move |j| {
+        let distance = place - j as f64;
+        match (place > last, knots - j) {
+            (true, 1) => 1.0 + distance,
+            (true, 2) => 1.0 - distance,
+            _ => (1.0 - distance.abs()).max(0.0),
+        }
+    })
 }
 
 impl Base {
@@ -106,7 +119,7 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
 }
 
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
-fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
+pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
     let narrow_sign = state.averaged_sign(&prepared.narrow_velocity, state.sign_velocity);
     let sign = state.map(|i| narrow_sign[i] - state.sign[i]);

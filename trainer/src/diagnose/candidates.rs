@@ -33,18 +33,36 @@ pub struct Generic {
 }
 
 impl Generic {
-    /// Orders of its cosine series.
-    fn orders(self) -> [usize; 2] {
-        match (self.factor, self.channel) {
-            (Factor::Sign, Channel::Position) => [GENERIC_ORDERS[0], NARROW_ORDER],
-            _ => GENERIC_ORDERS,
-        }
+    /// Shapes of its cosine series: order, and strength of the prior (0 for none).
+    fn shapes(self) -> Vec<Shape> {
+        let most = match (self.factor, self.channel) {
+            (Factor::Sign, Channel::Position) => NARROW_ORDER,
+            _ => GENERIC_ORDERS[1],
+        };
+        let free = [GENERIC_ORDERS[0], most].map(|order| vec![order as f64, 0.0]);
+        let smooth = PRIOR_STRENGTHS.map(|strength| vec![most as f64, strength]);
+        free.into_iter().chain(smooth).filter(|shape| !self.has_a_name(shape)).collect()
+    }
+
+    /// Largest order of its series.
+    fn longest(self) -> usize {
+        self.shapes().iter().map(|shape| shape[0] as usize).max().unwrap_or(0)
+    }
+
+    /// Columns of a series up to an order.
+    fn width(self, order: usize) -> usize {
+        order + 1 - self.factor.first_order()
     }
 
     /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
-    /// position-dependent friction.
-    fn has_a_name(self, order: usize) -> bool {
-        self.factor == Factor::Sign && self.channel == Channel::Position && order == GENERIC_ORDERS[0]
+    /// position-dependent friction, broad functions of speed that do not are an asymmetry.
+    fn has_a_name(self, shape: &[f64]) -> bool {
+        let broad = shape[0] == GENERIC_ORDERS[0] as f64 && shape[1] == 0.0;
+        match (self.factor, self.channel) {
+            (Factor::Sign, Channel::Position) => broad,
+            (Factor::One, Channel::Speed) => broad || (shape[1] > 0.0 && shape[1] < PRIOR_STRENGTHS[2]),
+            _ => false,
+        }
     }
 }
 
@@ -59,9 +77,19 @@ pub enum Factor {
     One,
     /// The square of velocity: a centrifugal torque.
     VelocitySquared,
+    /// The magnitude of the load times the smoothed sign: a load-dependent friction.
+    LoadSign,
 }
 
 impl Factor {
+    /// First order of the series: 0 where the base does not hold the factor itself.
+    fn first_order(self) -> usize {
+        match self {
+            Factor::Sign | Factor::Velocity => 1,
+            Factor::One | Factor::VelocitySquared | Factor::LoadSign => 0,
+        }
+    }
+
     /// How the factor reads in an equation.
     pub fn text(self) -> &'static str {
         match self {
@@ -69,6 +97,7 @@ impl Factor {
             Factor::Velocity => "v",
             Factor::One => "1",
             Factor::VelocitySquared => "v^2",
+            Factor::LoadSign => "|tau_l| tanh(v/v_eps)",
         }
     }
 }
@@ -154,8 +183,24 @@ impl Channel {
 
 /// Orders of the cosine series of a generic rival.
 const GENERIC_ORDERS: [usize; 2] = [3, 12];
+/// Non-centralities that the prior of a series expects of its first coefficient; the others fall with the square of their order.
+const PRIOR_STRENGTHS: [f64; 3] = [20.0, 200.0, 2000.0];
+/// Precision that one row in ten thousand would give: the price of a named coefficient.
+const UNIT_INFORMATION: f64 = 1e-4;
 /// Order for position, where a narrow place matters.
 const NARROW_ORDER: usize = 20;
+
+/// Prior precision of each coefficient over what all rows tell of it: that of a smooth function for a generic series with a
+/// prior, none for everything else.
+pub(crate) fn ridge_of(label: &Label, shape: &[f64]) -> Vec<f64> {
+    match label {
+        Label::Generic(rival) if shape[1] > 0.0 => {
+            let orders = rival.factor.first_order()..=shape[0] as usize;
+            orders.map(|j| if j == 0 { UNIT_INFORMATION } else { (j * j) as f64 / shape[1] }).collect()
+        }
+        _ => Vec::new(),
+    }
+}
 
 /// One shape of a group and the columns that it occupies.
 #[derive(Clone, Debug)]
@@ -233,7 +278,7 @@ impl Design {
         let built: Vec<Vec<Vec<f64>>> = rivals
             .par_iter()
             .map(|rival| {
-                generic_columns(&prepared.state, *rival, rival.orders()[1])
+                generic_columns(&prepared.state, *rival, rival.longest())
                     .iter()
                     .map(|raw| prepared.filtered(raw))
                     .collect()
@@ -243,10 +288,9 @@ impl Design {
             let begin = self.columns.len();
             self.columns.extend(columns);
             let variants = rival
-                .orders()
+                .shapes()
                 .into_iter()
-                .filter(|order| !rival.has_a_name(*order))
-                .map(|order| Variant { shape: vec![order as f64], columns: begin..begin + order })
+                .map(|shape| Variant { columns: begin..begin + rival.width(shape[0] as usize), shape })
                 .collect();
             self.groups.push(Group { label: Label::Generic(rival), variants });
         }
@@ -268,6 +312,10 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
         add(&all, channel);
     }
     add(&[Factor::VelocitySquared], Channel::Position);
+    if state.load.is_some() {
+        add(&[Factor::LoadSign], Channel::Position);
+        add(&[Factor::LoadSign], Channel::Temperature);
+    }
     add(&[Factor::Sign, Factor::One], Channel::Speed);
     add(&[Factor::Sign], Channel::DistanceSinceReversal);
     add(&[Factor::Sign], Channel::TimeSinceReversal);
@@ -281,12 +329,16 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
 /// Cosine series of the rank-transformed channel times the factor, at the recording's rate.
 pub(crate) fn generic_columns(state: &JointState, rival: Generic, order: usize) -> Vec<Vec<f64>> {
     let Some(series) = rival.channel.series(state) else { return Vec::new() };
-    let rank = rank_transform(&series);
+    let rank = rank_transform(&series, &state.memory.at_rest);
     let factor: Vec<f64> = match rival.factor {
         Factor::Sign => state.sign.clone(),
         Factor::Velocity => state.velocity.clone(),
         Factor::One => vec![1.0; state.len()],
         Factor::VelocitySquared => state.velocity.iter().map(|v| v * v).collect(),
+        Factor::LoadSign => match &state.load {
+            Some(load) => state.map(|i| load[i].abs() * state.sign[i]),
+            None => return Vec::new(),
+        },
     };
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();
@@ -295,13 +347,16 @@ pub(crate) fn generic_columns(state: &JointState, rival: Generic, order: usize) 
         let next = (0..state.len()).map(|i| 2.0 * base[i] * columns[j - 1][i] - columns[j - 2][i]).collect();
         columns.push(next);
     }
-    columns.split_off(1)
+    columns.split_off(rival.factor.first_order())
 }
 
-/// Rank of each value among 512 quantiles of the series, interpolated, in [0, 1].
-fn rank_transform(series: &[f64]) -> Vec<f64> {
+/// Rank of each value among 512 quantiles of what the series takes in motion, interpolated, in [0, 1].
+fn rank_transform(series: &[f64], at_rest: &[bool]) -> Vec<f64> {
     const QUANTILES: usize = 512;
-    let mut sorted = series.to_vec();
+    const DRAWN: usize = 16 * QUANTILES;
+    let moving: Vec<f64> = series.iter().zip(at_rest).filter(|(_, rest)| !**rest).map(|(value, _)| *value).collect();
+    let all = if moving.is_empty() { series } else { &moving };
+    let mut sorted: Vec<f64> = all.iter().copied().step_by((all.len() / DRAWN).max(1)).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let last = sorted.len() - 1;
     let knots: Vec<f64> = (0..=QUANTILES).map(|k| sorted[last * k / QUANTILES]).collect();

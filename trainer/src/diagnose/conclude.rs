@@ -1,8 +1,8 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
-use super::candidates::Label;
+use super::candidates::{Label, ridge_of};
 use super::evidence::Bench;
-use super::linear::invert_symmetric;
+use super::linear::{dot, invert_symmetric, least_squares, residual};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
@@ -34,14 +34,23 @@ pub struct Refit {
     pub effects: Vec<Fitted>,
     /// Noise of what is left.
     pub noise: Noise,
+    /// Whether it is a plain least-squares fit, because what is left is the error of formulas rather than noise.
+    pub plain: bool,
 }
 
 /// Sweeps over the shapes, one effect at a time with the others in the base.
 const SWEEPS: usize = 2;
 
+/// Root mean square of a whitened fit over that of a plain one from which what is left is the error of the model's formulas,
+/// slow and large, and not noise: then the plain fit holds.
+const WHITENING_COSTS: f64 = 1.1;
+
 /// Moves the shapes of the accepted effects to their joint optimum: one effect at a time, the others in the base.
 pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) {
     let state = &search.prepared.state;
+    let plain = refit(search, accepted).is_some_and(|refit| refit.plain);
+    let white = Noise::white(search.prepared.rows.len());
+    let noise = if plain { &white } else { noise };
     let sweeps = if accepted.len() > 1 { SWEEPS } else { 1 };
     for _ in 0..sweeps {
         for index in 0..accepted.len() {
@@ -49,28 +58,53 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
             let Some(hypothesis) = search.hypothesis(effect) else { continue };
             let bench = search.bench(columns_without(search, accepted, index), noise);
             let label = accepted[index].label.clone();
-            accepted[index].shape = refine(hypothesis, state, &accepted[index].shape, |shape| {
+            let weigh = |shape: &[f64]| {
                 let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
-                bench.weigh(&columns, false).map(|e| e.statistic)
-            });
+                let evidence = bench.weigh(&columns, &[], false)?;
+                let possible = !hypothesis.only_positive() || evidence.coefficients.iter().all(|c| *c > 0.0);
+                possible.then_some(evidence)
+            };
+            if plain {
+                // The variant was chosen by what is fast in it; now by all that it explains.
+                let gain = |shape: &Shape| {
+                    weigh(shape).map(|e| e.statistic / (e.residual / bench.rows()) - 2.0 * e.complexity)
+                };
+                let variants = hypothesis.shapes(state).into_iter().filter_map(|shape| Some((gain(&shape)?, shape)));
+                if let Some((_, best)) = variants.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                    accepted[index].shape = best;
+                }
+            }
+            accepted[index].shape =
+                refine(hypothesis, state, &accepted[index].shape, |shape| weigh(shape).map(|e| e.statistic));
         }
     }
 }
 
-/// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left;
-/// the shapes' uncertainty by Gauss-Newton. `None` where the system is singular.
+/// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left
+/// (plain ones where whitening costs too much of the fit); the shapes' uncertainty by Gauss-Newton. `None` where the system
+/// is singular.
 pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let base_width = search.base.columns.len();
     let mut columns = search.base.columns.clone();
     let mut places = Vec::new();
+    let mut ridge = vec![0.0; base_width];
     for effect in accepted {
         let begin = columns.len();
         columns.extend(search.filtered_columns(&effect.label, &effect.shape));
         places.push(begin..columns.len());
+        ridge.extend(ridge_of(&effect.label, &effect.shape));
+        ridge.resize(columns.len(), 0.0);
     }
     let noise = search.noise_after(&columns);
-    let bench = search.bench(columns, &noise);
-    let (solution, covariance) = bench.solve(&[])?;
+    let bench = search.bench(columns.clone(), &noise);
+    let (mut solution, covariance) = bench.solve(&ridge)?;
+    let runs = search.prepared.open_runs();
+    let left = residual(&columns, &search.base.target, &solution);
+    let rows: usize = runs.iter().map(|run| run.len()).sum();
+    let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > WHITENING_COSTS * noise.rms;
+    if plain {
+        solution = least_squares(&columns, &search.base.target, &runs)?;
+    }
     let mut effects = Vec::new();
     for (effect, place) in accepted.iter().zip(&places) {
         effects.push(Fitted {
@@ -88,6 +122,7 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
         base_deviation: (0..base_width).map(deviation).collect(),
         effects,
         noise,
+        plain,
     })
 }
 

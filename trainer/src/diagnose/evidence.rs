@@ -31,6 +31,9 @@ pub struct VariantEvidence {
     pub statistic: f64,
     /// Linear coefficients.
     pub degrees: usize,
+    /// Price of the coefficients in nats: half the logarithm of the rows for each; for a series with a prior that of the
+    /// marginal likelihood.
+    pub complexity: f64,
     /// Linear coefficients of the candidate, on whitened columns as they were given.
     pub coefficients: Vec<f64>,
     /// Residual energy over all open blocks.
@@ -73,11 +76,12 @@ impl Bench {
 
     /// Evidence of the base with the given whitened columns; `None` where they depend on the base.
     pub fn evidence(&self, columns: &[Vec<f64>]) -> Option<VariantEvidence> {
-        self.weigh(columns, true)
+        self.weigh(columns, &[], true)
     }
 
-    /// As [`Self::evidence`], with the held-out folds only where asked for.
-    pub fn weigh(&self, columns: &[Vec<f64>], folds: bool) -> Option<VariantEvidence> {
+    /// As [`Self::evidence`], with the held-out folds only where asked for. `ridge` is the prior precision of each
+    /// coefficient over what all rows tell of it; empty for none.
+    pub fn weigh(&self, columns: &[Vec<f64>], ridge: &[f64], folds: bool) -> Option<VariantEvidence> {
         let (p, d) = (self.base.len(), columns.len());
         let blocks: Vec<(DMatrix<f64>, DVector<f64>)> = self
             .blocks
@@ -106,20 +110,31 @@ impl Bench {
             .collect();
         let normal: DMatrix<f64> = blocks.iter().fold(DMatrix::zeros(p + d, p + d), |sum, (n, _)| sum + n);
         let right: DVector<f64> = blocks.iter().fold(DVector::zeros(p + d), |sum, (_, r)| sum + r);
-        if d > 0 && !independent(&normal, p) {
+        if d > 0 && ridge.is_empty() && !independent(&normal, p) {
             return None;
+        }
+        let mut prior = DMatrix::<f64>::zeros(p + d, p + d);
+        for (a, share) in ridge.iter().enumerate() {
+            prior[(p + a, p + a)] = (share * normal[(p + a, p + a)]).max(f64::MIN_POSITIVE);
         }
         let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
         let base_residual = energy - explained(&normal.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
-        let solution = if right.is_empty() { DVector::zeros(0) } else { solve_symmetric(&normal, &right)? };
+        let posterior = &normal + &prior;
+        let solution = if right.is_empty() { DVector::zeros(0) } else { solve_symmetric(&posterior, &right)? };
         let residual = energy - solution.dot(&right);
         let coefficients = solution.iter().skip(p).copied().collect();
         let rows = self.rows();
+        let complexity = if ridge.is_empty() {
+            0.5 * d as f64 * rows.ln()
+        } else {
+            let lower = posterior.cholesky()?.l();
+            (p..p + d).map(|i| 0.5 * (lower[(i, i)] * lower[(i, i)] / prior[(i, i)]).ln()).sum()
+        };
         let mut fold_train = Vec::with_capacity(blocks.len());
         let mut fold_likelihood = Vec::with_capacity(blocks.len());
         for ((block_normal, block_right), sums) in blocks.iter().zip(&self.sums).filter(|_| folds) {
             let (train_normal, train_right) = (&normal - block_normal, &right - block_right);
-            let solution = solve_symmetric(&train_normal, &train_right)?;
+            let solution = solve_symmetric(&(&train_normal + &prior), &train_right)?;
             let train = (energy - sums.target - solution.dot(&train_right)).max(f64::MIN_POSITIVE);
             let held_out = sums.target - 2.0 * solution.dot(block_right) + solution.dot(&(block_normal * &solution));
             let variance = train / (rows - sums.rows - (p + d) as f64).max(1.0);
@@ -129,6 +144,7 @@ impl Bench {
         Some(VariantEvidence {
             statistic: base_residual - residual,
             degrees: d,
+            complexity,
             coefficients,
             residual,
             fold_train,
@@ -145,12 +161,14 @@ impl Bench {
         (energy > 0.0).then_some(energy)
     }
 
-    /// Coefficients of the base and the given whitened columns, with their covariance.
-    pub fn solve(&self, columns: &[Vec<f64>]) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    /// Coefficients of the base with their covariance. `ridge` as in [`Self::weigh`], one a base column.
+    pub fn solve(&self, ridge: &[f64]) -> Option<(Vec<f64>, DMatrix<f64>)> {
         let runs = self.runs();
-        let all: Vec<Vec<f64>> = self.base.iter().chain(columns).cloned().collect();
-        let normal = gram(&all, &runs);
-        let right = DVector::from_iterator(all.len(), all.iter().map(|c| dot(c, &self.target, &runs)));
+        let mut normal = gram(&self.base, &runs);
+        for (i, share) in ridge.iter().enumerate() {
+            normal[(i, i)] *= 1.0 + share;
+        }
+        let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, &self.target, &runs)));
         let solution = solve_symmetric(&normal, &right)?;
         let covariance = super::linear::invert_symmetric(&normal)?;
         Some((solution.iter().copied().collect(), covariance))
@@ -216,7 +234,7 @@ impl GroupEvidence {
         grid_size: f64,
     ) -> Option<Self> {
         let criterion_of = |variant: &VariantEvidence, energy: f64, base_energy: f64| {
-            0.5 * rows * (base_energy / energy).ln() - 0.5 * variant.degrees as f64 * rows.ln()
+            0.5 * rows * (base_energy / energy).ln() - variant.complexity
         };
         let tested = || variants.iter().enumerate().filter_map(|(i, v)| v.as_ref().map(|v| (i, v)));
         let (best, variant) = tested().max_by(|(_, a), (_, b)| {

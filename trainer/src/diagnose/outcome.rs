@@ -6,6 +6,7 @@ use super::conclude::{Fitted, Refit};
 use super::health::HealthNote;
 use super::localise::Location;
 use super::prove::Proof;
+use super::rollout::Rollout;
 use super::round::Scored;
 use super::traces::Traces;
 use crate::parameter::Parameter;
@@ -53,6 +54,8 @@ pub struct Finding {
     pub score: f64,
     /// Margin in nats to the best rival outside the set.
     pub margin: f64,
+    /// Every other named effect with its distance in nats when this one was accepted, nearest first.
+    pub standings: Vec<(EffectId, f64)>,
     /// Gain on locked data in nats when this effect alone is left out.
     pub locked_gain_nats: Option<f64>,
 }
@@ -75,6 +78,9 @@ pub struct Diagnosis {
     pub health: Vec<HealthNote>,
     /// Findings in the order in which they were accepted.
     pub findings: Vec<Finding>,
+    /// Effects that were found beside larger ones but account for little, with their share of the removable error; they are
+    /// not in the improved model.
+    pub minor: Vec<(EffectId, f64)>,
     /// Effects that were found but withdrawn, because locked data did not confirm them.
     pub withdrawn: Vec<EffectId>,
     /// What would have been seen.
@@ -91,6 +97,8 @@ pub struct Diagnosis {
     pub improved: Score,
     /// Proof on locked rows.
     pub proof: Option<Proof>,
+    /// Open-loop rollout over locked rows.
+    pub rollout: Option<Rollout>,
     /// The last round's table: every hypothesis that was not accepted.
     pub rivals: Vec<Scored>,
     /// Refit of the base alone and with the effects.

@@ -80,7 +80,8 @@ impl Prepared {
         chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, lock))
     }
 
-    fn at_cut_off(signals: &Signals, cut_off: f64, lock: Lock) -> Self {
+    /// Prepares states and rows behind a given cut-off in Hz.
+    pub(crate) fn at_cut_off(signals: &Signals, cut_off: f64, lock: Lock) -> Self {
         let period = signals.period;
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);

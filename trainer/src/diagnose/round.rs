@@ -1,6 +1,6 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, one of them chosen.
 
-use super::candidates::Label;
+use super::candidates::{Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};
 use super::linear::{dot, orthonormal, project_out};
 use super::noise::Noise;
@@ -10,8 +10,11 @@ use super::search::{Accepted, Search};
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
 
-/// Share of a free function's explained energy at which a name is good enough.
-const NEARLY_AS_MUCH: f64 = 0.9;
+/// Share of what a free function explains at which a name is good enough.
+const NEARLY_AS_MUCH: f64 = 0.88;
+
+/// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
+const PLACES_LOOKED_AT: f64 = 10.0;
 
 /// A hypothesis with its score in one round.
 #[derive(Clone, Debug)]
@@ -39,8 +42,7 @@ pub struct Scored {
 pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
     match label {
         Label::Named(EffectId::TransientEvent) => evidence.criterion - 0.5 * grid_size.ln(),
-        Label::Named(_) => 0.5 * (evidence.held_out + evidence.criterion),
-        Label::Generic(_) => evidence.held_out,
+        _ => 0.5 * (evidence.held_out + evidence.criterion),
     }
 }
 
@@ -65,7 +67,7 @@ impl<'s, 'a> Round<'s, 'a> {
         let mut noise = Noise::white(search.prepared.rows.len());
         let mut explained = Vec::new();
         for _ in 0..2 {
-            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            let (_, _, variants) = weigh_all(search, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |tested: &Vec<Option<VariantEvidence>>| {
                     tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
@@ -73,7 +75,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 explained = variants.iter().map(largest).collect();
             }
             let mut generous = base.clone();
-            generous.extend(best_two(search, &bench, &variants));
+            generous.extend(best_two(search, &variants));
             noise = search.noise_after(&generous);
         }
         let (white, bench, variants) = weigh_all(search, base, &noise, true);
@@ -82,7 +84,7 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
-        let best = best_two(self.search, &self.bench, &self.variants);
+        let best = best_two(self.search, &self.variants);
         draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
     }
 
@@ -99,9 +101,11 @@ impl<'s, 'a> Round<'s, 'a> {
             .filter_map(|(index, group)| {
                 let grid = self.search.grid_size(index);
                 let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
-                let surprise = self.variants[index]
-                    .iter()
-                    .flatten()
+                // A prior adds no direction: what it weighs is calibrated by the free series.
+                let free = group.variants.iter().zip(&self.variants[index]);
+                let surprise = free
+                    .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
+                    .filter_map(|(_, evidence)| evidence.as_ref())
                     .map(|v| chi_square_surprise(v.statistic, v.degrees))
                     .fold(0.0, f64::max);
                 Some(Scored {
@@ -155,6 +159,10 @@ impl<'s, 'a> Round<'s, 'a> {
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
                 let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
+                    let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
+                    let looked_at = PLACES_LOOKED_AT.ln() * free as f64;
+                    let refined = chi_square_surprise(evidence.statistic, evidence.degrees) - looked_at;
+                    scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;
                     scored.score = score;
                     scored.evidence = evidence;
@@ -172,26 +180,41 @@ impl Round<'_, '_> {
         let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
         let named = table.iter().filter(is_named).find(passes);
         let generic = table.iter().filter(|s| !is_named(s)).find(passes);
-        // An unnamed structure is measured against every name by the same held-out evidence. Where this runs to hundreds
-        // of nats every formula is a little wrong: then a name that explains nine tenths of what the free function does is kept.
         let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
+        // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
+        // much, whitened or not, is kept.
         let nearly = |generic: &Scored| {
-            table.iter().filter(is_named).filter(passes).find(|s| s.explained >= NEARLY_AS_MUCH * generic.explained)
+            table.iter().filter(is_named).filter(passes).find(|s| {
+                s.explained >= NEARLY_AS_MUCH * generic.explained
+                    || s.evidence.statistic >= NEARLY_AS_MUCH * generic.evidence.statistic
+            })
         };
         let best = match (named, generic) {
-            (Some(_), Some(generic)) if generic.score > held_out + settings.ambiguity_margin => {
+            (Some(named), Some(generic))
+                if generic.score > named.score + settings.ambiguity_margin
+                    && generic.evidence.held_out > held_out + settings.ambiguity_margin =>
+            {
                 nearly(generic).unwrap_or(generic)
+            }
+            (Some(named), _) if named.label == Label::Named(EffectId::TransientEvent) => {
+                // No other block can confirm an event, so any cause that may come back goes before it on equal terms.
+                let lasting = |s: &&Scored| {
+                    s.label != named.label && s.evidence.criterion > named.score - settings.ambiguity_margin
+                };
+                table.iter().filter(is_named).filter(passes).find(lasting).unwrap_or(named)
             }
             (Some(named), _) => named,
             (None, Some(generic)) => generic,
             (None, None) => return None,
         };
         let mut rivals = Vec::new();
+        let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
         for rival in table.iter().filter(|s| s.label != best.label) {
             let Label::Named(effect) = rival.label else { continue };
             let distance = best.score - rival.score;
-            if distance >= settings.ambiguity_margin {
+            standings.push((effect, distance));
+            if distance >= settings.ambiguity_margin && !hangs_on_few_blocks(best, rival, distance) {
                 margin = margin.min(distance);
             } else if matches!(best.label, Label::Named(_)) && !self.merely_contains(rival, best) {
                 rivals.push((effect, distance));
@@ -205,6 +228,7 @@ impl Round<'_, '_> {
             fold_gain: best.evidence.fold_gain.clone(),
             margin,
             rivals,
+            standings,
         })
     }
 
@@ -231,6 +255,17 @@ impl Round<'_, '_> {
     }
 }
 
+/// Whether the lead over a close rival is not certain from block to block (Hansen, Lunde and Nason 2011).
+fn hangs_on_few_blocks(best: &Scored, rival: &Scored, distance: f64) -> bool {
+    const CLOSE_NATS: f64 = 5.0;
+    const LEAST_T: f64 = 1.65;
+    let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
+    let count = leads.len() as f64;
+    let mean = leads.iter().sum::<f64>() / count;
+    let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
+}
+
 /// Whitens the design and weighs every variant, held-out folds only where asked for.
 fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
     let bench = search.bench(base, noise);
@@ -239,20 +274,28 @@ fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -
         .design
         .groups
         .par_iter()
-        .map(|group| group.variants.iter().map(|variant| bench.weigh(&white[variant.columns.clone()], folds)).collect())
+        .map(|group| {
+            group
+                .variants
+                .iter()
+                .map(|variant| {
+                    let ridge = ridge_of(&group.label, &variant.shape);
+                    bench.weigh(&white[variant.columns.clone()], &ridge, folds)
+                })
+                .collect()
+        })
         .collect();
     (white, bench, variants)
 }
 
 /// Unwhitened columns of the two groups whose best variants surprise most.
-fn best_two(search: &Search, bench: &Bench, variants: &[Vec<Option<VariantEvidence>>]) -> Vec<Vec<f64>> {
-    let rows = bench.rows();
+fn best_two(search: &Search, variants: &[Vec<Option<VariantEvidence>>]) -> Vec<Vec<f64>> {
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
         let best = tested
             .iter()
             .enumerate()
-            .filter_map(|(i, v)| v.as_ref().map(|v| (v.statistic - v.degrees as f64 * rows.ln(), i)))
+            .filter_map(|(i, v)| v.as_ref().map(|v| (v.statistic - 2.0 * v.complexity, i)))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((gain, variant)) = best {
             gains.push((gain, group, variant));
@@ -287,7 +330,7 @@ fn draw_null(
                 .variants
                 .iter()
                 .zip(tested)
-                .filter(|(_, evidence)| evidence.is_some())
+                .filter(|(variant, evidence)| evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty())
                 .map(|(variant, _)| {
                     let mut columns = white[variant.columns.clone()].to_vec();
                     columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));

@@ -10,6 +10,7 @@ use super::localise::{Location, locate};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
 use super::prove::{prove, rest};
+use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Accepted, Search, SearchOutcome, Settings};
 use super::signals::Signals;
@@ -58,6 +59,8 @@ const LEAST_ROWS: usize = 150;
 const WITHDRAWN_BELOW_NATS: f64 = -3.0;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
+/// Share of the removable error below which an effect beside others is minor.
+const MINOR_SHARE: f64 = 0.1;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
@@ -118,7 +121,8 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
     polish(&search, &mut accepted, &noise);
     let withdrawn = withdraw_unproven(&search, &mut accepted);
-    if !withdrawn.is_empty() {
+    let minor = set_aside_minor(&search, &mut accepted, &baseline);
+    if !withdrawn.is_empty() || !minor.is_empty() {
         polish(&search, &mut accepted, &noise);
     }
     let improved = refit(&search, &accepted).ok_or(Refusal::Undetermined)?;
@@ -142,7 +146,9 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
         baseline: score(&baseline),
         improved: score(&improved),
         proof,
+        rollout: roll_out(&search, &baseline, &improved),
         findings,
+        minor,
         withdrawn,
         rivals: last_round,
         cut_off_hz: prepared.filter.cut_off_hz,
@@ -153,18 +159,44 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     })
 }
 
-/// Drops effects, weakest first, against which the locked data speak.
+/// Drops effects, weakest first, against which the locked data speak. A one-off event has none to speak for or against it.
 fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
     while !accepted.is_empty() {
         let gains: Vec<f64> = (0..accepted.len()).map(|index| locked_gain(search, accepted, index)).collect();
-        let weakest = (0..gains.len()).min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
+        let weakest = (0..gains.len())
+            .filter(|&i| accepted[i].effect() != EffectId::TransientEvent)
+            .min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
         match weakest {
             Some(index) if gains[index] < WITHDRAWN_BELOW_NATS => withdrawn.push(accepted.remove(index).effect()),
             _ => break,
         }
     }
     withdrawn
+}
+
+/// Sets aside, smallest first, what accounts for little of the mismatch beside a larger finding: there the error of the
+/// larger one's formula may pass for an effect. Effects that repeat count together.
+fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
+    let energy = |accepted: &[Accepted]| refit(search, accepted).map(|refit| refit.noise.rms.powi(2));
+    let mut minor = Vec::new();
+    while let (Some(all), true) = (energy(accepted), accepted.len() > 1) {
+        let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
+        let share = |effect: EffectId| {
+            let others: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
+            energy(&others).map(|without| (effect, (without - all) / removable))
+        };
+        // A one-off event is short: its share says nothing of its size.
+        let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
+        match effects.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((effect, share)) if share < MINOR_SHARE => {
+                accepted.retain(|other| other.effect() != effect);
+                minor.push((effect, share));
+            }
+            _ => break,
+        }
+    }
+    minor
 }
 
 /// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
@@ -215,6 +247,7 @@ fn finding(
         fitted,
         score: found.score,
         margin: found.margin,
+        standings: found.standings.clone(),
         locked_gain_nats: locked,
     }
 }
@@ -295,6 +328,7 @@ fn measurement_finding(note: &HealthNote) -> Finding {
         },
         score: 0.0,
         margin: f64::INFINITY,
+        standings: Vec::new(),
         locked_gain_nats: None,
     }
 }

@@ -1,7 +1,7 @@
 //! Accepts one effect after the other while the evidence lasts, then cleans up backwards.
 
 use super::base::Base;
-use super::candidates::{Design, Generic, Label, generic_columns};
+use super::candidates::{Design, Generic, Label, generic_columns, ridge_of};
 use super::evidence::{Bench, GroupEvidence};
 use super::linear::residual;
 use super::noise::Noise;
@@ -61,6 +61,8 @@ pub struct Accepted {
     pub margin: f64,
     /// Named effects within the margin, with their distance in nats.
     pub rivals: Vec<(EffectId, f64)>,
+    /// Every other named effect with its distance in nats, nearest first.
+    pub standings: Vec<(EffectId, f64)>,
 }
 
 /// What the search found.
@@ -220,7 +222,8 @@ impl<'a> Search<'a> {
                     let bench = self.bench(self.base_with(&accepted, Some(index)), noise);
                     let columns =
                         self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
-                    let gain = bench.alone().zip(bench.evidence(&columns)).and_then(|(alone, evidence)| {
+                    let ridge = ridge_of(&accepted[index].label, &accepted[index].shape);
+                    let gain = bench.alone().zip(bench.weigh(&columns, &ridge, true)).and_then(|(alone, evidence)| {
                         GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0)
                     });
                     (index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0)))

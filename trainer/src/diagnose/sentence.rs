@@ -49,6 +49,8 @@ pub struct Story {
     pub findings: Vec<String>,
     /// Error before and after on locked data.
     pub proof: Option<String>,
+    /// What was found beside the findings and accounts for little.
+    pub minor: Option<String>,
     /// What was found at first and then withdrawn.
     pub withdrawn: Option<String>,
     /// What would have been seen.
@@ -63,6 +65,7 @@ pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
         health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
+        minor: minor(diagnosis),
         withdrawn: withdrawn(diagnosis),
         limits: limits(diagnosis, units),
     }
@@ -229,6 +232,14 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
     ))
 }
 
+fn minor(diagnosis: &Diagnosis) -> Option<String> {
+    let named = |(effect, share): &(EffectId, f64)| {
+        format!("{} ({:.1} % of the removable error)", plain_name(*effect), 100.0 * share.max(0.0))
+    };
+    let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
+    (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
+}
+
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
     let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
     (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
@@ -325,7 +336,7 @@ pub fn digits(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn capital(sentence: &str) -> String {
+pub(crate) fn capital(sentence: &str) -> String {
     let mut characters = sentence.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
@@ -370,6 +381,7 @@ mod tests {
             fitted,
             score: 40.0,
             margin: 9.0,
+            standings: Vec::new(),
             locked_gain_nats: Some(20.0),
         }
     }
@@ -380,6 +392,7 @@ mod tests {
             base_deviation: Vec::new(),
             effects: Vec::new(),
             noise: crate::diagnose::Noise::white(0),
+            plain: false,
         };
         let velocity: Vec<f64> = (-50..50).map(|k| 0.002 * f64::from(k) + 0.001).collect();
         let effect: Vec<f64> = velocity.iter().map(|v| -3.1 * v.signum() * f64::from(v.abs() < 0.05)).collect();
@@ -388,6 +401,7 @@ mod tests {
             verdict: Verdict::MissingPhysics,
             health: Vec::new(),
             findings: vec![found],
+            minor: vec![(EffectId::Presliding, 0.042)],
             withdrawn: vec![EffectId::Spring],
             limits: Vec::new(),
             base: BaseKind::CoulombViscous,
@@ -402,6 +416,7 @@ mod tests {
                 gain_nats: 20.0,
                 rows: 300,
             }),
+            rollout: None,
             rivals: Vec::new(),
             baseline_refit: refit(),
             improved_refit: refit(),
@@ -430,6 +445,7 @@ mod tests {
              interval 0.4 to 0.5)."
         );
         assert!(story.withdrawn.unwrap().contains("spring"));
+        assert!(story.minor.unwrap().contains("4.2 %"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What a simulator computes: its inverse law, learned from its recording as a function of the state, so that neither clock
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
-use super::base::{BaseKind, friction_basis};
+use super::base::{nuisances, speed_hats};
 use super::linear::{least_squares, residual};
 use super::prepare::{Lock, Prepared};
 use super::reference::{Reference, tabulated_velocities};
@@ -12,6 +12,8 @@ use crate::physics::JointState;
 const LEAST_ROWS: usize = 100;
 /// Least travel in rad over which gravity can be told from an offset.
 const GRAVITY_TRAVEL_RAD: f64 = 0.2;
+/// Knots over speed that are tried: a simulation without noise bears many, a short or noisy one few.
+const KNOTS: [usize; 4] = [5, 9, 17, 33];
 
 /// Why no law can be learned from a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -34,9 +36,10 @@ pub struct InverseLaw {
     top_speed: f64,
     gravity: bool,
     given: bool,
+    /// Hats over speed.
+    knots: usize,
+    /// Weights of the friction columns, then of the rigid body's.
     coefficients: Vec<f64>,
-    /// Number of friction columns; the rigid body follows.
-    friction_columns: usize,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
 }
@@ -53,37 +56,71 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
         return Err(Unlearnable::Rest { rows });
     }
     let (low, high) = state.travel();
-    let mut law = InverseLaw {
-        sign_velocity: state.sign_velocity,
-        top_speed: state.top_speed(),
-        gravity: state.rotary && high - low > GRAVITY_TRAVEL_RAD,
-        given: given && simulation.rigid_body.is_some(),
-        coefficients: Vec::new(),
-        friction_columns: law_friction(1.0, 1.0, 1.0).len(),
-        rmse: 0.0,
-    };
-    let columns: Vec<Vec<f64>> = law.columns(state).iter().map(|column| prepared.filtered(column)).collect();
-    let target = prepared.filtered(&prepared.torque);
-    let runs = prepared.open_runs();
-    law.coefficients = least_squares(&columns, &target, &runs).ok_or(Unlearnable::Undetermined)?;
-    let rest = residual(&columns, &target, &law.coefficients);
-    law.rmse = (rest.iter().map(|r| r * r).sum::<f64>() / rows as f64).sqrt();
-    Ok(law)
-}
-
-/// Friction columns at one velocity: an odd spline, and Coulomb and viscous friction that differ between the directions.
-fn law_friction(velocity: f64, sign_velocity: f64, top_speed: f64) -> Vec<f64> {
-    let mut columns = friction_basis(BaseKind::Spline, velocity, (velocity / sign_velocity).tanh(), top_speed);
-    columns.extend([(velocity / sign_velocity).tanh().abs(), velocity.abs()]);
-    columns
+    let gravity = state.rotary && high - low > GRAVITY_TRAVEL_RAD;
+    KNOTS
+        .into_iter()
+        .filter_map(|knots| {
+            let law = InverseLaw {
+                sign_velocity: state.sign_velocity,
+                top_speed: state.top_speed(),
+                knots,
+                gravity,
+                given: given && simulation.rigid_body.is_some(),
+                coefficients: Vec::new(),
+                rmse: 0.0,
+            };
+            law.fitted(&prepared)
+        })
+        .min_by(|a, b| a.criterion(rows).total_cmp(&b.criterion(rows)))
+        .ok_or(Unlearnable::Undetermined)
 }
 
 impl InverseLaw {
+    /// The law with its coefficients. Differentiation bias and the sampling's delay are fitted beside it and left out.
+    fn fitted(mut self, prepared: &Prepared) -> Option<Self> {
+        let state = &prepared.state;
+        let raw = self.columns(state);
+        let runs = prepared.open_runs();
+        let target = prepared.filtered(&prepared.torque);
+        let mut columns: Vec<Vec<f64>> = raw.iter().map(|column| prepared.filtered(column)).collect();
+        columns.extend(nuisances(prepared));
+        let mut coefficients = least_squares(&columns, &target, &runs)?;
+        let late = state.rate_of(&super::conclude::weighted(&raw, &coefficients[..raw.len()]));
+        columns.push(prepared.filtered(&late));
+        coefficients = least_squares(&columns, &target, &runs)?;
+        let rest = residual(&columns, &target, &coefficients);
+        self.rmse = (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt();
+        coefficients.truncate(raw.len());
+        self.coefficients = coefficients;
+        Some(self)
+    }
+
+    /// Bayesian criterion up to a constant: less is better.
+    fn criterion(&self, rows: usize) -> f64 {
+        let rows = rows as f64;
+        2.0 * rows * self.rmse.max(f64::MIN_POSITIVE).ln() + self.coefficients.len() as f64 * rows.ln()
+    }
+
+    /// Friction columns at one velocity with its smoothed sign: odd hats over speed, dense at low speed where friction
+    /// bends, and Coulomb and viscous friction that differ between the directions.
+    fn friction_columns(&self, velocity: f64, sign: f64) -> impl Iterator<Item = f64> {
+        let hats = speed_hats(velocity.abs() / self.top_speed.max(f64::MIN_POSITIVE), self.knots);
+        hats.map(move |hat| hat * sign).chain([sign.abs(), velocity.abs()])
+    }
+
+    /// Number of friction columns; the rigid body follows.
+    fn friction_width(&self) -> usize {
+        self.knots + 2
+    }
+
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let basis: Vec<Vec<f64>> =
-            state.velocity.iter().map(|v| law_friction(*v, self.sign_velocity, self.top_speed)).collect();
-        let mut columns: Vec<Vec<f64>> =
-            (0..self.friction_columns).map(|j| basis.iter().map(|row| row[j]).collect()).collect();
+        let sign = state.averaged_sign(&state.velocity, self.sign_velocity);
+        let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
+        for (velocity, sign) in state.velocity.iter().zip(&sign) {
+            for (column, value) in columns.iter_mut().zip(self.friction_columns(*velocity, *sign)) {
+                column.push(value);
+            }
+        }
         columns.push(state.acceleration.clone());
         columns.push(vec![1.0; state.len()]);
         if self.gravity {
@@ -99,14 +136,14 @@ impl InverseLaw {
     /// Friction at a velocity.
     #[must_use]
     pub fn friction(&self, velocity: f64) -> f64 {
-        let columns = law_friction(velocity, self.sign_velocity, self.top_speed);
-        columns.iter().zip(&self.coefficients).map(|(column, coefficient)| column * coefficient).sum()
+        let columns = self.friction_columns(velocity, (velocity / self.sign_velocity).tanh());
+        columns.zip(&self.coefficients).map(|(column, coefficient)| column * coefficient).sum()
     }
 
     /// Inertia, constant torque, gravity with sine and cosine, and factor of a given rigid-body torque.
     #[must_use]
     pub fn rigid_body(&self) -> [f64; 5] {
-        let mut rest = self.coefficients[self.friction_columns..].iter().copied();
+        let mut rest = self.coefficients[self.friction_width()..].iter().copied();
         let mut next = |present: bool| if present { rest.next().unwrap_or(0.0) } else { 0.0 };
         [next(true), next(true), next(self.gravity), next(self.gravity), next(self.given)]
     }
@@ -124,7 +161,7 @@ impl InverseLaw {
         };
         Reference {
             torque: sum(0),
-            rigid_body: sum(self.friction_columns),
+            rigid_body: sum(self.friction_width()),
             jacobian: vec![state.sign.clone(), state.velocity.clone()],
             friction: tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect(),
         }

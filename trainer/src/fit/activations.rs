@@ -11,7 +11,7 @@ use crate::law::proposals::{Activation, proposals};
 const LABELLED: f64 = 1e-3;
 
 /// Writes into the graph which function each activation follows, where it follows one.
-pub(super) fn label(graph: &mut GraphSummary, network: &Network) {
+pub fn label_activations(graph: &mut GraphSummary, network: &Network) {
     for index in (0..graph.edges.len()).filter(|&index| graph.edges[index].active).collect::<Vec<_>>() {
         let found = matches(&graph.curve(network, index, CURVE_POINTS)).into_iter().next();
         graph.edges[index].symbolic =

@@ -13,6 +13,9 @@ use crate::samples::{Preparation, Request, Samples, prepare};
 /// Below this share of the top speed friction is no function of velocity.
 const REST_SHARE: f64 = 0.001;
 
+/// Fewest blocks: three to learn from, one to choose by, one to compare on.
+const LEAST_BLOCKS: usize = 5;
+
 /// A column of the rigid body whose coefficient is identified along with friction.
 #[derive(Clone, Debug)]
 pub(super) struct RigidColumn {
@@ -73,14 +76,21 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
     let columns = separation.iter().flat_map(|s| &s.terms);
     let columns = columns.map(|term| RigidColumn { kind: term.kind, values: term.column.clone() }).collect();
     let rows = if separation.is_some() { moving(&velocity) } else { (0..velocity.len()).collect() };
-    let correlation = correlation_time(&friction, &samples.segments);
-    let pieces = rows_of(&blocks(&samples, correlation), &rows);
+    let (correlation, cut) = cut(&samples, correlation_time(&friction, &samples.segments));
+    let pieces = rows_of(&cut, &rows);
     let mut labels = vec![0; rows.len()];
     for (label, piece) in pieces.iter().enumerate() {
         labels[piece.clone()].fill(label);
     }
     let split = split(&pieces, correlation, options.seed);
     Ok(Material { samples, target, friction, columns, separation, rows, split, labels })
+}
+
+/// Blocks that can be shared out, with the correlation time that they were cut by: a recording of few correlation times is
+/// cut more finely than it should be, since with nothing held out nothing can be chosen.
+fn cut(samples: &Samples, correlation: usize) -> (usize, Vec<Range<usize>>) {
+    let found = blocks(samples, correlation);
+    if found.len() >= LEAST_BLOCKS || correlation <= 1 { (correlation, found) } else { cut(samples, correlation / 2) }
 }
 
 fn require_actuator(recording: &Recording) -> Result<()> {

@@ -1,6 +1,6 @@
 //! The network: trained, pruned, refitted on everything, and as the report shows it.
 
-use super::activations::label;
+use super::activations::label_activations;
 use super::gather::Material;
 use super::inputs::ChosenInput;
 use super::options::{Progress, ProgressCallback, Stage};
@@ -14,6 +14,9 @@ use crate::samples::rigid_body::TermKind;
 
 /// Points of a drawn curve.
 pub(super) const CURVE_POINTS: usize = 241;
+
+/// Two-sided 95 % point of the normal distribution.
+const NORMAL_95: f64 = 1.96;
 
 /// The columns that a network learns from, at the rows of the material.
 pub(super) struct Lesson {
@@ -99,7 +102,7 @@ impl Lesson {
         let blocks = Blocks::default();
         let dataset = self.dataset(&blocks);
         let mut after = GraphSummary::of(&last.network, &dataset);
-        label(&mut after, &last.network);
+        label_activations(&mut after, &last.network);
         let curve = |index: usize, active: bool| {
             if active { after.curve(&last.network, index, CURVE_POINTS) } else { Vec::new() }
         };
@@ -119,17 +122,31 @@ impl Lesson {
 
     /// Points of a network over its first input, the others at their mean.
     fn over_velocity(&self, network: &Network) -> Vec<[f64; 2]> {
-        let mut point: Vec<f64> =
-            self.inputs.iter().map(|column| column.iter().sum::<f64>() / column.len().max(1) as f64).collect();
+        let points = self.along_velocity();
+        points[0].iter().copied().zip(network.evaluate_columns(&points)).map(|(v, f)| [v, f]).collect()
+    }
+
+    /// Columns of points along the first input, the others at their mean.
+    fn along_velocity(&self) -> Vec<Vec<f64>> {
         let low = self.inputs[0].iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.inputs[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let at = |i: usize| low + (high - low) * i as f64 / (CURVE_POINTS - 1) as f64;
-        (0..CURVE_POINTS)
-            .map(|i| {
-                point[0] = at(i);
-                [at(i), network.evaluate(&point)]
-            })
-            .collect()
+        let mean = |column: &Vec<f64>| column.iter().sum::<f64>() / column.len().max(1) as f64;
+        let others = self.inputs[1..].iter().map(|column| vec![mean(column); CURVE_POINTS]);
+        std::iter::once((0..CURVE_POINTS).map(at).collect()).chain(others).collect()
+    }
+
+    /// The 95 % band of a trained network along the velocity, `[velocity, low, high]`, residuals being correlated over
+    /// `correlation_length` samples.
+    pub(super) fn band(&self, result: &FitResult, correlation_length: f64) -> Result<Vec<[f64; 3]>> {
+        let blocks = Blocks::default();
+        let points = self.along_velocity();
+        let errors =
+            kan::standard_errors(&result.network, &result.linear_coefficients, &self.dataset(&blocks), &points)
+                .map_err(|error| refused(&error))?;
+        let half = |error: f64| NORMAL_95 * error * correlation_length.sqrt();
+        let curve = self.over_velocity(&result.network).into_iter().zip(errors);
+        Ok(curve.map(|([v, f], error)| [v, f - half(error), f + half(error)]).collect())
     }
 }
 

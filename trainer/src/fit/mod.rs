@@ -15,11 +15,13 @@ pub mod outcome;
 mod piecewise;
 pub mod predict;
 mod rigid;
+mod rivals;
 mod run;
 mod tables;
 
+pub use activations::label_activations;
 pub use formula::formula_of;
 pub use model::{CELLS, HostModel};
-pub use options::{Options, Progress, ProgressCallback, Stage};
+pub use options::{Budget, Options, Progress, ProgressCallback, Stage};
 pub use outcome::Outcome;
 pub use run::fit;

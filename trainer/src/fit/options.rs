@@ -13,6 +13,31 @@ pub struct Options {
     pub representation: Option<Representation>,
     /// Rate of the samples, Hz; follows the filter when absent.
     pub rate_hz: Option<f64>,
+    /// What the law may cost on the drive.
+    pub budget: Budget,
+}
+
+/// Cells for which the smallest drive has room.
+const DRIVE_CELLS: usize = 128;
+/// Bytes of an image beside the cells of a table, at most, and of a cell.
+const IMAGE_BYTES: usize = 96;
+const CELL_BYTES: usize = 16;
+
+/// What the law may cost on the drive.
+#[derive(Clone, Debug, Default)]
+pub struct Budget {
+    /// Bytes of the image, provenance not counted.
+    pub bytes: Option<usize>,
+    /// Instructions of one evaluation on a Cortex-M4F.
+    pub instructions: Option<u32>,
+}
+
+impl Budget {
+    /// Cells that a table may have.
+    pub(super) fn cells(&self) -> usize {
+        let affordable = self.bytes.map_or(usize::MAX, |most| most.saturating_sub(IMAGE_BYTES) / CELL_BYTES);
+        affordable.min(DRIVE_CELLS)
+    }
 }
 
 /// What a fit is doing.

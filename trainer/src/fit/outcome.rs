@@ -70,6 +70,8 @@ pub struct Outcome {
     pub cloud: Vec<[f64; 2]>,
     /// The exported friction law over velocity, other inputs at their mean.
     pub law_curve: Vec<[f64; 2]>,
+    /// Where the friction lies with 95 % according to the network: velocity, low, high; other inputs at their mean.
+    pub band: Vec<[f64; 3]>,
     /// The image, as it is written to the file.
     pub image: Vec<u8>,
 }
@@ -171,8 +173,12 @@ pub struct Candidate {
     pub description: String,
     /// Root mean square error on blocks that neither was fitted to, evaluated in the arithmetic of the drive.
     pub held_out_rmse: f64,
-    /// Size of its image.
+    /// Size of its image, provenance not counted.
     pub bytes: usize,
+    /// Instructions of one evaluation on a Cortex-M4F.
+    pub instructions: u32,
+    /// Whether the budget allows it.
+    pub within_budget: bool,
     /// Whether it is the one in the image.
     pub chosen: bool,
 }

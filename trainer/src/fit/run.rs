@@ -5,7 +5,6 @@ use frikan_shared::image::Image;
 use frikan_shared::model::{Law, MAX_INPUTS};
 
 use super::activations;
-use super::choose::{Trial, decide};
 use super::formula::formula_of;
 use super::formula_search::{self, Found, classical, law_data, law_parameters, search};
 use super::gather::{Material, gather};
@@ -13,11 +12,12 @@ use super::inputs::{ChosenInput, choose, output_unit};
 use super::learn::{CURVE_POINTS, Learnt, Lesson};
 use super::model::{HostModel, Parts, assemble, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{Candidate, InputRange, Outcome, Representation, Score, Soundness};
+use super::outcome::{InputRange, Outcome, Representation, Score, Soundness};
 use super::predict::trace;
+use super::rivals::{Rivals, no_image};
 use super::{rigid, tables};
 use crate::compile::program::compile_program;
-use crate::error::{Error, Result, codes};
+use crate::error::Result;
 use crate::joint::Joint;
 use crate::law::{Expr, FormFit};
 use crate::parameter::Parameter;
@@ -30,8 +30,6 @@ const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
 const COARSER_SHARE_OF_RESIDUAL: f64 = 0.15;
 /// Where no table comes that close, one that is off by this share still serves.
 const COARSEST_SHARE_OF_RESIDUAL: f64 = 0.5;
-/// Cells for which the smallest drive has room.
-const DRIVE_CELLS: usize = 128;
 /// How often the bound of a table is doubled at most, so that its cells fit into the smallest drive.
 const DOUBLINGS: i32 = 12;
 /// Most samples on which a table is compared with its network.
@@ -78,7 +76,7 @@ fn fit_once(
     tell(Stage::Separating);
     let material = gather(recordings, joint, options)?;
     let (inputs, relevance) = choose(&material, options.inputs.as_deref())?;
-    let builder = Builder { material: &material, inputs: &inputs, joint };
+    let builder = Builder { material: &material, inputs: &inputs, joint, cells: options.budget.cells() };
 
     tell(Stage::Training);
     let lesson = Lesson::new(&material, &inputs, options.seed);
@@ -96,12 +94,12 @@ fn fit_once(
         table: builder.table(&lesson.learnt(&pruned.result), pruned.result.train_rmse),
         expression: builder.expression(&found.open),
     };
-    let verdict = rivals.judge(&material, options.representation)?;
-    let model = match verdict.representation {
-        Representation::Table => builder.table(&learnt, refitted.train_rmse).or(rivals.table),
-        Representation::Expression => builder.expression(&found.last).or(rivals.expression),
-    }
-    .ok_or_else(no_image)?;
+    let verdict = rivals.judge(&material, options.representation, &options.budget)?;
+    let (last, compared) = match verdict.representation {
+        Representation::Table => (builder.table(&learnt, refitted.train_rmse), rivals.table),
+        Representation::Expression => (builder.expression(&found.last), rivals.expression),
+    };
+    let model = last.filter(|model| options.budget.allows(model)).or(compared).ok_or_else(no_image)?;
 
     let name = joint.name.clone().unwrap_or_default();
     let image = to_bytes(&Image { provenance: provenance(&name, recordings, options.seed), model: *model })?;
@@ -135,12 +133,9 @@ fn fit_once(
         tests,
         cloud: cloud(&material),
         law_curve: law_curve(&model, &inputs),
+        band: lesson.band(&refitted, found.last.uncertainty.correlation_length)?,
         image,
     })
-}
-
-fn no_image() -> Error {
-    Error::new(&codes::NOT_IDENTIFIABLE, "neither the network nor the expression fits into an image")
 }
 
 /// Turns laws into models of one joint.
@@ -148,6 +143,8 @@ struct Builder<'a> {
     material: &'a Material,
     inputs: &'a [ChosenInput],
     joint: &'a Joint,
+    /// Cells that a table may have.
+    cells: usize,
 }
 
 impl Builder<'_> {
@@ -165,7 +162,7 @@ impl Builder<'_> {
         self.model(Law::Expression(program), &[], &used, &coefficients)
     }
 
-    /// The tightest table that fits into the smallest drive, else the tightest of all.
+    /// The tightest table that fits into the budget and the smallest drive, else the tightest of all.
     fn table(&self, learnt: &Learnt, rmse: f64) -> Option<Box<HostModel>> {
         let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
         let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();
@@ -175,7 +172,7 @@ impl Builder<'_> {
             let Some(tables) = tables::compile(&learnt.network, &learnt.graph, &ranges, bound * slack) else {
                 continue;
             };
-            let fits = tables.cells.len() <= DRIVE_CELLS;
+            let fits = tables.cells.len() <= self.cells;
             let model = self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients);
             let Some(model) = model else { continue };
             let deviation = self.deviation(&model, learnt);
@@ -241,66 +238,6 @@ impl Builder<'_> {
 
 fn reads(expression: &Expr, input: usize) -> bool {
     *expression == Expr::Input(input) || expression.children().any(|child| reads(child, input))
-}
-
-/// Both forms, fitted to the open blocks; `None` where a form does not fit into an image.
-struct Rivals {
-    table: Option<Box<HostModel>>,
-    expression: Option<Box<HostModel>>,
-}
-
-struct Verdict {
-    representation: Representation,
-    reason: String,
-    candidates: Vec<Candidate>,
-}
-
-impl Rivals {
-    fn judge(&self, material: &Material, asked: Option<Representation>) -> Result<Verdict> {
-        let unit = rigid::printed(material.samples.actuator_unit);
-        let trial = |model: &Option<Box<HostModel>>| model.as_ref().map(|m| Trial::of(m, material)).transpose();
-        let (table, expression) = (trial(&self.table)?, trial(&self.expression)?);
-        let (representation, reason) = match (asked, &table, &expression) {
-            (_, None, None) => return Err(no_image()),
-            (Some(Representation::Table), Some(_), _) => (Representation::Table, "a table was asked for".to_owned()),
-            (Some(Representation::Expression), _, Some(_)) => {
-                (Representation::Expression, "an expression was asked for".to_owned())
-            }
-            (_, Some(table), Some(expression)) => decide(table, expression, material, unit),
-            (_, None, Some(_)) => {
-                (Representation::Expression, "the network does not fit into tables of a drive".to_owned())
-            }
-            (_, Some(_), None) => {
-                (Representation::Table, "the expression does not fit into a program of a drive".to_owned())
-            }
-        };
-        let forms =
-            [(Representation::Table, &self.table, &table), (Representation::Expression, &self.expression, &expression)];
-        let mut candidates = Vec::new();
-        for (form, model, trial) in forms {
-            let Some((model, trial)) = model.as_ref().zip(trial.as_ref()) else { continue };
-            let image = Image { provenance: provenance("", &[], 0), model: model.as_ref().clone() };
-            candidates.push(Candidate {
-                representation: form,
-                description: describe(&model.law, model.cells.len()),
-                held_out_rmse: trial.rmse(),
-                bytes: to_bytes(&image)?.len(),
-                chosen: form == representation,
-            });
-        }
-        Ok(Verdict { representation, reason, candidates })
-    }
-}
-
-fn describe(law: &Law, cells: usize) -> String {
-    match law {
-        Law::Expression(program) => format!("program of {} operations", program.operations.len()),
-        Law::Network(network) => format!(
-            "network of {} hidden nodes, {cells} cells",
-            network.layers.iter().map(|layer| layer.nodes()).sum::<usize>()
-        ),
-        _ => format!("table of {cells} cells"),
-    }
 }
 
 fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {

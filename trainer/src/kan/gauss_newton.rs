@@ -24,10 +24,10 @@ const PATIENCE: usize = 3;
 
 /// First strength of estimated smoothing per residual variance: smoother than most data turn out to need, since it is
 /// easier to let activations bend than to straighten them out again.
-const SMOOTHING_START: f64 = 100.0;
+pub(super) const SMOOTHING_START: f64 = 100.0;
 
 /// Factor by which smoothing may change per step.
-const SMOOTHING_LIMIT: f64 = 100.0;
+pub(super) const SMOOTHING_LIMIT: f64 = 100.0;
 
 /// Minimises over all trained parameters of the model; leaves the best found in it.
 pub(super) fn minimise(
@@ -53,7 +53,7 @@ pub(super) fn minimise(
     let mut idle = 0;
 
     loop {
-        let ridge = RIDGE * mean_diagonal(&normal).max(f64::MIN_POSITIVE);
+        let ridge = ridge_of(&normal);
         let (mut matrix, mut gradient) = penalised(&normal, &penalties, ridge, &values);
         let mut degrees_of_freedom = None;
         score = normal.residual_sum / samples as f64;
@@ -140,7 +140,12 @@ pub(super) fn minimise(
 }
 
 /// Matrix (upper triangle) and half gradient of residuals, penalties and ridge together.
-fn penalised(normal: &NormalEquations, penalties: &[Penalty], ridge: f64, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn penalised(
+    normal: &NormalEquations,
+    penalties: &[Penalty],
+    ridge: f64,
+    values: &[f64],
+) -> (Vec<f64>, Vec<f64>) {
     let (mut matrix, mut gradient) = (normal.matrix.clone(), normal.gradient.clone());
     for penalty in penalties {
         penalty.add_gradient(values, 1.0, &mut gradient);
@@ -163,6 +168,11 @@ fn promised_fall(matrix: &[f64], gradient: &[f64], step: &[f64]) -> f64 {
         quadratic += step[i] * (row[i] * step[i] + 2.0 * off);
     }
     2.0 * gradient.iter().zip(step).map(|(g, s)| g * s).sum::<f64>() - quadratic
+}
+
+/// Weight of the pull towards zero.
+pub(super) fn ridge_of(normal: &NormalEquations) -> f64 {
+    RIDGE * mean_diagonal(normal).max(f64::MIN_POSITIVE)
 }
 
 fn mean_diagonal(normal: &NormalEquations) -> f64 {

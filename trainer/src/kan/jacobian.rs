@@ -106,6 +106,19 @@ impl NormalEquations {
     }
 }
 
+/// Derivatives of the normalised output with respect to all unknowns, one dense row for each row of the data.
+pub(super) fn derivatives(model: &Model, unknowns: &Unknowns, dataset: &Dataset) -> Vec<Vec<f64>> {
+    let (mut trace, mut row) = (Trace::for_training(&model.network, unknowns.with_base), Row::default());
+    (0..dataset.rows())
+        .map(|sample| {
+            row.fill(model, unknowns, dataset, sample, &mut trace);
+            let mut dense = vec![0.0; unknowns.len()];
+            row.runs.iter().cloned().flatten().zip(&row.values).for_each(|(i, v)| dense[i] = *v);
+            dense
+        })
+        .collect()
+}
+
 /// Sum of squared residuals and its full gradient, without a matrix.
 pub(super) fn residual_sum_and_gradient(
     model: &Model,
@@ -197,11 +210,7 @@ mod tests {
         let normal = NormalEquations::of(&model, &unknowns, &dataset, &dataset.training_rows());
         let n = unknowns.len();
         let mut expected = vec![0.0; n * n];
-        let (mut trace, mut row) = (Trace::for_training(&model.network, true), Row::default());
-        for sample in 0..5 {
-            row.fill(&model, &unknowns, &dataset, sample, &mut trace);
-            let mut dense = vec![0.0; n];
-            row.runs.iter().cloned().flatten().zip(&row.values).for_each(|(i, v)| dense[i] = *v);
+        for dense in derivatives(&model, &unknowns, &dataset) {
             (0..n * n).for_each(|k| expected[k] += dense[k / n] * dense[k % n]);
         }
         for i in 0..n {

@@ -3,6 +3,7 @@
 mod adam;
 mod architecture;
 mod attribution;
+mod band;
 mod dataset;
 mod dense;
 mod error;
@@ -27,6 +28,7 @@ mod training;
 
 pub use architecture::{Architecture, Nodes, Resolution};
 pub use attribution::Attribution;
+pub use band::standard_errors;
 pub use dataset::{Blocks, Dataset};
 pub use error::KanError;
 pub use fit::{FitOptions, FitResult, fit, refit};

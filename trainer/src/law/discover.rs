@@ -126,7 +126,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let front = front(&candidates);
     let chosen = choose(&candidates, options.max_nodes).fit.clone();
     let mut remarks = Vec::new();
-    let chosen = drop_undetermined(&problem, chosen, &mut remarks);
+    let chosen = drop_undetermined(&problem, chosen, evidence, &mut remarks);
     let (fit, held) = settle_smoothing(&problem, chosen, evidence, &mut remarks);
     let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);

@@ -137,14 +137,10 @@ impl Move {
         Structure::new(self.sign, kept.chain(self.added.iter().copied()))
     }
 
-    /// Constants to start from: those of the fit, the width of the sign carried over to another smoothing.
+    /// Constants to start from: those of the fit. Another smoothing of the sign looks for its width afresh.
     pub fn carry_over(&self, fit: &Fit) -> Vec<(Nonlinear, f64)> {
-        let from = fit.structure.sign();
-        let convert = |(n, x): (Nonlinear, f64)| {
-            let moved = n == Nonlinear::Smoothing && from != self.sign;
-            (n, if moved { self.sign.from_width(from.width(x)) } else { x })
-        };
-        fit.nonlinear().into_iter().map(convert).collect()
+        let kept = |n: &Nonlinear| *n != Nonlinear::Smoothing || fit.structure.sign() == self.sign;
+        fit.nonlinear().into_iter().filter(|(n, _)| kept(n)).collect()
     }
 }
 

@@ -125,8 +125,11 @@ fn recognised(activation: &Activation) -> Option<(Factor, Vec<(Nonlinear, f64)>)
     }
 }
 
+/// A non-linear constant with its value.
+type Known = (Nonlinear, f64);
+
 /// Shape over velocity, smoothing of the sign, and the constant that the match fixes.
-fn of_velocity(found: &Match) -> Option<(Shape, SignForm, Option<(Nonlinear, f64)>)> {
+fn of_velocity(found: &Match) -> Option<(Shape, SignForm, Option<Known>)> {
     let slope = found.inner[0].abs();
     let stribeck = Some((Nonlinear::StribeckVelocity, 1.0 / slope));
     match found.function {

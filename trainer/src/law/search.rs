@@ -124,12 +124,7 @@ fn promising(
         let structure = change.apply(&parent.structure);
         let mut start = change.carry_over(parent);
         if change.added.is_empty() {
-            let psi: Vec<f64> = structure
-                .nonlinear()
-                .iter()
-                .filter_map(|n| start.iter().find(|(k, _)| k == n).map(|(_, x)| *x))
-                .collect();
-            let rss = problem.rss_at(&structure, &psi);
+            let rss = complete(problem, &structure, &mut start);
             sure.push(Child { structure, start, rss });
             continue;
         }
@@ -143,6 +138,24 @@ fn promising(
     screened.sort_by(|a, b| a.0.total_cmp(&b.0));
     sure.extend(screened.into_iter().take(refits).map(|(_, c)| c));
     sure
+}
+
+/// Adds to `start` the value of the one constant that it may lack, the best on its grid; the sum of squares then.
+fn complete(problem: &Problem<'_>, structure: &Structure, start: &mut Vec<(Nonlinear, f64)>) -> f64 {
+    let known = |n: &Nonlinear, start: &[(Nonlinear, f64)]| start.iter().find(|(k, _)| k == n).map(|(_, x)| *x);
+    let names = structure.nonlinear();
+    let rss = |start: &[(Nonlinear, f64)]| {
+        problem.rss_at(structure, &names.iter().filter_map(|n| known(n, start)).collect::<Vec<_>>())
+    };
+    let Some(open) = names.iter().position(|n| known(n, start).is_none()) else { return rss(start) };
+    let tried = problem.ranges(structure)[open].starts.clone().into_iter().map(|value| {
+        let mut trial = start.clone();
+        trial.push((names[open], value));
+        (rss(&trial), trial)
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0)).expect("a grid has at least one point");
+    *start = best.1;
+    best.0
 }
 
 /// The parent without the removed terms, its non-linear constants where they were.

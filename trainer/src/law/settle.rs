@@ -9,8 +9,18 @@ use super::render::significant;
 use super::structure::{Nonlinear, Shape, SignForm, Term};
 use super::uncertainty::{Interval, NORMAL_95, Uncertainty, analyse};
 
-/// Takes out, one by one, terms whose coefficients may as well be zero once the correlation of the residuals is counted.
-pub(super) fn drop_undetermined(problem: &Problem<'_>, mut fit: Fit, remarks: &mut Vec<String>) -> Fit {
+/// Half the rise of twice the negative log likelihood at which a constant is distinguished from zero with 95 %.
+const DISTINGUISHED: f64 = 0.5 * NORMAL_95 * NORMAL_95;
+
+/// Takes out, one by one, terms that may as well be zero once the correlation of the residuals is counted: by their standard
+/// error, and by what leaving them out, all else refitted, does to the likelihood.
+pub(super) fn drop_undetermined(
+    problem: &Problem<'_>,
+    mut fit: Fit,
+    evidence: Evidence,
+    remarks: &mut Vec<String>,
+) -> Fit {
+    let misfit = |fit: &Fit| evidence.misfit(fit.rss / problem.rows() as f64);
     loop {
         let uncertainty = analyse(problem, &fit, &[], Interval::Linearised);
         let first = fit.structure.nonlinear().len();
@@ -19,6 +29,12 @@ pub(super) fn drop_undetermined(problem: &Problem<'_>, mut fit: Fit, remarks: &m
             .filter(|&i| weight(i) < NORMAL_95 && admissible(&fit.structure.without(fit.structure.terms()[i])))
             .min_by(|a, b| weight(*a).total_cmp(&weight(*b)));
         let Some(weakest) = weakest else { return fit };
+        let simpler = fit.structure.without(fit.structure.terms()[weakest]);
+        let rough = problem.fit_grid(&simpler, &fit.nonlinear(), Held::default(), 1, Effort::SEARCH);
+        let without = polish(problem, &rough, &[]);
+        if misfit(&without) - misfit(&fit) > DISTINGUISHED {
+            return fit;
+        }
         let naming =
             &name_all(&fit.structure, problem.data(), problem.extents().layout(), &fit.params)[first + weakest];
         remarks.push(format!(
@@ -28,10 +44,7 @@ pub(super) fn drop_undetermined(problem: &Problem<'_>, mut fit: Fit, remarks: &m
             significant(NORMAL_95 * uncertainty.standard_errors[first + weakest], 2),
             naming.unit
         ));
-        let simpler = fit.structure.without(fit.structure.terms()[weakest]);
-        let start: Vec<(Nonlinear, f64)> = fit.nonlinear();
-        let rough = problem.fit_grid(&simpler, &start, Held::default(), 1, Effort::SEARCH);
-        fit = polish(problem, &rough, &[]);
+        fit = without;
     }
 }
 

@@ -23,6 +23,11 @@ pub(crate) fn bristle(state: &JointState, distance: f64) -> Vec<f64> {
     deflection
 }
 
+/// Longest distance over which a joint may slip: what a bearing or gear yields before it slides; beyond it is a spring.
+fn longest(state: &JointState) -> f64 {
+    if state.rotary { 0.1 } else { f64::INFINITY }
+}
+
 impl Hypothesis for Presliding {
     fn id(&self) -> EffectId {
         EffectId::Presliding
@@ -36,7 +41,7 @@ impl Hypothesis for Presliding {
         let (low, high) = state.travel();
         let travel = high - low;
         let finest = (4.0 * state.resolution).max(3e-5 * travel);
-        geometric_grid(finest, (0.4 * travel).max(finest), 10)
+        geometric_grid(finest, (0.4 * travel).min(longest(state)).max(finest), 10)
             .into_iter()
             .flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]])
             .collect()
@@ -69,6 +74,6 @@ impl Hypothesis for Presliding {
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
-        (index == 0).then(|| (state.resolution.max(1e-9), 1.5 * (high - low)))
+        (index == 0).then(|| (state.resolution.max(1e-9), (1.5 * (high - low)).min(longest(state))))
     }
 }

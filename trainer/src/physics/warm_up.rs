@@ -73,6 +73,6 @@ impl Hypothesis for WarmUp {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        (index == 0).then(|| (0.02 * state.duration(), 20.0 * state.duration()))
+        (index == 0).then(|| (0.02 * state.duration(), 3.0 * state.duration()))
     }
 }

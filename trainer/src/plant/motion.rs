@@ -87,6 +87,11 @@ pub enum Motion {
         #[serde(rename = "frequency_Hz")]
         frequency_hz: f64,
     },
+    /// Positions given sample by sample; the last is held, or the rest cut, to fill the length of the trajectory.
+    Samples {
+        /// Position at every sample of the drive, rad; at rest at zero at both ends.
+        position_rad: Vec<f64>,
+    },
     /// No motion.
     Rest,
 }
@@ -142,6 +147,11 @@ impl Motion {
                 let moves = plateaus(speeds_rad_s, *hold_s, duration_s);
                 follow(&moves, samples, rate_hz)
             }
+            Self::Samples { position_rad } => {
+                let last = position_rad.last().copied().unwrap_or(0.0);
+                let position = (0..samples).map(|k| position_rad.get(k).copied().unwrap_or(last)).collect();
+                differentiated(position, rate_hz)
+            }
             Self::Rest => Reference {
                 position: vec![0.0; samples],
                 velocity: vec![0.0; samples],
@@ -149,6 +159,15 @@ impl Motion {
             },
         }
     }
+}
+
+/// A reference from its positions, by central differences.
+fn differentiated(position: Vec<f64>, rate: f64) -> Reference {
+    let at = |k: isize| position[k.clamp(0, position.len() as isize - 1) as usize];
+    let indices = 0..position.len() as isize;
+    let velocity = indices.clone().map(|k| 0.5 * rate * (at(k + 1) - at(k - 1))).collect();
+    let acceleration = indices.map(|k| rate * rate * (at(k + 1) - 2.0 * at(k) + at(k - 1))).collect();
+    Reference { position, velocity, acceleration }
 }
 
 /// A value with its first and second time derivative.

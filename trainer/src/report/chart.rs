@@ -16,10 +16,14 @@ const RIGHT: f64 = 12.0;
 
 /// Colour of a series, by its role on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ink {
+pub enum Ink {
+    /// What was measured.
     Data,
+    /// The first thing compared with it.
     One,
+    /// The second.
     Two,
+    /// The third.
     Three,
 }
 
@@ -74,6 +78,18 @@ impl Chart {
             pen_down = true;
         }
         let _ = write!(self.body, "<path class=\"line s-{}\" d=\"{path}\"/>", ink.name());
+        self.mention(ink, label);
+    }
+
+    /// The area between two curves, `[x, low, high]`.
+    pub(super) fn area(&mut self, points: &[[f64; 3]], ink: Ink, label: &str) {
+        let along = points.iter().map(|p| (p[0], p[1])).chain(points.iter().rev().map(|p| (p[0], p[2])));
+        let corners: Vec<String> = along
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .map(|(x, y)| format!("{:.1} {:.1}", self.x.at(x), self.y.at(y)))
+            .collect();
+        let _ =
+            write!(self.body, "<path class=\"f-{}\" fill-opacity=\".22\" d=\"M{}Z\"/>", ink.name(), corners.join("L"));
         self.mention(ink, label);
     }
 

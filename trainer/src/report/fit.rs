@@ -80,6 +80,7 @@ fn over_velocity(page: &mut Page, outcome: &Outcome) {
     page.heading("Friction over velocity");
     let mut law = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
     law.dots(&outcome.cloud, Ink::Data, "measured, rigid body taken off");
+    law.area(&outcome.band, Ink::Two, "95 % of the network");
     law.line(&outcome.law_curve, Ink::One, "exported law");
     let mut stages = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
     stages.dots(&outcome.cloud, Ink::Data, "");
@@ -87,7 +88,11 @@ fn over_velocity(page: &mut Page, outcome: &Outcome) {
         stages.line(points, ink, &format!("{:.0} % of the training", 100.0 * share));
     }
     page.figures(&[
-        (law.svg(), "The law in the image, other inputs at their mean.".to_string()),
+        (
+            law.svg(),
+            "The law in the image, other inputs at their mean, with the band that the network leaves for it."
+                .to_string(),
+        ),
         (stages.svg(), "The network while it was trained.".to_string()),
     ]);
 }
@@ -172,11 +177,12 @@ fn comparison(page: &mut Page, outcome: &Outcome) {
                 candidate.description.clone(),
                 quantity(candidate.held_out_rmse, outcome.unit),
                 format!("{} bytes", candidate.bytes),
+                format!("{} instructions", candidate.instructions),
                 if candidate.chosen { "in the image" } else { "" }.to_string(),
             ]
         })
         .collect();
-    page.table(&["form", "", "held-out error", "size", ""], &rows);
+    page.table(&["form", "", "held-out error", "size", "Cortex-M4F", ""], &rows);
     let rows: Vec<Vec<String>> = outcome
         .classical
         .iter()

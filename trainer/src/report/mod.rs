@@ -4,10 +4,13 @@
 mod axis;
 mod chart;
 mod diagnosis;
+mod finding;
 mod fit;
 mod graph;
 mod heat_map;
+mod on_the_drive;
 mod page;
+pub mod picture;
 
 pub use diagnosis::{DiagnosisPage, diagnosis};
 pub use fit::fit;

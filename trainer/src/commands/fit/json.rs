@@ -43,7 +43,8 @@ pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Value {
         },
         "candidates": outcome.candidates.iter().map(|candidate| json!({
             "representation": candidate.representation.name(), "description": candidate.description,
-            "held_out_rmse": candidate.held_out_rmse, "bytes": candidate.bytes, "chosen": candidate.chosen,
+            "held_out_rmse": candidate.held_out_rmse, "bytes": candidate.bytes, "instructions": candidate.instructions,
+            "within_budget": candidate.within_budget, "chosen": candidate.chosen,
         })).collect::<Vec<_>>(),
         "classical": outcome.classical.iter().map(|law| json!({
             "name": law.name, "rmse": law.rmse, "bic": law.bic, "parameters": law.parameters,
@@ -51,6 +52,7 @@ pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Value {
         "front": outcome.law.front.iter().map(|law| json!({
             "expression": law.expression, "nodes": law.nodes, "rmse": law.rmse, "held_out_rmse": law.held_out_rmse,
         })).collect::<Vec<_>>(),
+        "band": {"level": 0.95, "over": "velocity", "points": outcome.band},
         "train": score(outcome.train_score),
         "train_recordings": train,
         "test": tests,

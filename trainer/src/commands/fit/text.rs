@@ -60,10 +60,11 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
         let mark = if candidate.chosen { "chosen" } else { "" };
         writeln!(
             out,
-            "  {:<11} {:<28} {:>6} bytes, held-out rmse {} {unit}  {mark}",
+            "  {:<11} {:<28} {:>6} bytes {:>5} instructions, held-out rmse {} {unit}  {mark}",
             candidate.representation.name(),
             candidate.description,
             candidate.bytes,
+            candidate.instructions,
             significant(candidate.held_out_rmse, DIGITS)
         )?;
     }

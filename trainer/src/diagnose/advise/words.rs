@@ -1,13 +1,6 @@
-//! What to record next, so that effects which this recording cannot tell apart come apart.
+//! What separates each effect from its usual confounders, in words.
 
 use crate::physics::EffectId;
-
-/// An excitation that would separate a finding from its rivals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Advice {
-    /// In words.
-    pub sentence: String,
-}
 
 /// The excitation that separates an effect from its usual confounders (catalogue of effects).
 pub(crate) fn separation(effect: EffectId) -> &'static str {

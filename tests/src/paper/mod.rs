@@ -1,5 +1,11 @@
 //! The friction laws, noise and samples of the paper's simulated experiments (Wang, Rabczuk & Liu, six joints).
 
+pub mod known_form;
+pub mod network;
+pub mod page;
+pub mod robot;
+pub mod symbolic;
+
 use frikan_trainer::kan::Random;
 
 /// `[k1, k2, k3, k4]` of the six joints: Coulomb and Stribeck extra torque N m, Stribeck velocity rad/s, viscous
@@ -54,4 +60,38 @@ pub fn with_noise(clean: &[f64], share: f64, random: &mut Random) -> Vec<f64> {
     let high = clean.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let low = clean.iter().copied().fold(f64::INFINITY, f64::min);
     clean.iter().map(|y| y + share * (high - low) * random.normal()).collect()
+}
+
+/// Share of the variance of `truth` that `predicted` explains.
+#[must_use]
+pub fn r2(truth: &[f64], predicted: &[f64]) -> f64 {
+    let mean = truth.iter().sum::<f64>() / truth.len() as f64;
+    let missed: f64 = truth.iter().zip(predicted).map(|(t, p)| (t - p).powi(2)).sum();
+    let spread: f64 = truth.iter().map(|t| (t - mean).powi(2)).sum();
+    1.0 - missed / spread
+}
+
+/// The middle of values, the mean of the two middle ones of an even number.
+#[must_use]
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (below, above) = ((sorted.len() - 1) / 2, sorted.len() / 2);
+    0.5 * (sorted[below] + sorted[above])
+}
+
+/// How much of the experiments to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Draws of the network experiments.
+    pub seeds: u64,
+    /// Draws by which intervals are checked.
+    pub coverage: u64,
+}
+
+impl Effort {
+    /// As the published tables.
+    pub const FULL: Self = Self { seeds: 20, coverage: 200 };
+    /// Enough to see that every experiment runs and comes out.
+    pub const SHORT: Self = Self { seeds: 2, coverage: 5 };
 }

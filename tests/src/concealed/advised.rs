@@ -1,0 +1,158 @@
+//! Confounded pairs: recordings that cannot tell two effects apart, the motion that the diagnosis proposes for them, and
+//! what the two recordings together tell.
+
+use super::signals;
+use frikan_trainer::diagnose::{Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan};
+use frikan_trainer::physics::EffectId;
+use frikan_trainer::plant::{self, Campaign, Motion, Trajectory};
+
+/// A joint in which one effect is hidden and recorded with motions that confound it with another.
+#[derive(Clone, Debug)]
+pub struct Confounded {
+    /// Effect that is hidden.
+    pub truth: &'static str,
+    /// Effect that it is mistaken for.
+    pub rival: &'static str,
+    /// Its amplitude.
+    pub amplitude: f64,
+    /// Motions of the recording.
+    pub motions: Vec<Motion>,
+    /// Gravity torque of the payload, N m.
+    pub gravity_nm: f64,
+}
+
+/// What came of a confounded pair.
+#[derive(Clone, Debug)]
+pub struct Advised {
+    /// Diagnosis of the recording alone.
+    pub before: Diagnosis,
+    /// The proposed motion, where there was one.
+    pub plan: Option<Plan>,
+    /// Diagnosis of the recording and the proposed motion together.
+    pub after: Option<Diagnosis>,
+}
+
+/// Limits of the joint beyond what was recorded.
+const LIMITS: Limits =
+    Limits { lowest_position: Some(-1.6), highest_position: Some(1.6), speed: Some(3.5), acceleration: Some(25.0) };
+
+/// Small multisines about zero, `reach` rad wide.
+fn small_multisines(reach: f64, lowest_hz: f64, highest_hz: f64, lines: usize) -> Vec<Motion> {
+    let one =
+        |share: f64| Motion::Multisine { amplitude_rad: share * reach, lowest_hz, highest_hz, speed_rad_s: 3.5, lines };
+    vec![one(1.0), one(0.8), one(0.9)]
+}
+
+/// The pairs of the proof: recordings in which the rival explains nearly as much as the truth.
+#[must_use]
+pub fn pairs() -> Vec<Confounded> {
+    let narrow = || small_multisines(0.35, 0.3, 1.2, 5);
+    let quick = || small_multisines(0.12, 1.0, 3.0, 5);
+    let one_tone = || small_multisines(0.6, 0.7, 0.8, 1);
+    let slow = || small_multisines(0.5, 0.1, 0.3, 5);
+    let steady = || {
+        let triangles = Motion::Triangles { amplitude_rad: 1.0, speed_rad_s: 1.2 };
+        [vec![triangles], small_multisines(1.0, 0.2, 0.8, 5)].concat()
+    };
+    let starts = || vec![Motion::StopAndGo { step_rad: 0.25, speed_rad_s: 1.1, dwells_s: vec![0.4] }];
+    let pair =
+        |truth, rival, amplitude, motions, gravity_nm| Confounded { truth, rival, amplitude, motions, gravity_nm };
+    vec![
+        pair("gravity_error", "spring", 1.0, narrow(), 4.0),
+        pair("spring", "gravity_error", 1.0, narrow(), 4.0),
+        pair("torque_scale", "inertia_error", 1.0, quick(), 2.0),
+        pair("inertia_error", "torque_scale", 1.0, quick(), 2.0),
+        pair("temperature", "warm_up", 2.0, steady(), 4.0),
+        pair("warm_up", "temperature", 1.0, steady(), 4.0),
+        pair("slow_drift", "warm_up", 1.0, steady(), 4.0),
+        pair("temperature", "slow_drift", 0.5, steady(), 4.0),
+        pair("load_friction", "position_friction", 0.5, steady(), 4.0),
+        pair("viscous_nonlinearity", "stribeck", 0.25, slow(), 4.0),
+        pair("inertia_error", "spring", 0.2, one_tone(), 4.0),
+        pair("spring", "inertia_error", 0.2, one_tone(), 4.0),
+        pair("direction_asymmetry", "torque_offset", 0.3, narrow(), 4.0),
+        pair("torque_offset", "direction_asymmetry", 0.3, narrow(), 4.0),
+        pair("frictional_lag", "presliding", 1.0, quick(), 4.0),
+        pair("dwell_breakaway", "stribeck", 0.5, starts(), 4.0),
+        pair("kinematic_error", "inertia_error", 0.3, quick(), 4.0),
+    ]
+}
+
+/// Records, diagnoses, asks for the next motion, follows it, and diagnoses both.
+///
+/// # Errors
+/// What keeps the joint from being simulated or the recording from being diagnosed.
+pub fn run(case: &Confounded, seed: u64) -> Result<Advised, String> {
+    let mut joint = plant::Joint { gravity_torque_nm: vec![case.gravity_nm], ..plant::Joint::default() };
+    joint.campaign = Campaign {
+        trajectory_s: 6.0,
+        sets: 1,
+        trajectories: case.motions.iter().cycle().take(6).cloned().map(Trajectory::from).collect(),
+    };
+    joint.effects = vec![plant::Hidden { name: case.truth.to_owned(), amplitude: case.amplitude }];
+    let options = Options { lock: Lock::Nothing, ..Options::default() };
+    let diagnosed = |joint: &plant::Joint| {
+        let recording = plant::simulate(joint, seed).map_err(|e| e.to_string())?;
+        let signals = signals(&recording, joint);
+        let diagnosis = diagnose(&signals, "N m", &options).map_err(|e| e.to_string())?;
+        Ok::<_, String>((signals, diagnosis))
+    };
+    let (signals, before) = diagnosed(&joint)?;
+    let question = Question { signals: &signals, diagnosis: &before, options, limits: LIMITS, reference: None };
+    let Some(plan) = plan(&question) else { return Ok(Advised { before, plan: None, after: None }) };
+    let recorded_s = joint.campaign.duration_s();
+    joint.campaign.trajectories.push(following(&plan, case));
+    if case.truth == "slow_drift" {
+        // The simulator draws the change over the whole campaign.
+        joint.effects[0].amplitude *= joint.campaign.duration_s() / recorded_s;
+    }
+    let (_, after) = diagnosed(&joint)?;
+    Ok(Advised { before, plan: Some(plan), after: Some(after) })
+}
+
+/// The planned motion as the simulator takes it.
+fn following(plan: &Plan, case: &Confounded) -> Trajectory {
+    let gravity = plan.load.as_ref().map_or(case.gravity_nm, |load| {
+        let sum = |values: &dyn Fn(usize) -> f64| (0..load.len()).map(values).sum::<f64>();
+        sum(&|i| load[i] * plan.position[i].sin()) / sum(&|i| plan.position[i].sin().powi(2))
+    });
+    Trajectory {
+        duration_s: Some(plan.position.len() as f64 * plan.period),
+        gravity_torque_nm: Some(gravity),
+        pause_before_s: plan.rest_before_s,
+        ..Trajectory::from(Motion::Samples { position_rad: plan.position.clone() })
+    }
+}
+
+impl Advised {
+    /// Whether the recording alone leaves the pair open: one of both is named, the other within its set.
+    #[must_use]
+    pub fn was_open(&self, case: &Confounded) -> bool {
+        let pair = case.pair();
+        self.before.findings.first().is_some_and(|found| {
+            let set = |effect| found.effect == effect || found.alternatives.iter().any(|(rival, _)| *rival == effect);
+            set(pair.0) && set(pair.1)
+        })
+    }
+
+    /// Distance in nats from the truth to its rival after the proposed motion; `None` where the truth is not found.
+    #[must_use]
+    pub fn reached_nats(&self, case: &Confounded) -> Option<f64> {
+        let (truth, rival) = case.pair();
+        let found = self.after.as_ref()?.findings.iter().find(|found| found.effect == truth)?;
+        found.standings.iter().find(|(effect, _)| *effect == rival).map(|(_, nats)| *nats)
+    }
+
+    /// Whether truth and rival are told apart after the proposed motion.
+    #[must_use]
+    pub fn is_resolved(&self, case: &Confounded) -> bool {
+        self.reached_nats(case).is_some_and(|nats| nats > TOLD_APART_NATS)
+    }
+}
+
+impl Confounded {
+    fn pair(&self) -> (EffectId, EffectId) {
+        let id = |name| EffectId::from_name(name).unwrap_or(EffectId::Unknown);
+        (id(self.truth), id(self.rival))
+    }
+}

@@ -1,0 +1,102 @@
+//! What a recording is compared with: a simulation, a model, or the best static model of itself.
+
+use super::{Diagnose, units};
+use crate::diagnose::simulation::{self, InverseLaw};
+use crate::diagnose::{Reference, Signals, model};
+use crate::error::{Error, Result, codes};
+use crate::fit::{self, HostModel};
+use crate::joint::{self, Joint};
+use crate::physics::JointState;
+use crate::recording::{self, Quantity, Recording};
+use frikan_shared::model::RigidBody;
+
+/// What the recording is compared with.
+pub(super) enum Compared {
+    Itself(Box<RigidBody>),
+    Simulation(Box<InverseLaw>),
+    Model(Box<HostModel>),
+}
+
+impl Compared {
+    /// The law at other states; `recorded_body` says that the recording carries a rigid-body torque of its own.
+    pub(super) fn at(&self, state: &JointState, recorded_body: bool) -> Option<Reference> {
+        match self {
+            Self::Itself(_) => None,
+            Self::Simulation(law) => Some(law.at(state)),
+            Self::Model(image) => model::at(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok(),
+        }
+    }
+}
+
+/// Signals of the real recordings beside what they are compared with.
+pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Signals, Compared)> {
+    if let Some(path) = &arguments.simulation {
+        let simulated = recording::load(path, joint)?;
+        same_units(&real[0], &simulated)?;
+        let mut signals = joined(real, joint)?;
+        let simulation = Signals::of(&simulated, joint)?;
+        let law = simulation::learn(&simulation, signals.rigid_body.is_some())
+            .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
+        let reference = law.at(&states(&signals, &real[0])?);
+        signals.compare_with(reference);
+        Ok((signals, Compared::Simulation(Box::new(law))))
+    } else if let Some(path) = &arguments.model {
+        let (_, image) = fit::model::load(path)?;
+        // The image carries the rigid body of the joint file already; what is recorded is handed to it.
+        let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
+        let mut signals = joined(real, &bare)?;
+        let state = states(&signals, &real[0])?;
+        let reference = model::at(&image.model, &state, state.rigid_body.as_deref())
+            .map_err(|error| error.in_file(real[0].file()))?;
+        signals.compare_with(reference);
+        Ok((signals, Compared::Model(Box::new(image.model))))
+    } else {
+        Ok((joined(real, joint)?, Compared::Itself(Box::new(given_rigid_body(&real[0], joint)))))
+    }
+}
+
+/// Signals of recordings of one joint, one behind the other.
+fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
+    let mut all = Signals::of(&real[0], joint)?;
+    for next in &real[1..] {
+        same_units(&real[0], next)?;
+        all.append(Signals::of(next, joint)?)
+            .map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()).in_file(next.file()))?;
+    }
+    Ok(all)
+}
+
+/// The rigid body of the joint file, where it stands for the recording's own.
+fn given_rigid_body(real: &Recording, joint: &Joint) -> RigidBody {
+    let mut body = RigidBody::default();
+    if real.channel(Quantity::RigidBodyTorque).is_none() {
+        let (gravity, phase) = (joint.rigid_body.gravity_torque_nm, joint.rigid_body.gravity_phase_rad);
+        let (gravity, phase) = (gravity.unwrap_or(0.0), phase.unwrap_or(0.0));
+        body.inertia = joint.rigid_body.inertia_kgm2.unwrap_or(0.0) as f32;
+        body.gravity_sin = (gravity * phase.cos()) as f32;
+        body.gravity_cos = (gravity * phase.sin()) as f32;
+    }
+    body
+}
+
+/// The states of the recording, which need a segment longer than its filter.
+fn states(signals: &Signals, real: &Recording) -> Result<JointState> {
+    let moving = signals.position.iter().any(|q| *q != signals.position[0]);
+    if moving {
+        return Ok(signals.states());
+    }
+    Err(Error::new(&codes::NO_MOTION, "the joint does not move in this recording").in_file(real.file()))
+}
+
+fn same_units(real: &Recording, other: &Recording) -> Result<()> {
+    if units(real) == units(other) {
+        return Ok(());
+    }
+    let message = format!(
+        "this gives {}, {} gives {}; both have to be of one axis and one actuator quantity",
+        units(other).actuator,
+        real.file(),
+        units(real).actuator
+    );
+    Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(other.file()))
+}

@@ -1,0 +1,119 @@
+//! One finding of a diagnosis on its page: equation, parameters, pictures, rivals, the drive.
+
+use super::axis::Scale;
+use super::chart::{Chart, Ink, bars};
+use super::diagnosis::{axis_label, sentence_case};
+use super::on_the_drive::on_the_drive;
+use super::page::{PARAMETER_HEADER, Page, parameter_rows};
+use crate::diagnose::sentence::{Units, digits, plain_name};
+use crate::diagnose::{Diagnosis, Finding, Traces};
+use crate::physics::{Action, EffectId};
+
+/// Names in the chart of one finding's rivals, its own included.
+const MOST_STANDINGS: usize = 6;
+
+/// One finding: equation, parameters, torque over its channel and time, regions.
+pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
+    let code = if found.effect == EffectId::Unknown { "" } else { found.effect.code() };
+    let name = format!("{code} {}", found.effect.name());
+    page.heading(&format!("{}. {} ({})", index + 1, sentence_case(plain_name(found.effect)), name.trim()));
+    page.paragraph(&format!("{}.", sentence_case(&found.evidence)));
+    page.equation(&found.equation);
+    page.table(&PARAMETER_HEADER, &parameter_rows(&found.parameters));
+    figures(page, diagnosis, found, index, units);
+    let regions: Vec<Vec<String>> = found
+        .location
+        .regions
+        .iter()
+        .take(5)
+        .map(|region| {
+            vec![
+                region.channel.replace('_', " "),
+                digits(region.from),
+                digits(region.to),
+                units.of_channel(region.channel),
+                format!("{:.0} %", 100.0 * region.share_of_excess),
+                format!("{:.0} %", 100.0 * region.share_of_samples),
+            ]
+        })
+        .collect();
+    page.subheading("Where it sits");
+    page.table(&["channel", "from", "to", "unit", "of the evidence", "of the samples"], &regions);
+    standings(page, found);
+    page.subheading("On the drive");
+    page.paragraph(on_the_drive(found.effect));
+    if found.effect.action() == Action::FeedForward {
+        page.paragraph("`trainer verify IMPROVED.frk --target cortex-m4f` counts the instructions of the whole image.");
+    }
+    if !found.alternatives.is_empty() {
+        page.subheading("What would tell the alternatives apart");
+        page.paragraph(&format!("{}.", sentence_case(&found.separate_by.sentence)));
+    }
+}
+
+/// Residual without this effect and its torque, over its best channel and over the time where it is densest.
+fn figures(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
+    let traces = &diagnosis.traces;
+    let Some(torque) = traces.effects.get(index) else { return };
+    let without: Vec<f64> = traces.after.iter().zip(torque).map(|(rest, effect)| rest + effect).collect();
+    let label = format!("torque ({})", units.actuator);
+    let range = Scale::over(without.iter().copied());
+    let mut pictures = Vec::new();
+    if let Some(region) = found.location.regions.first()
+        && let Some(values) = traces.channel(region.channel)
+    {
+        let pairs = |series: &[f64]| -> Vec<[f64; 2]> { values.iter().zip(series).map(|(x, y)| [*x, *y]).collect() };
+        let over = Scale::over(values.iter().copied());
+        let mut chart = Chart::new((520.0, 320.0), over, range, [&axis_label(region.channel, units), &label]);
+        chart.band(region.from, region.to);
+        chart.dots(&pairs(&without), Ink::Data, "residual without it");
+        chart.dots(&pairs(torque), Ink::Two, "its torque");
+        pictures.push((
+            chart.svg(),
+            "Residual of all other terms and the torque of this one, over the channel that locates it.".to_string(),
+        ));
+    }
+    let (from, to) = window(traces, found);
+    let inside: Vec<usize> = (0..traces.len()).filter(|&i| traces.time[i] >= from && traces.time[i] <= to).collect();
+    if inside.len() > 4 {
+        let pairs = |series: &[f64]| -> Vec<[f64; 2]> { inside.iter().map(|&i| [traces.time[i], series[i]]).collect() };
+        let mut chart = Chart::new(
+            (520.0, 320.0),
+            (from, to),
+            Scale::over(inside.iter().map(|&i| without[i])),
+            ["time (s)", &label],
+        );
+        for [begin, end] in &found.location.when_s {
+            if *end > from && *begin < to {
+                chart.band(*begin, *end);
+            }
+        }
+        chart.line(&pairs(&without), Ink::Data, "residual without it");
+        chart.line(&pairs(torque), Ink::Two, "its torque");
+        pictures.push((chart.svg(), "The same over the stretch of time with the densest evidence.".to_string()));
+    }
+    page.figures(&pictures);
+}
+
+/// A stretch of time around the densest evidence, at most a tenth of the recording.
+fn window(traces: &Traces, found: &Finding) -> (f64, f64) {
+    let (Some(&first), Some(&last)) = (traces.time.first(), traces.time.last()) else { return (0.0, 0.0) };
+    let width = (0.1 * (last - first)).max(1.0).min(last - first);
+    let centre = found.location.when_s.first().map_or(0.5 * (first + last), |w| 0.5 * (w[0] + w[1]));
+    let from = (centre - 0.5 * width).clamp(first, last - width);
+    (from, from + width)
+}
+
+/// The rivals of one finding when it was accepted.
+fn standings(page: &mut Page, found: &Finding) {
+    let mut rows = vec![(found.effect.name().to_string(), found.score, true)];
+    let close = found.standings.iter().map(|(effect, distance)| (effect, found.score - distance));
+    rows.extend(
+        close.filter(|(_, score)| *score > 0.0).map(|(effect, score)| (effect.name().to_string(), score, false)),
+    );
+    if rows.len() > 1 {
+        rows.truncate(MOST_STANDINGS);
+        page.subheading("Its rivals");
+        page.figure(&bars(&rows, "nats"), "What each name alone would have explained when this one was accepted.");
+    }
+}
