@@ -29,9 +29,9 @@ pub fn run(program: &Program, inputs: &[f32; MAX_INPUTS]) -> f32 {
             }
             Operation::Scale(factor) => top *= factor,
             Operation::Offset(summand) => top += summand,
-            Operation::Add => top = stack.pop() + top,
+            Operation::Add => top += stack.pop(),
             Operation::Subtract => top = stack.pop() - top,
-            Operation::Multiply => top = stack.pop() * top,
+            Operation::Multiply => top *= stack.pop(),
             Operation::Divide => top = stack.pop() / top,
             Operation::Minimum => {
                 let second = stack.pop();

@@ -33,7 +33,7 @@ fn integer_table_is_constant_on(target: &str, budget: u32) {
 #[test]
 fn every_kind_is_constant_on_cortex_m4f() {
     let budgets =
-        [("symmetric table", 45), ("sided table", 45), ("network [1,5,1]", 800), ("Stribeck expression", 420)];
+        [("symmetric table", 45), ("sided table", 45), ("network [1,5,1]", 200), ("Stribeck expression", 250)];
     every_kind_is_constant_on("cortex-m4f", &budgets);
 }
 
