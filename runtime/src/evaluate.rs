@@ -1,30 +1,34 @@
 //! The static law of a model: inputs in, friction out.
 
+use frikan_shared::expression::Program;
+use frikan_shared::integer_table::IntegerTable;
 use frikan_shared::model::{Input, Law, MAX_INPUTS, Model};
-use frikan_shared::table::Table;
+use frikan_shared::table::{SIGN_BIT, Table};
 
 use crate::expression::run;
 use crate::integer_table::evaluate_steps;
 use crate::network::evaluate_network;
 use crate::table::{evaluate_geometric, evaluate_table};
 
-/// `value` held to `[-limit, limit]`; zero for NaN.
+/// `value` held to `[-limit, limit]`; zero for NaN. `limit` must not be NaN, and its sign does not count.
+///
+/// In integers, which order the magnitudes of floats as their bits: no comparison of floats, whose flags take time to fetch.
 #[must_use]
 #[inline(always)]
 pub fn limited(value: f32, limit: f32) -> f32 {
-    let value = if value.is_nan() { 0.0 } else { value };
-    let value = if value < limit { value } else { limit };
-    if value > -limit { value } else { -limit }
+    let magnitude = value.abs().to_bits();
+    let held = magnitude.min(limit.abs().to_bits()) | (value.to_bits() & SIGN_BIT);
+    unless(magnitude > f32::INFINITY.to_bits(), f32::from_bits(held))
 }
 
-/// The channels of `inputs`, each held to its trained range; NaN stays NaN.
+/// The channels of `inputs`, each held to its trained range, and 0 for others; NaN stays NaN.
 #[must_use]
 #[inline(always)]
 pub fn held(channels: &[Input], inputs: &[f32; MAX_INPUTS]) -> [f32; MAX_INPUTS] {
-    let mut held = *inputs;
-    for (value, channel) in held.iter_mut().zip(channels) {
-        let below = if *value > channel.high { channel.high } else { *value };
-        *value = if below < channel.low { channel.low } else { below };
+    let mut held = [0.0; MAX_INPUTS];
+    for ((held, &input), channel) in held.iter_mut().zip(inputs).zip(channels) {
+        let below = if input > channel.high { channel.high } else { input };
+        *held = if below < channel.low { channel.low } else { below };
     }
     held
 }
@@ -32,7 +36,8 @@ pub fn held(channels: &[Input], inputs: &[f32; MAX_INPUTS]) -> [f32; MAX_INPUTS]
 /// Friction that the static law of `model` gives for `inputs`, in the order of the model's channels; channels that the
 /// model does not have are ignored. In the unit of the model's output, finite, at most `output_limit` in magnitude.
 ///
-/// NaN in a channel gives 0. Effects and rigid body are not part of the static law.
+/// NaN in a channel that the law reads gives 0: a table reads the first, networks and expressions read all. Effects and rigid body
+/// are not part of the static law.
 #[must_use]
 #[inline]
 pub fn evaluate<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
@@ -44,20 +49,35 @@ pub fn evaluate<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INP
     evaluate_other(model, inputs)
 }
 
-/// The laws that take longer than a call.
+/// The laws that take longer than a call, each a function of its own: none saves the registers of another.
 #[inline(never)]
 fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
-    let value = match &model.law {
-        Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, inputs[0]),
-        Law::Uniform(layout) => evaluate_table(&Table::Uniform(*layout), &model.cells, inputs[0]),
-        Law::Network(network) => evaluate_network(network, &model.cells, inputs, model.inputs.len()),
-        Law::Expression(program) => run(program, &held(&model.inputs, inputs)),
-        Law::IntegerTable(table) => evaluate_steps(table, &model.cells, inputs[0]),
-    };
-    limited(if any_nan(&model.inputs, inputs) { 0.0 } else { value }, model.output_limit)
+    let [first, ..] = *inputs;
+    match &model.law {
+        Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, first),
+        // Validation has proved what tables give to be within the limit.
+        Law::Uniform(layout) => unless(first.is_nan(), evaluate_table(&Table::Uniform(*layout), &model.cells, first)),
+        Law::Network(network) => evaluate_network(model, network, inputs),
+        Law::Expression(program) => evaluate_expression(model, program, inputs),
+        Law::IntegerTable(table) => evaluate_integer_table(model, table, first),
+    }
 }
 
-/// Whether a channel of the model is NaN.
-fn any_nan(channels: &[Input], inputs: &[f32; MAX_INPUTS]) -> bool {
-    inputs.iter().zip(channels).fold(false, |any, (input, _)| any | input.is_nan())
+#[inline(never)]
+fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, program: &Program, inputs: &[f32; MAX_INPUTS]) -> f32 {
+    let inputs = held(&model.inputs, inputs);
+    let any_nan = inputs.iter().fold(false, |any, input| any | input.is_nan());
+    limited(unless(any_nan, run(program, &inputs)), model.output_limit)
+}
+
+#[inline(never)]
+fn evaluate_integer_table<const CELLS: usize>(model: &Model<CELLS>, table: &IntegerTable, input: f32) -> f32 {
+    let value = evaluate_steps(table, &model.cells, input);
+    limited(unless(input.is_nan(), value), model.output_limit)
+}
+
+/// 0 instead of `value` where `off`.
+#[inline(always)]
+fn unless(off: bool, value: f32) -> f32 {
+    f32::from_bits(if off { 0 } else { value.to_bits() })
 }

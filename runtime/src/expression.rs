@@ -9,67 +9,86 @@ use frikan_shared::model::MAX_INPUTS;
 /// The top of the stack is kept apart from the others; a validated program never reads a value that it did not push.
 /// The number of instructions depends on the program alone. The result may be infinite or NaN; the caller limits it.
 #[must_use]
+#[inline(always)]
 pub fn run(program: &Program, inputs: &[f32; MAX_INPUTS]) -> f32 {
-    // Sizes are powers of two: the masks change no index of a validated program and leave nothing to check.
-    const { assert!(MAX_DEPTH.is_power_of_two() && MAX_INPUTS.is_power_of_two()) };
-    let mut below = [0.0f32; MAX_DEPTH];
-    let mut depth = 0usize;
+    let mut stack = Stack { below: [0.0; MAX_DEPTH], depth: 0 };
     let mut top = 0.0f32;
     for operation in &program.operations {
         match *operation {
-            Operation::Input(_) | Operation::ScaledInput(_, _) | Operation::Constant(_) => {
-                below[depth & (MAX_DEPTH - 1)] = top;
-                depth = depth.wrapping_add(1);
+            Operation::Input(index) => {
+                stack.push(top);
+                top = input(inputs, index);
             }
-            Operation::Add
-            | Operation::Subtract
-            | Operation::Multiply
-            | Operation::Divide
-            | Operation::Minimum
-            | Operation::Maximum
-            | Operation::Power => depth = depth.wrapping_sub(1),
-            _ => {}
-        }
-        let second = below[depth & (MAX_DEPTH - 1)];
-        top = match *operation {
-            Operation::Input(index) => inputs[usize::from(index) & (MAX_INPUTS - 1)],
-            Operation::ScaledInput(index, factor) => inputs[usize::from(index) & (MAX_INPUTS - 1)] * factor,
-            Operation::Constant(constant) => constant,
-            Operation::Scale(factor) => top * factor,
-            Operation::Offset(summand) => top + summand,
-            Operation::Add => second + top,
-            Operation::Subtract => second - top,
-            Operation::Multiply => second * top,
-            Operation::Divide => second / top,
+            Operation::ScaledInput(index, factor) => {
+                stack.push(top);
+                top = input(inputs, index) * factor;
+            }
+            Operation::Constant(constant) => {
+                stack.push(top);
+                top = constant;
+            }
+            Operation::Scale(factor) => top *= factor,
+            Operation::Offset(summand) => top += summand,
+            Operation::Add => top += stack.pop(),
+            Operation::Subtract => top = stack.pop() - top,
+            Operation::Multiply => top *= stack.pop(),
+            Operation::Divide => top = stack.pop() / top,
             Operation::Minimum => {
-                if second < top {
-                    second
-                } else {
-                    top
-                }
+                let second = stack.pop();
+                top = if second < top { second } else { top };
             }
             Operation::Maximum => {
-                if second > top {
-                    second
-                } else {
-                    top
-                }
+                let second = stack.pop();
+                top = if second > top { second } else { top };
             }
-            Operation::Power => elementary::power(second, top),
-            Operation::PowerOf(exponent) => elementary::power(top, exponent),
-            Operation::Negate => -top,
-            Operation::Absolute => top.abs(),
-            Operation::Square => top * top,
-            Operation::Reciprocal => 1.0 / top,
-            Operation::Exp => elementary::exp(top),
-            Operation::Log => elementary::log(top),
-            Operation::Tanh => elementary::tanh(top),
-            Operation::Sin => elementary::sin(top),
-            Operation::Cos => elementary::cos(top),
-            Operation::Atan => elementary::atan(top),
-            Operation::SquareRoot => elementary::square_root(top),
-            Operation::Sign => elementary::sign(top),
-        };
+            Operation::Power => top = elementary::power(stack.pop(), top),
+            Operation::PowerOf(exponent) => top = elementary::power(top, exponent),
+            Operation::Negate => top = -top,
+            Operation::Absolute => top = top.abs(),
+            Operation::Square => top *= top,
+            Operation::Reciprocal => top = 1.0 / top,
+            Operation::Exp => top = elementary::exp(top),
+            Operation::Log => top = elementary::log(top),
+            Operation::Tanh => top = elementary::tanh(top),
+            Operation::Sin => top = elementary::sin(top),
+            Operation::Cos => top = elementary::cos(top),
+            Operation::Atan => top = elementary::atan(top),
+            Operation::SquareRoot => top = elementary::square_root(top),
+            Operation::Sign => top = elementary::sign(top),
+            Operation::ScaledMagnitude(index, factor) => {
+                stack.push(top);
+                top = input(inputs, index).abs() * factor;
+            }
+            Operation::AddScaledInput(index, factor) => top += input(inputs, index) * factor,
+        }
     }
     top
+}
+
+/// What lies below the top of the stack.
+struct Stack {
+    below: [f32; MAX_DEPTH],
+    depth: usize,
+}
+
+// Sizes are powers of two: the masks change no index of a validated program and leave nothing to check.
+const _: () = assert!(MAX_DEPTH.is_power_of_two() && MAX_INPUTS.is_power_of_two());
+
+impl Stack {
+    #[inline(always)]
+    fn push(&mut self, value: f32) {
+        self.below[self.depth & (MAX_DEPTH - 1)] = value;
+        self.depth = self.depth.wrapping_add(1);
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> f32 {
+        self.depth = self.depth.wrapping_sub(1);
+        self.below[self.depth & (MAX_DEPTH - 1)]
+    }
+}
+
+#[inline(always)]
+fn input(inputs: &[f32; MAX_INPUTS], index: u8) -> f32 {
+    inputs[usize::from(index) & (MAX_INPUTS - 1)]
 }

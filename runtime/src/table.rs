@@ -1,7 +1,7 @@
 //! Cubic tables: finding the cell, and the cubic.
 
 use frikan_shared::pool::Pool;
-use frikan_shared::table::{Cell, Geometric, Table, Uniform};
+use frikan_shared::table::{Cell, Geometric, Side, Table, Uniform};
 
 /// Where an input lies in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,21 +25,32 @@ fn place_position(position: u32, cells: u32, first_cell: u32, sign: u32) -> Plac
     }
 }
 
-/// The place of `input` in a geometric layout; beyond the reach, and for NaN, its end.
+/// The biased position of `input` in a geometric layout, and its side; beyond the reach, and for NaN, the end.
 #[inline(always)]
-fn place_geometric(layout: &Geometric, input: f32) -> Place {
+pub(crate) fn position_geometric(layout: &Geometric, input: f32) -> (u32, &Side) {
     // A sign bit is an index below 2, which the compiler knows.
     let side = &layout.sides[(input.to_bits() >> 31) as usize];
     let width = input.abs() + layout.offset;
-    let position = width.to_bits().wrapping_sub(side.origin).min(side.last_position);
+    (width.to_bits().wrapping_sub(side.origin).min(side.last_position), side)
+}
+
+/// The position of `input` in a uniform layout; the conversion to `u32` saturates and takes NaN to the lower end.
+#[inline(always)]
+pub(crate) fn position_uniform(layout: &Uniform, input: f32) -> u32 {
+    ((input - layout.low) * layout.scale) as u32
+}
+
+/// The place of `input` in a geometric layout.
+#[inline(always)]
+fn place_geometric(layout: &Geometric, input: f32) -> Place {
+    let (position, side) = position_geometric(layout, input);
     place_position(position, side.cells_per_turn, 0, side.sign)
 }
 
-/// The place of `input` in a uniform layout; the conversion to `u32` saturates and takes NaN to the lower end.
+/// The place of `input` in a uniform layout.
 #[inline(always)]
 fn place_uniform(layout: &Uniform, input: f32) -> Place {
-    let position = ((input - layout.low) * layout.scale) as u32;
-    place_position(position, layout.cells, layout.first_cell, 0)
+    place_position(position_uniform(layout, input), layout.cells, layout.first_cell, 0)
 }
 
 /// The place of `input` in `table`.

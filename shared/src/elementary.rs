@@ -16,6 +16,8 @@
 //!
 //! Relative errors are of results above 1e-35 in magnitude.
 //!
+//! [`exp`] and [`tanh`], which friction laws are made of, are inlined; the others are calls.
+//!
 //! NaN is taken as the upper end of the range. libm's `expf`, `tanhf`, `sinf` and their like branch on the argument (61 to 188
 //! instructions for one friction law on a Cortex-M4F), and micromath errs by 0.24 % in `exp` and 6 % in `sqrt`: neither
 //! is used here. libm's square root has a fixed course for the normal numbers that it is given here.
@@ -60,7 +62,7 @@ pub fn exp(x: f32) -> f32 {
 
 /// `ln |x|`; `ln 2^-126` for zero and subnormal numbers. Polynomial of FreeBSD `e_logf.c` (Sun 1993).
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn log(x: f32) -> f32 {
     let x = at_least(at_most(x.abs(), f32::MAX), f32::MIN_POSITIVE);
     // x = 2^k m with m in [sqrt(1/2), sqrt(2)), whose lower end has the bits 0x3f3504f3.
@@ -124,7 +126,7 @@ fn less_half_turns(x: f32, turns: f32) -> f32 {
 
 /// `sin(x)`, odd, exactly 0 at 0.
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn sin(x: f32) -> f32 {
     let x = at_least(at_most(x, CIRCLE_END), -CIRCLE_END);
     let rounded = x * core::f32::consts::FRAC_1_PI + ROUND;
@@ -135,7 +137,7 @@ pub fn sin(x: f32) -> f32 {
 
 /// `cos(x)`, even.
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn cos(x: f32) -> f32 {
     let x = at_most(x.abs(), CIRCLE_END);
     let rounded = x * core::f32::consts::FRAC_1_PI - 0.5 + ROUND;
@@ -146,7 +148,7 @@ pub fn cos(x: f32) -> f32 {
 
 /// `atan(x)`, odd, exactly 0 at 0.
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn atan(x: f32) -> f32 {
     let magnitude = at_most(x.abs(), f32::MAX);
     let beyond = magnitude > 1.0;
@@ -168,7 +170,7 @@ pub fn atan(x: f32) -> f32 {
 
 /// `|x|^p` as `exp(p ln |x|)`; 0 at `x = 0` for every `p` above 0.
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn power(x: f32, p: f32) -> f32 {
     let result = exp(p * log(x));
     if (x == 0.0) & (p > 0.0) { 0.0 } else { result }
@@ -176,7 +178,7 @@ pub fn power(x: f32, p: f32) -> f32 {
 
 /// `sqrt |x|`; subnormal numbers count as zero.
 #[must_use]
-#[inline]
+#[inline(never)]
 pub fn square_root(x: f32) -> f32 {
     let magnitude = at_most(x.abs(), f32::MAX);
     let root = libm::sqrtf(at_least(magnitude, f32::MIN_POSITIVE));

@@ -67,6 +67,10 @@ pub enum Operation {
     SquareRoot,
     /// `-1`, `0` or `1` with the sign of `a`; `0` for NaN.
     Sign,
+    /// Pushes the magnitude of an input, held to its trained range, times a factor.
+    ScaledMagnitude(u8, f32),
+    /// `a` plus an input, held to its trained range, times a factor.
+    AddScaledInput(u8, f32),
 }
 
 /// What is wrong with a program.
@@ -91,8 +95,13 @@ impl Operation {
     fn demands(self) -> (usize, Option<f32>) {
         match self {
             Self::Input(_) => (0, None),
-            Self::ScaledInput(_, constant) | Self::Constant(constant) => (0, Some(constant)),
-            Self::Scale(constant) | Self::Offset(constant) | Self::PowerOf(constant) => (1, Some(constant)),
+            Self::ScaledInput(_, constant) | Self::ScaledMagnitude(_, constant) | Self::Constant(constant) => {
+                (0, Some(constant))
+            }
+            Self::Scale(constant)
+            | Self::Offset(constant)
+            | Self::PowerOf(constant)
+            | Self::AddScaledInput(_, constant) => (1, Some(constant)),
             Self::Add
             | Self::Subtract
             | Self::Multiply
@@ -131,7 +140,10 @@ impl Program {
     pub fn check(&self, inputs: usize) -> Result<(), ProgramFault> {
         let mut depth = 0usize;
         for &operation in &self.operations {
-            if let Operation::Input(index) | Operation::ScaledInput(index, _) = operation
+            if let Operation::Input(index)
+            | Operation::ScaledInput(index, _)
+            | Operation::ScaledMagnitude(index, _)
+            | Operation::AddScaledInput(index, _) = operation
                 && usize::from(index) >= inputs
             {
                 return Err(ProgramFault::NoSuchInput);

@@ -1,12 +1,27 @@
-//! A Kolmogorov-Arnold network as tables: every edge a cubic table, SiLU base and scale already folded in.
+//! A Kolmogorov-Arnold network as tables: every edge a cubic in integers, SiLU base and scale already folded in.
 //!
-//! All edges that leave one node share the node's cell layout, so that the cell is found once per node. The cells
-//! of those edges lie side by side: row `r` of a source with `k` targets is the pool's cells
-//! `first_cell + r k .. first_cell + (r + 1) k`, one for each target.
+//! Only the inputs are floating point. Each finds its place in a [`Table`] layout, once for all of its edges: the cell, and the way
+//! through it as a [`Coordinate`]. From there on everything is a 32-bit integer, so that the sums of the nodes are exact and the next
+//! cell is found by one product. The cells of the edges that leave one source lie side by side: row `r` of a source with `k`
+//! targets is the pool's cells `first_cell + r k .. first_cell + (r + 1) k`, one for each target.
+//!
+//! A cell holds integers `a0..a3`. With the coordinate `x` in `[0, 2^31)` and `high(p) = floor(p / 2^32)` its value is
+//!
+//! ```text
+//! a0 + high(x (a1 + high(x (a2 + high(x a3)))))
+//! ```
+//!
+//! so that `a_k` is `2^k` times the coefficient of the `k`-th power of the way from 0 to 1.
+//!
+//! A sum `s` in an additive node of a hidden layer lies in `[0, 2^31)`, the whole range of its outgoing edges. A multiplicative node has
+//! two sums `s` and `t` of either sign, and its value in that range is `2^30 + high(s t)`. The last sum is the output in steps. That the
+//! cells of a network keep to all of this is validated, for every input there can be.
+
+mod check;
 
 use serde::{Deserialize, Serialize};
 
-use crate::table::Table;
+use crate::table::{Cell, Table};
 
 /// Most layers of edges of a network.
 pub const MAX_LAYERS: usize = 4;
@@ -14,66 +29,80 @@ pub const MAX_LAYERS: usize = 4;
 /// Most nodes that edges can reach in one layer, before products are taken.
 pub const MAX_WIDTH: usize = 16;
 
-/// Most nodes with outgoing edges, over all layers.
-pub const MAX_SOURCES: usize = 16;
+/// The way through a cell, `2^31` for the whole of it.
+pub type Coordinate = i32;
 
-/// A node with outgoing edges: the layout that its edges share.
+/// Position in the middle of a hidden node's range.
+pub const MIDDLE: i32 = 1 << 30;
+
+/// An input: the layout that its edges share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Source {
-    /// Layout of the edges, in rows; its own first cell is 0.
+    /// Layout of the edges, in rows; its own first cell is 0, and it is not odd.
     pub table: Table,
     /// Index in the pool of the first row.
     pub first_cell: u16,
 }
 
-/// A layer of edges with the nodes at its end.
+/// A hidden layer: the nodes at the end of its edges, and what leaves them.
 ///
-/// Edges add up in `additive + 2 products` nodes. The layer's outputs are the first `additive` of these, followed by
-/// the products of consecutive pairs of the others (multiplicative nodes; Liu et al. 2024, KAN 2.0).
+/// Edges add up in `additive + 2 products` sums. The layer's nodes are the first `additive` of these, followed by
+/// the products of consecutive pairs of the others (multiplicative nodes; Liu et al. 2024, KAN 2.0). The edges of every node have
+/// as many rows, of equal width over the node's range; those of one node follow those of the node before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Layer {
     /// Additive nodes.
     pub additive: u8,
     /// Multiplicative nodes of two factors.
     pub products: u8,
+    /// Rows of each node, at least 1.
+    pub rows: u16,
+    /// Index in the pool of the first node's first row.
+    pub first_cell: u16,
 }
 
 impl Layer {
-    /// Nodes in which edges add up.
+    /// Sums in which edges end.
     #[must_use]
     pub fn targets(self) -> usize {
         usize::from(self.additive) + 2 * usize::from(self.products)
     }
 
-    /// Outputs of the layer.
+    /// Nodes of the layer.
     #[must_use]
-    pub fn outputs(self) -> usize {
+    pub fn nodes(self) -> usize {
         usize::from(self.additive) + usize::from(self.products)
     }
 }
 
-/// What becomes of the sum at the end of the network.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Outer {
-    /// It is the output.
-    Linear,
-    /// The output is `offset + scale * tanh(sum)`.
-    Tanh {
-        /// Amplitude, in the unit of the output.
-        scale: f32,
-        /// Centre, in the unit of the output.
-        offset: f32,
-    },
-}
-
-/// A network of tables. The sources of the first layer are the model's inputs in their order, those of every later
-/// layer the outputs of the layer before; the last layer has one output.
+/// A network of tables. After the last hidden layer all edges end in one sum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
-    /// Layers from input to output.
-    pub layers: heapless::Vec<Layer, MAX_LAYERS>,
-    /// Sources of all layers, one after the other.
-    pub sources: heapless::Vec<Source, MAX_SOURCES>,
-    /// What becomes of the last sum.
-    pub outer: Outer,
+    /// The model's inputs in their order.
+    pub sources: heapless::Vec<Source, { crate::model::MAX_INPUTS }>,
+    /// Hidden layers from input to output.
+    pub layers: heapless::Vec<Layer, { MAX_LAYERS - 1 }>,
+    /// Unit of the output for each step of the last sum, positive and finite.
+    pub output_step: f32,
+}
+
+/// Units by which the flooring of the evaluation and the whole numbers of its bound are off together, at most.
+const FLOORING: i64 = 8;
+
+impl Cell {
+    /// The range of the value of a cell of a network, as it is evaluated: between the least and the largest of the cubic's Bernstein
+    /// coefficients, give or take the flooring. `None` where a partial sum could exceed 32 bits.
+    #[must_use]
+    pub fn integer_range(&self) -> Option<(i64, i64)> {
+        let [a0, a1, a2, a3] = self.integers().map(i64::from);
+        let limit = i64::from(i32::MAX);
+        // A product with the coordinate halves the magnitude.
+        let second = a2.abs() + a3.abs() / 2 + 1;
+        let first = a1.abs() + second / 2 + 1;
+        let [d1, d2, d3] = [a1 / 2, a2 / 4, a3 / 8];
+        let bernstein = [a0, a0 + d1 / 3, a0 + (2 * d1 + d2) / 3, a0 + d1 + d2 + d3];
+        let low = bernstein.into_iter().fold(i64::MAX, i64::min) - FLOORING;
+        let high = bernstein.into_iter().fold(i64::MIN, i64::max) + FLOORING;
+        (second <= limit && first <= limit && low >= -limit && high <= limit).then_some((low, high))
+    }
 }

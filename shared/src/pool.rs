@@ -10,10 +10,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::table::Cell;
 
 /// Room for `CELLS` cells, of which the first ones are used. A power of two is best: [`Pool::at`] is then one mask.
+///
+/// The length comes first in memory: loads with an offset are the shorter ones.
 #[derive(Clone)]
+#[repr(C)]
 pub struct Pool<const CELLS: usize> {
-    cells: [Cell; CELLS],
     length: usize,
+    cells: [Cell; CELLS],
 }
 
 /// More cells than the pool has room for.
@@ -25,7 +28,7 @@ impl<const CELLS: usize> Pool<CELLS> {
     #[must_use]
     pub const fn new() -> Self {
         const { assert!(CELLS > 0, "a pool has room for a cell at least") };
-        Self { cells: [Cell::ZERO; CELLS], length: 0 }
+        Self { length: 0, cells: [Cell::ZERO; CELLS] }
     }
 
     /// The cells of a slice.
@@ -56,6 +59,13 @@ impl<const CELLS: usize> Pool<CELLS> {
         let row = row as usize;
         let inside = if CELLS.is_power_of_two() { row & (CELLS - 1) } else { row.min(CELLS - 1) };
         &self.cells[inside]
+    }
+
+    /// The cell of a row, `None` beyond the room.
+    #[must_use]
+    #[inline(always)]
+    pub fn within(&self, row: u32) -> Option<&Cell> {
+        self.cells.get(row as usize)
     }
 
     /// Forgets all cells after the first `length`.

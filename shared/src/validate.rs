@@ -3,9 +3,8 @@
 
 use crate::effect::{Effect, Kind};
 use crate::expression::ProgramFault;
-use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_INPUT, MAX_SHIFT};
+use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_SEGMENT_CELLS};
 use crate::model::{Input, Law, Model, RigidBody};
-use crate::network::{MAX_WIDTH, Network, Outer};
 use crate::table::{Cell, Table};
 use crate::units::Quantity;
 
@@ -19,7 +18,7 @@ pub enum InvalidModel {
     DuplicateInput,
     /// The trained range of an input is empty, inverted, not finite, or beyond 1e9.
     InputRange,
-    /// The output limit is not a positive finite number, or the only table of the law exceeds it.
+    /// The output limit is not a positive finite number, or the tables of the law exceed it.
     OutputLimit,
     /// A rigid-body parameter is not finite.
     RigidBody,
@@ -46,7 +45,7 @@ pub enum InvalidModel {
 /// Largest magnitude of a trained range and of a coefficient: keeps every sum of a table and of a state finite.
 const LARGEST: f32 = 1.0e9;
 
-fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
+pub(crate) fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
 
@@ -55,7 +54,7 @@ fn bounded(x: f32) -> bool {
 }
 
 /// A scale by which something is divided.
-fn scale(x: f32) -> bool {
+pub(crate) fn scale(x: f32) -> bool {
     (1.0 / LARGEST..=LARGEST).contains(&x)
 }
 
@@ -75,21 +74,17 @@ impl<const CELLS: usize> Model<CELLS> {
         match &self.law {
             Law::Geometric(layout) => self.check_only_table(Table::Geometric(*layout))?,
             Law::Uniform(layout) => self.check_only_table(Table::Uniform(*layout))?,
-            Law::Network(network) => check_network(network, self.inputs.len(), &self.cells)?,
+            Law::Network(network) => network.check(self.inputs.len(), &self.cells, self.output_limit)?,
             Law::Expression(program) => program.check(self.inputs.len()).map_err(InvalidModel::Program)?,
-            Law::IntegerTable(table) => {
-                ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
-                check_integer_table(table, &self.cells)?;
-            }
+            Law::IntegerTable(table) => check_integer_table(table, &self.cells)?,
         }
         self.check_effects()
     }
 
     fn check_only_table(&self, table: Table) -> Result<(), InvalidModel> {
-        ensure(self.inputs.len() == 1, InvalidModel::LawInputs)?;
-        check_table(&table, table.first_cell() as usize, 1, &self.cells)?;
-        let columns = self.cells.iter().skip(table.first_cell() as usize).take(table.cells() as usize);
-        ensure(columns.into_iter().all(|cell| cell.bound() <= self.output_limit), InvalidModel::OutputLimit)
+        check_table(&table, &self.cells)?;
+        let mut column = rows(&self.cells, table.first_cell(), table.cells(), 1)?.iter();
+        ensure(column.all(|cell| cell.bound() <= self.output_limit), InvalidModel::OutputLimit)
     }
 
     fn check_effects(&self) -> Result<(), InvalidModel> {
@@ -102,7 +97,7 @@ impl<const CELLS: usize> Model<CELLS> {
                 ensure(has(channel), InvalidModel::EffectInput)?;
             }
             if let Effect::PositionTable { table, .. } = effect {
-                check_table(table, table.first_cell() as usize, 1, &self.cells)?;
+                check_table(table, &self.cells)?;
             }
         }
         let lags = self.effects.iter().filter(|effect| matches!(effect, Effect::FrictionalLag { .. })).count();
@@ -121,8 +116,8 @@ fn check_inputs(inputs: &[Input]) -> Result<(), InvalidModel> {
     Ok(())
 }
 
-fn check_table(table: &Table, first: usize, columns: usize, cells: &[Cell]) -> Result<(), InvalidModel> {
-    let shape_holds = match table {
+pub(crate) fn check_layout(table: &Table) -> Result<(), InvalidModel> {
+    let holds = match table {
         Table::Geometric(layout) => {
             let shape = layout.shape();
             (-60..=60).contains(&shape.offset_exponent)
@@ -136,51 +131,34 @@ fn check_table(table: &Table, first: usize, columns: usize, cells: &[Cell]) -> R
             shape.cells >= 1 && bounded(shape.low) && bounded(shape.high) && scale(shape.high - shape.low)
         }
     };
-    ensure(shape_holds, InvalidModel::TableShape)?;
-    let end = first.saturating_add(table.cells() as usize * columns);
-    let cells = cells.get(first..end).ok_or(InvalidModel::CellOutOfPool)?;
+    ensure(holds, InvalidModel::TableShape)
+}
+
+fn check_table(table: &Table, cells: &[Cell]) -> Result<(), InvalidModel> {
+    check_layout(table)?;
+    let cells = rows(cells, table.first_cell(), table.cells(), 1)?;
     let usable = |coefficient: f32| coefficient == 0.0 || (coefficient.is_normal() && bounded(coefficient));
     ensure(cells.iter().all(|cell| cell.floats().into_iter().all(usable)), InvalidModel::Coefficient)
 }
 
-fn check_network(network: &Network, inputs: usize, cells: &[Cell]) -> Result<(), InvalidModel> {
-    let mut sources = network.sources.iter();
-    let mut width = inputs;
-    ensure(!network.layers.is_empty(), InvalidModel::NetworkShape)?;
-    for layer in &network.layers {
-        ensure((1..=MAX_WIDTH).contains(&layer.targets()), InvalidModel::NetworkShape)?;
-        for _ in 0..width {
-            let source = sources.next().ok_or(InvalidModel::NetworkShape)?;
-            ensure(source.table.first_cell() == 0, InvalidModel::NetworkShape)?;
-            check_table(&source.table, usize::from(source.first_cell), layer.targets(), cells)?;
-        }
-        width = layer.outputs();
-    }
-    ensure(width == 1 && sources.next().is_none(), InvalidModel::NetworkShape)?;
-    match network.outer {
-        Outer::Linear => Ok(()),
-        Outer::Tanh { scale, offset } => ensure(bounded(scale) && bounded(offset), InvalidModel::NetworkShape),
-    }
+/// The cells of `count` rows of `columns` cells.
+pub(crate) fn rows(cells: &[Cell], first: u32, count: u32, columns: usize) -> Result<&[Cell], InvalidModel> {
+    let first = first as usize;
+    cells.get(first..first.saturating_add(count as usize * columns)).ok_or(InvalidModel::CellOutOfPool)
 }
 
 fn check_integer_table(table: &IntegerTable, cells: &[Cell]) -> Result<(), InvalidModel> {
     let shape = table.shape();
-    let shape_holds = shape.inner_shift <= shape.outer_shift
-        && shape.outer_shift <= MAX_SHIFT
-        && shape.outer_shift <= shape.split_shift
-        && shape.split_shift <= 23
-        && shape.reach >= 1 << shape.split_shift
-        && shape.reach <= MAX_INPUT
+    let shape_holds = shape.cells.iter().all(|cells| (1..=MAX_SEGMENT_CELLS).contains(cells))
         && scale(shape.input_step)
         && scale(shape.output_step);
     ensure(shape_holds, InvalidModel::TableShape)?;
-    let first = usize::from(shape.first_cell);
-    let cells = cells.get(first..first.saturating_add(table.cells() as usize)).ok_or(InvalidModel::CellOutOfPool)?;
+    let cells = rows(cells, u32::from(shape.first_cell), table.cells(), 1)?;
     let usable = |cell: &Cell| {
         let [c0, c1, c2, c3] = cell.integers().map(|coefficient| i64::from(coefficient).abs());
         let limit = i64::from(MAX_COEFFICIENT);
-        // Each partial sum of the evaluation is at most the sum of the magnitudes behind it.
-        c0 <= limit * limit / 2 && c1 + c2 + c3 + 3 <= 2 * limit
+        // Each partial sum of the evaluation is at most the sum of the magnitudes behind it, and a step for each shift.
+        c0 <= limit * limit / 2 && c1 + c2 + c3 + 3 <= limit
     };
     ensure(cells.iter().all(usable), InvalidModel::Coefficient)
 }

@@ -1,5 +1,6 @@
 //! What a model costs on a target: instructions, flash, RAM, stack, decoding.
 
+use frikan_shared::integer_table::REACH_BITS;
 use frikan_trainer::emulator::{Answer, Emulator, Mode, Request};
 use frikan_trainer::error::Result;
 
@@ -31,8 +32,9 @@ pub fn count(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
 ///
 /// # Errors
 /// Those of [`Emulator::run`].
-pub fn count_integer(emulator: &Emulator, model: &TestModel, reach: i32) -> Result<Answer> {
-    let rows: Vec<f32> = counts(COUNTED_ROWS, reach, 2).into_iter().map(|count| f32::from_bits(count as u32)).collect();
+pub fn count_integer(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
+    let rows: Vec<f32> =
+        counts(COUNTED_ROWS, 1 << REACH_BITS, 2).into_iter().map(|count| f32::from_bits(count as u32)).collect();
     count_rows(emulator, &models::image(model), &rows, 1)
 }
 

@@ -2,9 +2,9 @@
 
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::image::{Image, encode};
-use frikan_runtime::shared::integer_table::{IntegerShape, IntegerTable};
+use frikan_runtime::shared::integer_table::{IntegerShape, IntegerTable, SEGMENT_BITS, SEGMENTS};
 use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
-use frikan_runtime::shared::network::{Layer, Network, Outer, Source};
+use frikan_runtime::shared::network::{Layer, MIDDLE, Network, Source};
 use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 use frikan_runtime::shared::units::{Quantity, Unit};
 
@@ -127,103 +127,128 @@ pub fn uniform() -> TestModel {
 /// The formula of [`stribeck_friction`].
 #[must_use]
 pub fn stribeck_expression() -> TestModel {
-    use Operation::{Absolute, Add, Exp, Multiply, Offset, Scale, ScaledInput, Tanh};
+    use Operation::{AddScaledInput, Exp, Multiply, Offset, Scale, ScaledInput, ScaledMagnitude, Tanh};
     let operations = [
-        ScaledInput(0, 10.0),
-        Absolute,
-        Scale(-1.0),
+        ScaledMagnitude(0, -10.0),
         Exp,
         Scale(8.0),
         Offset(22.0),
         ScaledInput(0, 50.0),
         Tanh,
         Multiply,
-        ScaledInput(0, 0.03),
-        Add,
+        AddScaledInput(0, 0.03),
     ];
     model(&[2.0], Law::Expression(Program { operations: operations.into_iter().collect() }), &[])
 }
 
-/// Symmetric friction in an integer table: 2^-16 rad/s a step in, 1/1000 N m a step out.
+/// Symmetric friction in an integer table: 2^-17 rad/s a step in, 1/1000 N m a step out.
 #[must_use]
 pub fn integer_table() -> TestModel {
-    let shape = IntegerShape {
-        first_cell: 0,
-        inner_shift: 9,
-        outer_shift: 13,
-        split_shift: 13,
-        symmetry: Symmetry::Odd,
-        reach: 1 << 17,
-        input_step: 1.0 / 65_536.0,
-        output_step: 1e-3,
-    };
-    let steps = |step: f64| stribeck_friction(step / 65_536.0) / 1e-3;
-    let narrow = (0..16).map(|index| (f64::from(index) * 512.0, 512.0));
-    let wide = (1..16).map(|index| (f64::from(index) * 8192.0, 8192.0));
-    let cells = narrow.chain(wide).map(|(start, width)| {
-        Cell::from_integers(hermite(steps, start, start + width).map(|coefficient| coefficient.round() as i32))
-    });
-    let cells: Vec<_> = cells.collect();
-    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &cells)
+    let step = 1.0 / 131_072.0;
+    let mut cells = [1; SEGMENTS];
+    cells[..3].copy_from_slice(&[16, 4, 2]);
+    let shape = IntegerShape { first_cell: 0, cells, symmetry: Symmetry::Odd, input_step: step, output_step: 1e-3 };
+    let steps = |position: f64| stribeck_friction(position * f64::from(step)) / 1e-3;
+    let pool: Vec<_> = (0u32..)
+        .zip(cells)
+        .flat_map(|(segment, count)| {
+            let width = f64::from(1 << SEGMENT_BITS) / f64::from(count);
+            (0..count).map(move |cell| (f64::from(segment << SEGMENT_BITS) + width * f64::from(cell), width))
+        })
+        .map(|(start, width)| {
+            Cell::from_integers(hermite(steps, start, start + width).map(|coefficient| coefficient.round() as i32))
+        })
+        .collect();
+    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &pool)
 }
 
 /// A network `[1,5,1]` whose inner edges are shifted sigmoids.
 #[must_use]
 pub fn network_1_5_1() -> TestModel {
-    network(1, 5, 0, 0.0)
+    network(1, &[(5, 0)])
 }
 
 /// A network of two inputs, `[2,[3,1],1]`: three sums and a product.
 #[must_use]
 pub fn network_two_inputs() -> TestModel {
-    network(2, 3, 1, 0.1)
+    network(2, &[(3, 1)])
 }
 
-/// A network of three inputs, `[3,4,1]`.
+/// A network of three inputs, `[3,3,2,1]`.
 #[must_use]
 pub fn network_three_inputs() -> TestModel {
-    network(3, 4, 0, 0.05)
+    network(3, &[(3, 0), (2, 0)])
 }
 
-/// A network of `inputs` inputs over a hidden layer of `additive` sums and `products` products, with an outer tanh where
-/// `outer` is not zero.
-fn network(inputs: usize, additive: u8, products: u8, outer: f32) -> TestModel {
+/// Rows of a test network's inputs and of its nodes.
+const INPUT_ROWS: u16 = 8;
+const NODE_ROWS: u16 = 4;
+
+/// Steps of a test network's output in one N m.
+const OUTPUT_STEPS: f64 = 16_777_216.0;
+
+/// A network over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have `[-1, 1]` for
+/// their range.
+fn network(inputs: usize, shapes: &[(u8, u8)]) -> TestModel {
     let reaches = &[2.0, 30.0, 60.0][..inputs];
-    let hidden = Layer { additive, products };
-    let output = Layer { additive: 1, products: 0 };
+    let layer = |&(additive, products)| Layer { additive, products, rows: NODE_ROWS, first_cell: 0 };
+    let mut layers: heapless::Vec<Layer, _> = shapes.iter().map(layer).collect();
     let mut pool = Vec::new();
-    let mut sources = heapless::Vec::new();
-    for (input, reach) in reaches.iter().enumerate() {
-        let edge = |target: usize| {
-            let centre = 0.2 * target as f64 - 0.3;
-            move |value: f64| (3.0 * (value / f64::from(*reach)) - centre + 0.1 * input as f64).tanh()
-        };
-        push_source(&mut sources, &mut pool, 4, *reach, hidden.targets(), edge);
+    let first = layers[0];
+    let sources = reaches.iter().enumerate().map(|(input, reach)| {
+        let edges: Vec<_> = (0..first.targets())
+            .map(|target| {
+                let centre = 0.2 * target as f64 - 0.3 - 0.1 * input as f64;
+                into_target(first, target, inputs, move |share: f64| (3.0 * share - centre).tanh())
+            })
+            .collect();
+        let layout = UniformShape { first_cell: 0, cells: INPUT_ROWS, low: -reach, high: *reach };
+        Source { table: Table::Uniform(Uniform::new(layout)), first_cell: push_rows(&mut pool, INPUT_ROWS, &edges) }
+    });
+    let sources = sources.collect();
+    for index in 0..layers.len() {
+        let next = layers.get(index + 1).copied();
+        let layer = &mut layers[index];
+        layer.first_cell = pool.len() as u16;
+        for node in 0..layer.nodes() {
+            let sine = move |share: f64| (1.5 * share + 0.3 * node as f64).sin();
+            let edges: Vec<Edge> = match next {
+                Some(next) => (0..next.targets()).map(|t| into_target(next, t, layer.nodes(), sine)).collect(),
+                None => vec![Box::new(move |share| 6.0 * OUTPUT_STEPS * sine(share))],
+            };
+            push_rows(&mut pool, NODE_ROWS, &edges);
+        }
     }
-    for node in 0..hidden.outputs() {
-        push_source(&mut sources, &mut pool, 4, 3.0, 1, |_| move |value: f64| 6.0 * (value + 0.3 * node as f64).sin());
-    }
-    let outer = if outer == 0.0 { Outer::Linear } else { Outer::Tanh { scale: 40.0 * outer, offset: 0.5 } };
-    let layers = [hidden, output].into_iter().collect();
-    model(reaches, Law::Network(Network { layers, sources, outer }), &pool)
+    let network = Network { sources, layers, output_step: (1.0 / OUTPUT_STEPS) as f32 };
+    model(reaches, Law::Network(network), &pool)
 }
 
-/// Adds a source whose `targets` edges share a uniform layout of `rows` rows over `[-reach, reach]`.
-fn push_source<const N: usize, F: Fn(f64) -> f64>(
-    sources: &mut heapless::Vec<Source, N>,
-    pool: &mut Vec<Cell>,
-    rows: u16,
-    reach: f32,
-    targets: usize,
-    edge: impl Fn(usize) -> F,
-) {
-    let columns: Vec<_> = (0..targets).map(|target| uniform_table(edge(target), rows, -reach, reach)).collect();
-    let first_cell = pool.len() as u16;
-    for row in 0..usize::from(rows) {
-        pool.extend(columns.iter().map(|(_, cells)| cells[row]));
+/// A function over `[-1, 1]`, in steps of what it ends in.
+type Edge = Box<dyn Fn(f64) -> f64>;
+
+/// `f`, which stays within `[-1, 1]`, as one of `sources` edges into a sum, with a third of the sum's range to spare.
+fn into_target(layer: Layer, target: usize, sources: usize, f: impl Fn(f64) -> f64 + 'static) -> Edge {
+    let share = 1.0 / (1.5 * sources as f64);
+    if target < usize::from(layer.additive) {
+        // The middle of the sum's range is in equal parts in its edges.
+        Box::new(move |x| (share * f(x) + 1.0 / sources as f64) * f64::from(MIDDLE))
+    } else {
+        Box::new(move |x| 2.0 * share * f(x) * f64::from(MIDDLE))
     }
-    let source = Source { table: columns[0].0, first_cell };
-    sources.push(source).expect("the test's networks are small");
+}
+
+/// Adds `rows` rows of equal width of the edges, and returns the number of the first cell.
+fn push_rows(pool: &mut Vec<Cell>, rows: u16, edges: &[Edge]) -> u16 {
+    let first_cell = pool.len() as u16;
+    let width = 2.0 / f64::from(rows);
+    for row in 0..rows {
+        let start = width * f64::from(row) - 1.0;
+        pool.extend(edges.iter().map(|edge| {
+            let [c0, c1, c2, c3] = hermite(edge, start, start + width);
+            Cell::from_integers([c0, 2.0 * c1, 4.0 * c2, 8.0 * c3].map(|coefficient| coefficient.round() as i32))
+        }));
+    }
+    first_cell
 }
 
 /// Every kind of model that is evaluated in floating point, by its name.

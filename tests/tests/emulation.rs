@@ -2,12 +2,14 @@
 
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::integer_table::evaluate_integer;
+use frikan_runtime::shared::integer_table::REACH_BITS;
 use frikan_runtime::shared::model::Law;
+use frikan_tests::exhaustive;
 use frikan_tests::models::{self, TestModel};
 use frikan_tests::vectors::{counts, one_input, space_filling};
 use frikan_trainer::emulator::{Emulator, Firmware, Mode, Request};
 
-/// Inputs of the comparison of a one-input table, in floating point and in integers.
+/// Inputs of the comparison of a one-input table, in floating point and in integers; of every model with `FRIKAN_EXHAUSTIVE=1`.
 const TABLE_ROWS: usize = 1_000_000;
 
 /// Rows of every other comparison.
@@ -40,7 +42,7 @@ fn compare(emulator: &Emulator, name: &str, model: &TestModel, rows: usize, floa
 fn every_kind_agrees_on(target: &str) {
     let emulator = Emulator::new(target).unwrap();
     for (name, model) in models::every_kind() {
-        let rows = if name == "symmetric table" { TABLE_ROWS } else { ROWS };
+        let rows = if exhaustive() || name == "symmetric table" { TABLE_ROWS } else { ROWS };
         compare(&emulator, name, &model, rows, 0);
     }
 }
@@ -50,7 +52,7 @@ fn integer_table_agrees_on(target: &str) {
     let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-integer").unwrap();
     let model = models::integer_table();
     let Law::IntegerTable(table) = &model.law else { unreachable!() };
-    let steps = counts(TABLE_ROWS, 1 << 17, 3);
+    let steps = counts(TABLE_ROWS, 1 << REACH_BITS, 3);
     let values: Vec<f32> = steps.iter().map(|count| f32::from_bits(*count as u32)).collect();
     let image = models::image(&model);
     let request =
@@ -102,6 +104,8 @@ fn flush_to_zero_and_default_nan_do_not_change_tables() {
     for control in [1 << 24, 1 << 25, 3 << 24] {
         compare(&emulator, "symmetric table", &models::symmetric_table(), ROWS, control);
         compare(&emulator, "sided table", &models::sided_table(), ROWS, control);
+        compare(&emulator, "uniform table", &models::uniform(), ROWS, control);
+        compare(&emulator, "network [1,5,1]", &models::network_1_5_1(), ROWS, control);
     }
 }
 

@@ -22,22 +22,18 @@ fn every_kind_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
     }
 }
 
-/// Most by which the integer table may differ: the choice of its zone and of the sign are short branches on cores without
-/// conditional execution.
-const INTEGER_SPREAD: u32 = 2;
-
-fn integer_table_is_nearly_constant_on(target: &str, budget: u32) {
+fn integer_table_is_constant_on(target: &str, budget: u32) {
     let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-integer").unwrap();
-    let answer = count_integer(&emulator, &models::integer_table(), 1 << 17).unwrap();
+    let answer = count_integer(&emulator, &models::integer_table()).unwrap();
     let (fewest, most) = answer.instruction_range().unwrap();
-    assert!(most - fewest <= INTEGER_SPREAD, "the integer table on {target} takes {fewest} to {most} instructions");
+    assert_eq!(fewest, most, "the integer table on {target} is not constant");
     assert!(most <= budget, "the integer table on {target} takes {most} instructions, {budget} at most");
 }
 
 #[test]
 fn every_kind_is_constant_on_cortex_m4f() {
     let budgets =
-        [("symmetric table", 45), ("sided table", 45), ("network [1,5,1]", 800), ("Stribeck expression", 420)];
+        [("symmetric table", 45), ("sided table", 45), ("network [1,5,1]", 200), ("Stribeck expression", 250)];
     every_kind_is_constant_on("cortex-m4f", &budgets);
 }
 
@@ -52,18 +48,18 @@ fn every_kind_is_constant_on_cortex_m33() {
 }
 
 #[test]
-fn the_integer_table_is_nearly_constant_on_cortex_m0plus() {
-    integer_table_is_nearly_constant_on("cortex-m0plus", 68);
+fn the_integer_table_is_constant_on_cortex_m0plus() {
+    integer_table_is_constant_on("cortex-m0plus", 50);
 }
 
 #[test]
-fn the_integer_table_is_nearly_constant_on_riscv32imac() {
-    integer_table_is_nearly_constant_on("riscv32imac", 48);
+fn the_integer_table_is_constant_on_riscv32imac() {
+    integer_table_is_constant_on("riscv32imac", 45);
 }
 
 #[test]
-fn the_integer_table_is_nearly_constant_on_riscv32imc() {
-    integer_table_is_nearly_constant_on("riscv32imc", 48);
+fn the_integer_table_is_constant_on_riscv32imc() {
+    integer_table_is_constant_on("riscv32imc", 45);
 }
 
 /// Without a floating-point unit the float table does take its time by the input: the count sees the difference.

@@ -131,7 +131,6 @@ fn models_that_cannot_be_evaluated_are_refused() {
     refused(&|model| model.inputs[0].low = 3.0, InvalidModel::InputRange);
     refused(&|model| model.inputs[0].high = f32::INFINITY, InvalidModel::InputRange);
     refused(&|model| model.inputs.push(input(Quantity::Velocity)).unwrap(), InvalidModel::DuplicateInput);
-    refused(&|model| model.inputs.push(input(Quantity::Load)).unwrap(), InvalidModel::LawInputs);
     refused(&|model| model.output_limit = f32::NAN, InvalidModel::OutputLimit);
     refused(&|model| model.output_limit = 0.0, InvalidModel::OutputLimit);
     refused(&|model| model.output_limit = 20.0, InvalidModel::OutputLimit);

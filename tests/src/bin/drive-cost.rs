@@ -72,7 +72,7 @@ fn append_target(page: &mut String, firmware: &Firmware, name: &str) -> Result<(
     }
     let integer = Emulator::with_binary(firmware, name, "emulate-integer")?;
     let model = models::integer_table();
-    append_model(page, "integer table, counts in and out", &model, &count_integer(&integer, &model, 1 << 17)?);
+    append_model(page, "integer table, counts in and out", &model, &count_integer(&integer, &model)?);
     Ok(())
 }
 

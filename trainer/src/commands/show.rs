@@ -114,9 +114,9 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         Law::IntegerTable(table) => writeln!(out, "law         integer table of {} cubic cells", table.cells())?,
         Law::Network(network) => writeln!(
             out,
-            "law         network of {} layers and {} nodes with outgoing tables",
-            network.layers.len(),
-            network.sources.len()
+            "law         network of {} inputs and {} hidden nodes, its edges integer tables",
+            network.sources.len(),
+            network.layers.iter().map(|layer| layer.nodes()).sum::<usize>()
         )?,
         Law::Expression(program) => {
             let names: Vec<&str> = model.inputs.iter().map(|input| input.quantity.name()).collect();

@@ -4,19 +4,22 @@
 
 use frikan_shared::expression::{Operation, Program};
 use frikan_shared::model::{Law, Model};
-use frikan_shared::network::{Network, Outer};
+use frikan_shared::network::Network;
 
 /// Of a program of no operations, the call included.
-const PROGRAM: u32 = 98;
-/// Of a table with cells that grow from zero, of equal cells, and of integers.
-const GEOMETRIC_TABLE: u32 = 45;
-const UNIFORM_TABLE: u32 = 73;
-const INTEGER_TABLE: u32 = 50;
-/// Of a layer, of a node whose place in its table is found, of an edge, and of a hyperbolic tangent at the end.
-const LAYER: u32 = 203;
-const SOURCE: u32 = 23;
+const PROGRAM: u32 = 76;
+/// Of a table with cells that grow from zero, of equal cells, and of integers from and to floating point.
+const GEOMETRIC_TABLE: u32 = 41;
+const UNIFORM_TABLE: u32 = 36;
+const INTEGER_TABLE: u32 = 70;
+/// Of a network of one input and one hidden layer of sums, and of each of its nodes.
+const ONE_HIDDEN_LAYER: u32 = 52;
+const NODE: u32 = 29;
+/// Of any other network, and of a hidden layer, of an input or node whose place is found, and of an edge in it.
+const NETWORK: u32 = 109;
+const LAYER: u32 = 89;
+const PLACE: u32 = 23;
 const EDGE: u32 = 25;
-const TANH_AT_END: u32 = 65;
 
 /// Instructions of one evaluation of the law of a model, without effects.
 #[must_use]
@@ -25,20 +28,26 @@ pub fn instructions<const CELLS: usize>(model: &Model<CELLS>) -> u32 {
         Law::Geometric(_) => GEOMETRIC_TABLE,
         Law::Uniform(_) => UNIFORM_TABLE,
         Law::IntegerTable(_) => INTEGER_TABLE,
-        Law::Network(network) => of_network(network, model.inputs.len()),
+        Law::Network(network) => of_network(network),
         Law::Expression(program) => of_program(program),
     }
 }
 
-fn of_network(network: &Network, inputs: usize) -> u32 {
-    let mut width = inputs;
-    let mut edges = 0;
+fn of_network(network: &Network) -> u32 {
+    if let ([_], [layer]) = (network.sources.as_slice(), network.layers.as_slice())
+        && layer.products == 0
+    {
+        return ONE_HIDDEN_LAYER + NODE * u32::from(layer.additive);
+    }
+    let mut width = network.sources.len();
+    let (mut places, mut edges) = (width, 0);
     for layer in &network.layers {
         edges += width * layer.targets();
-        width = layer.outputs();
+        width = layer.nodes();
+        places += width;
     }
-    let end = if matches!(network.outer, Outer::Linear) { 0 } else { TANH_AT_END };
-    LAYER * network.layers.len() as u32 + SOURCE * network.sources.len() as u32 + EDGE * edges as u32 + end
+    edges += width;
+    NETWORK + LAYER * network.layers.len() as u32 + PLACE * places as u32 + EDGE * edges as u32
 }
 
 /// Instructions of one evaluation of a program.
@@ -49,26 +58,23 @@ pub fn of_program(program: &Program) -> u32 {
 
 fn of_operation(operation: Operation) -> u32 {
     match operation {
-        Operation::Constant(_) => 14,
-        Operation::Negate | Operation::Absolute | Operation::Square => 19,
-        Operation::Input(_)
-        | Operation::Scale(_)
-        | Operation::Reciprocal
-        | Operation::Add
-        | Operation::Subtract
-        | Operation::Multiply
-        | Operation::Divide => 20,
-        Operation::Offset(_) => 21,
-        Operation::ScaledInput(..) => 22,
-        Operation::Maximum => 23,
-        Operation::Minimum => 24,
-        Operation::Sign => 26,
-        Operation::Tanh => 60,
-        Operation::Sin | Operation::Cos => 65,
-        Operation::Exp => 66,
-        Operation::Log => 69,
-        Operation::Atan => 70,
-        Operation::SquareRoot => 88,
-        Operation::PowerOf(_) | Operation::Power => 128,
+        Operation::Negate | Operation::Absolute | Operation::Square => 7,
+        Operation::Scale(_) | Operation::Offset(_) | Operation::Reciprocal => 8,
+        Operation::Add | Operation::Subtract | Operation::Multiply | Operation::Divide => 11,
+        Operation::AddScaledInput(..) => 13,
+        Operation::Constant(_) | Operation::Minimum | Operation::Maximum => 14,
+        Operation::Sign => 16,
+        Operation::Input(_) => 17,
+        Operation::ScaledInput(..) => 20,
+        Operation::ScaledMagnitude(..) => 21,
+        Operation::Tanh => 39,
+        Operation::Exp => 45,
+        Operation::Sin => 47,
+        Operation::Cos => 48,
+        Operation::Atan => 53,
+        Operation::Log => 61,
+        Operation::SquareRoot => 75,
+        Operation::PowerOf(_) => 120,
+        Operation::Power => 125,
     }
 }

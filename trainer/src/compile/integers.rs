@@ -3,15 +3,14 @@
 //! The cubic of a cell is rounded to whole coefficients and certified as it then is, in exact arithmetic; to that come the three flooring shifts
 //! of the evaluation, each at most one output step, and the rounding of the input to a step.
 
-use frikan_shared::integer_table::{IntegerShape, IntegerTable, MAX_COEFFICIENT, MAX_SHIFT};
+use frikan_shared::integer_table::{
+    IntegerShape, IntegerTable, MAX_COEFFICIENT, MAX_SEGMENT_CELLS, REACH_BITS, SEGMENT_BITS, SEGMENTS,
+};
 use frikan_shared::table::{Cell, Symmetry};
 
 use super::cells::{Certificate, Cubic, bound_cell, fit_cell, sampled_error};
 use super::formula::{Curve, Parity};
 use super::tables::TableError;
-
-/// The reach is this many input steps, as a power of two.
-const REACH_BITS: u8 = 18;
 
 /// Most cells of a side that are tried.
 const MOST_CELLS: u32 = 512;
@@ -54,38 +53,49 @@ pub fn compile_integer_table(
         Parity::Even => Symmetry::Even,
         Parity::Neither => Symmetry::Sided,
     };
-    let mut shapes = Vec::new();
-    for split_shift in 0..REACH_BITS {
-        for outer_shift in 0..=split_shift.min(MAX_SHIFT) {
-            for inner_shift in 0..=outer_shift {
-                shapes.push(IntegerShape {
-                    first_cell,
-                    inner_shift,
-                    outer_shift,
-                    split_shift,
-                    symmetry,
-                    reach: 1 << REACH_BITS,
-                    input_step: (reach / f64::from(1u32 << REACH_BITS)) as f32,
-                    output_step: 1.0,
-                });
-            }
-        }
-    }
+    let input_step = reach / f64::from(1u32 << REACH_BITS);
     let sides = if symmetry == Symmetry::Sided { 2 } else { 1 };
-    shapes.retain(|shape| IntegerTable::new(*shape).cells() <= sides * MOST_CELLS);
-    shapes.sort_by_key(|shape| (IntegerTable::new(*shape).cells(), shape.split_shift, shape.outer_shift));
-    shapes.into_iter().find_map(|shape| fill(curve, shape, bound)).ok_or(TableError::Bound { bound })
+    // What shifts add is known after the output step; a cell may use a little less than the bound, then ever less.
+    (0..TRIES)
+        .find_map(|tried| {
+            let part = bound * (1.0 - f64::from(tried) / f64::from(TRIES));
+            let mut cells = [0u8; SEGMENTS];
+            for (count, segment) in cells.iter_mut().zip(0u32..) {
+                *count = smallest_count(curve, segment, input_step, symmetry, part)?;
+            }
+            let side: u32 = cells.iter().copied().map(u32::from).sum();
+            let shape = IntegerShape { first_cell, cells, symmetry, input_step: input_step as f32, output_step: 1.0 };
+            (side * sides <= sides * MOST_CELLS).then(|| fill(curve, shape, bound)).flatten()
+        })
+        .ok_or(TableError::Bound { bound })
+}
+
+/// Shares of the bound that are tried, from all of it down.
+const TRIES: u32 = 16;
+
+/// Fewest equal cells of a segment with which the cubics alone stay within `bound`, by a few points of each.
+fn smallest_count(curve: &dyn Curve, segment: u32, input_step: f64, symmetry: Symmetry, bound: f64) -> Option<u8> {
+    (1..=MAX_SEGMENT_CELLS).find(|&count| {
+        segment_edges(segment, count, input_step).all(|(near, far)| {
+            let holds = |near: f64, far: f64| sampled_error(curve, near, far, &fit_cell(curve, near, far)) <= bound;
+            holds(near, far) && (symmetry != Symmetry::Sided || holds(-near, -far))
+        })
+    })
+}
+
+/// Ends of the cells of a segment for positive inputs, in the unit of the input.
+fn segment_edges(segment: u32, count: u8, input_step: f64) -> impl Iterator<Item = (f64, f64)> {
+    let width = f64::from(1u32 << SEGMENT_BITS) / f64::from(count);
+    let start = f64::from(segment << SEGMENT_BITS);
+    let end = move |cell: u8| (start + width * f64::from(cell)) * input_step;
+    (0..count).map(move |cell| (end(cell), end(cell + 1)))
 }
 
 /// Ends of the cells, in the order of the pool, in the unit of the input.
 fn edges(shape: &IntegerShape) -> Vec<(f64, f64)> {
-    let split = 1u32 << shape.split_shift;
-    let inner = (0..split).step_by(1 << shape.inner_shift).map(|step| (step, step + (1 << shape.inner_shift)));
-    let outer =
-        (split..shape.reach).step_by(1 << shape.outer_shift).map(|step| (step, step + (1 << shape.outer_shift)));
     let unit = f64::from(shape.input_step);
     let side: Vec<(f64, f64)> =
-        inner.chain(outer).map(|(near, far)| (f64::from(near) * unit, f64::from(far) * unit)).collect();
+        (0u32..).zip(shape.cells).flat_map(|(segment, count)| segment_edges(segment, count, unit)).collect();
     let mirrored = side.iter().map(|&(near, far)| (-near, -far));
     match shape.symmetry {
         Symmetry::Sided => side.iter().copied().chain(mirrored).collect(),
@@ -104,8 +114,8 @@ fn fill(curve: &dyn Curve, shape: IntegerShape, bound: f64) -> Option<CompiledIn
         }
         cubics.push(cubic);
     }
-    // The finest output step at which every partial sum keeps to its 17 bits and every value to its 30.
-    let room = f64::from(2 * MAX_COEFFICIENT - SPARE_STEPS);
+    // The finest output step at which every partial sum keeps to its 16 bits and every value to its 30.
+    let room = f64::from(MAX_COEFFICIENT - SPARE_STEPS);
     let values = f64::from(1u32 << 29);
     let output_step = cubics.iter().fold(1.0e-9f64, |step, [c0, c1, c2, c3]| {
         step.max((c1.abs() + c2.abs() + c3.abs()) / room).max(c0.abs() / values)
@@ -119,7 +129,8 @@ fn fill(curve: &dyn Curve, shape: IntegerShape, bound: f64) -> Option<CompiledIn
     for (&(near, far), cubic) in edges.iter().zip(&cubics) {
         let whole = cubic.map(|c| (c / unit).round());
         let rounded = whole.map(|c| c * unit);
-        let coordinate_error = f64::from(shape.input_step) / (far - near).abs();
+        // The input is off by half a step; the way through the cell is whole steps of it, and cut to 16 bits.
+        let coordinate_error = f64::from(shape.input_step) / (far - near).abs() + 1.0 / 65_536.0;
         let (approximation, moved) = bound_cell(curve, near, far, &rounded, coordinate_error);
         let certificate = Certificate { approximation, rounding: moved + FLOORING_STEPS * unit };
         if certificate.total() > worst.total() {

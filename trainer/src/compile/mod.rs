@@ -9,6 +9,7 @@ pub mod effects;
 pub mod formula;
 pub mod integers;
 pub mod interval;
+pub mod networks;
 pub mod program;
 pub mod reference;
 pub mod series;

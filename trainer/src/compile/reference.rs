@@ -6,9 +6,9 @@
 
 use frikan_shared::elementary;
 use frikan_shared::expression::{Operation, Program};
-use frikan_shared::integer_table::IntegerShape;
+use frikan_shared::integer_table::{IntegerShape, REACH_BITS, SEGMENT_BITS, SEGMENTS, WAY_BITS};
 use frikan_shared::model::{Law, MAX_INPUTS, Model};
-use frikan_shared::network::{Network, Outer};
+use frikan_shared::network::Network;
 use frikan_shared::table::{Cell, Geometric, Symmetry, Table, Uniform};
 
 /// The static law of `model` at each of `inputs`, as the drive must compute it to the bit.
@@ -20,7 +20,11 @@ pub fn evaluate_batch<const CELLS: usize>(model: &Model<CELLS>, inputs: &[[f32; 
 /// The static law of `model` at one point.
 #[must_use]
 pub fn evaluate_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
-    let count = model.inputs.len();
+    let count = match &model.law {
+        // A table reads the first channel.
+        Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) => 1,
+        Law::Network(_) | Law::Expression(_) => model.inputs.len(),
+    };
     if inputs[..count].iter().any(|input| input.is_nan()) {
         return 0.0;
     }
@@ -110,54 +114,81 @@ fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
 /// The value of an integer table at `steps`, both in steps, worked out in 128 bits and by division instead of shifts.
 #[must_use]
 pub fn integer_value(shape: &IntegerShape, cells: &[Cell], steps: i32) -> i32 {
-    let width = |shift: u8| 1i128 << shift;
-    let position = i128::from(steps).abs().min(i128::from(shape.reach) - 1);
-    let split = width(shape.split_shift);
-    let inner_cells = split / width(shape.inner_shift);
-    let cell_of = |position: i128| {
-        if position < split {
-            position / width(shape.inner_shift)
-        } else {
-            inner_cells + (position - split) / width(shape.outer_shift)
-        }
-    };
-    let width = width(if position < split { shape.inner_shift } else { shape.outer_shift });
-    let mut cell = i128::from(shape.first_cell) + cell_of(position);
+    let segment_steps = 1i128 << SEGMENT_BITS;
+    let position = i128::from(steps).abs().min((1 << REACH_BITS) - 1);
+    let segment = (position / segment_steps) as usize;
+    let count = i128::from(shape.cells[segment]);
+    let before = |end: usize| shape.cells[..end].iter().copied().map(i128::from).sum::<i128>();
+    // The way through the segment, in its cells.
+    let way = (position % segment_steps) * count;
+    let mut cell = i128::from(shape.first_cell) + before(segment) + way / segment_steps;
     if steps < 0 && shape.symmetry == Symmetry::Sided {
-        cell += cell_of(i128::from(shape.reach) - 1) + 1;
+        cell += before(SEGMENTS);
     }
     let [c0, c1, c2, c3] = cells[cell as usize].integers().map(i128::from);
-    let x = position % width;
+    let unit = 1i128 << WAY_BITS;
+    let x = (way % segment_steps) * unit / segment_steps;
     let mut value = c3;
     for coefficient in [c2, c1, c0] {
-        value = coefficient + (value * x).div_euclid(width);
+        value = coefficient + (value * x).div_euclid(unit);
     }
     let value = if steps < 0 && shape.symmetry == Symmetry::Odd { -value } else { value };
     value as i32
 }
 
-fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
-    let mut nodes = inputs.to_vec();
-    let mut sources = network.sources.iter();
-    for layer in &network.layers {
-        let targets = layer.targets();
-        let mut sums = vec![0.0f32; targets];
-        for node in nodes {
-            let source = sources.next().expect("a validated network has a source for every node");
-            let found = find(&source.table, node);
-            for (target, sum) in sums.iter_mut().enumerate() {
-                let cell = cells[usize::from(source.first_cell) + found.0 * targets + target];
-                *sum += cubic(cell, found);
-            }
+/// Row and coordinate in `2^31` of an input among a network's rows.
+fn find_exactly(table: &Table, input: f32) -> (usize, i128) {
+    // The drive's coordinate keeps 31 bits of the way through the cell; a table's keeps 23 of them.
+    let (position, rows, first) = match table {
+        Table::Geometric(layout) => {
+            let (row, t, _) = find_geometric(layout, input);
+            return (row, ((f64::from(t) - 1.0) * 2.0f64.powi(31)) as i128);
         }
+        Table::Uniform(layout) => {
+            let shape = layout.shape();
+            let scaled = (input - shape.low) * (2.0f32.powi(32) / (shape.high - shape.low));
+            (
+                f64::from(scaled).clamp(0.0, f64::from(u32::MAX)).floor() as i128,
+                i128::from(shape.cells),
+                shape.first_cell,
+            )
+        }
+    };
+    let way = position * rows;
+    (usize::from(first) + (way >> 32) as usize, (way % (1 << 32)) / 2)
+}
+
+/// The value of an edge at a coordinate in `2^31`.
+fn edge_value(cell: Cell, x: i128) -> i128 {
+    let [a0, a1, a2, a3] = cell.integers().map(i128::from);
+    [a2, a1, a0].into_iter().fold(a3, |value, coefficient| coefficient + (value * x).div_euclid(1 << 32))
+}
+
+fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
+    let targets = |layer: usize| network.layers.get(layer).map_or(1, |layer| layer.targets());
+    let edges = |first: usize, row: usize, x: i128, count: usize| -> Vec<i128> {
+        (0..count).map(|target| edge_value(cells[first + row * count + target], x)).collect()
+    };
+    let total = |mut sums: Vec<i128>, more: Vec<i128>| {
+        sums.iter_mut().zip(more).for_each(|(sum, value)| *sum += value);
+        sums
+    };
+    let mut sums = network.sources.iter().zip(inputs).fold(vec![0; targets(0)], |sums, (source, input)| {
+        let (row, x) = find_exactly(&source.table, *input);
+        total(sums, edges(usize::from(source.first_cell), row, x, targets(0)))
+    });
+    for (index, layer) in network.layers.iter().enumerate() {
         let (additive, factors) = sums.split_at(usize::from(layer.additive));
-        nodes = additive.to_vec();
-        nodes.extend(factors.chunks(2).map(|pair| pair[0] * pair[1]));
+        let products = factors.chunks(2).map(|pair| (1 << 30) + (pair[0] * pair[1]).div_euclid(1 << 32));
+        let nodes: Vec<i128> = additive.iter().copied().chain(products).collect();
+        let (rows, count) = (usize::from(layer.rows), targets(index + 1));
+        sums = nodes.into_iter().enumerate().fold(vec![0; count], |sums, (node, value)| {
+            let way = value * rows as i128;
+            let first = usize::from(layer.first_cell) + node * rows * count;
+            total(sums, edges(first, (way >> 31) as usize, way % (1 << 31), count))
+        });
     }
-    match network.outer {
-        Outer::Linear => nodes[0],
-        Outer::Tanh { scale, offset } => offset + scale * elementary::tanh(nodes[0]),
-    }
+    sums[0] as f32 * network.output_step
 }
 
 fn program_value(program: &Program, inputs: &[f32]) -> f32 {
@@ -167,6 +198,8 @@ fn program_value(program: &Program, inputs: &[f32]) -> f32 {
         let value = match *operation {
             Operation::Input(index) => inputs[usize::from(index)],
             Operation::ScaledInput(index, factor) => inputs[usize::from(index)] * factor,
+            Operation::ScaledMagnitude(index, factor) => inputs[usize::from(index)].abs() * factor,
+            Operation::AddScaledInput(index, factor) => pop() + inputs[usize::from(index)] * factor,
             Operation::Constant(constant) => constant,
             Operation::Scale(factor) => pop() * factor,
             Operation::Offset(summand) => pop() + summand,

@@ -95,11 +95,22 @@ pub fn compile_table(
 /// Compiles `curve` into a table of the given layout, whatever its error; the certificate says what came of it.
 #[must_use]
 pub fn compile_layout(curve: &dyn Curve, table: Table) -> CompiledTable {
-    let candidate = match table {
+    let candidate = candidate(table);
+    certified(curve, candidate.table, &candidate.edges, &fitted(curve, &candidate.edges), candidate.coordinate_error)
+}
+
+/// Ends of the rows of a layout in the order of the pool, and the largest error of the local coordinate.
+#[must_use]
+pub fn rows(table: Table) -> (Vec<(f64, f64)>, f64) {
+    let candidate = candidate(table);
+    (candidate.edges, candidate.coordinate_error)
+}
+
+fn candidate(table: Table) -> Candidate {
+    match table {
         Table::Geometric(layout) => geometric_candidate(layout),
         Table::Uniform(layout) => uniform_layout(layout),
-    };
-    certified(curve, candidate.table, &candidate.edges, &fitted(curve, &candidate.edges), candidate.coordinate_error)
+    }
 }
 
 fn fitted(curve: &dyn Curve, edges: &[(f64, f64)]) -> Vec<[f32; 4]> {

@@ -164,13 +164,14 @@ pub fn compare_patterns<const CELLS: usize>(model: &Model<CELLS>, first: u32, co
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::formula::{Curve, Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
     use crate::compile::integers::compile_integer_table;
+    use crate::compile::networks::{self, Edge, Scale};
     use crate::compile::program::compile_program;
-    use crate::compile::tables::{compile_layout, compile_table};
+    use crate::compile::tables::{compile_layout, compile_table, rows};
     use frikan_shared::image::{Image, decode, encode};
     use frikan_shared::model::{Input, Law, Provenance, RigidBody};
-    use frikan_shared::network::{Layer, Network, Outer, Source};
+    use frikan_shared::network::{Layer, Network, Source};
     use frikan_shared::pool::Pool;
     use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
     use frikan_shared::units::{Quantity, Unit};
@@ -187,7 +188,7 @@ mod tests {
         let model = TestModel {
             inputs: inputs.collect(),
             output_unit: Unit::NewtonMetre,
-            output_limit: 60.0,
+            output_limit: if matches!(law, Law::Network(_)) { 1.0e6 } else { 60.0 },
             rigid_body: RigidBody::default(),
             law,
             effects: heapless::Vec::new(),
@@ -256,28 +257,53 @@ mod tests {
             reach_negative: 2.0,
         }));
         let uniform = Table::Uniform(Uniform::new(UniformShape { first_cell: 0, cells: 8, low: -2.0, high: 2.0 }));
-        let (mut cells, mut sources) = (Vec::new(), heapless::Vec::new());
-        let layers = [Layer { additive: 2, products: 1 }, Layer { additive: 1, products: 0 }];
-        for (layer, tables) in layers.iter().zip([&[geometric, uniform][..], &[uniform; 3][..]]) {
-            for table in tables {
-                sources.push(Source { table: *table, first_cell: cells.len() as u16 }).unwrap();
-                let columns: Vec<_> = (0..layer.targets())
-                    .map(|target| {
-                        compile_layout(
-                            &(stribeck_law().join(Operator::Divide, Formula::Constant(10.0 + target as f64)))
-                                as &dyn Curve,
-                            *table,
-                        )
+        let curve = |target: usize| stribeck_law().join(Operator::Divide, Formula::Constant(10.0 + target as f64));
+        for shapes in [&[][..], &[(2, 1)], &[(3, 0), (1, 2)]] {
+            let layer = |&(additive, products)| Layer { additive, products, rows: 6, first_cell: 0 };
+            let mut layers: heapless::Vec<Layer, _> = shapes.iter().map(layer).collect();
+            let (mut cells, mut sources) = (Vec::new(), heapless::Vec::new());
+            let mut domains = vec![[-2.0, 2.0]; 2];
+            let mut step = 1.0;
+            for index in 0..=layers.len() {
+                let into = layers.get(index).copied();
+                let targets = into.map_or(1, Layer::targets);
+                let edges: Vec<Vec<Edge>> = domains
+                    .iter()
+                    .zip([geometric, uniform, uniform, uniform])
+                    .map(|(&[low, high], table)| {
+                        let rows = if index == 0 {
+                            rows(table).0
+                        } else {
+                            let end = |row: u32| low + (high - low) * f64::from(row) / 6.0;
+                            (0..6).map(|row| (end(row), end(row + 1))).collect()
+                        };
+                        (0..targets).map(|target| Edge::new(Some(&curve(target)), &rows, 0.0)).collect()
                     })
                     .collect();
-                for row in 0..table.cells() as usize {
-                    cells.extend(columns.iter().map(|column| column.cells[row]));
+                let positive = |target: usize| into.is_some_and(|into| target < usize::from(into.additive));
+                let scales: Vec<Scale> = (0..targets)
+                    .map(|target| {
+                        let column: Vec<&Edge> = edges.iter().map(|edges| &edges[target]).collect();
+                        if positive(target) { Scale::positive(&column) } else { Scale::signed(&column) }
+                    })
+                    .collect();
+                let mut blocks = networks::cells(&edges, &scales, positive).into_iter();
+                if index == 0 {
+                    for (table, block) in [geometric, uniform].into_iter().zip(&mut blocks) {
+                        sources.push(Source { table, first_cell: cells.len() as u16 }).unwrap();
+                        cells.extend(block);
+                    }
+                } else {
+                    layers[index - 1].first_cell = cells.len() as u16;
                 }
+                cells.extend(blocks.flatten());
+                let additive = into.map_or(1, |into| usize::from(into.additive));
+                let (sums, factors) = scales.split_at(additive);
+                let products = factors.chunks_exact(2).map(|pair| pair[0].of_product(pair[1]));
+                domains = sums.iter().copied().chain(products).map(Scale::range).collect();
+                step = scales[0].step;
             }
-        }
-        for outer in [Outer::Linear, Outer::Tanh { scale: 30.0, offset: 0.5 }] {
-            let network =
-                Network { layers: heapless::Vec::from_slice(&layers).unwrap(), sources: sources.clone(), outer };
+            let network = Network { sources, layers, output_step: step as f32 };
             assert_identical(&model(Law::Network(network), &cells, &[Quantity::Velocity, Quantity::Load]));
         }
     }

@@ -17,9 +17,8 @@ use crate::physics::JointState;
 use frikan_runtime::evaluate::evaluate;
 use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, RigidBody};
-use frikan_shared::network::{Layer, Network, Outer, Source};
 use frikan_shared::pool::Pool;
-use frikan_shared::table::{Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
+use frikan_shared::table::{Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
 
 /// Where the base law comes from.
@@ -164,50 +163,18 @@ fn moved_law(
     Some(improved)
 }
 
-/// Adds the channels that the terms read. A law that is one table becomes a network of one layer, to which the new
-/// channels contribute nothing.
+/// Adds the channels that the terms read; a table and a formula go on reading theirs, a network reads all.
 fn add_channels(model: &mut HostModel, channels: &[Quantity], state: &JointState) -> Option<()> {
-    let new: Vec<&Quantity> =
-        channels.iter().filter(|q| model.inputs.iter().all(|input| input.quantity != **q)).collect();
-    if new.is_empty() {
-        return Some(());
-    }
-    let mut sources: heapless::Vec<Source, { frikan_shared::network::MAX_SOURCES }> = heapless::Vec::new();
-    let table = match model.law {
-        Law::Geometric(layout) => Some((Table::Geometric(layout), layout.shape().first_cell)),
-        Law::Uniform(layout) => Some((Table::Uniform(layout), layout.shape().first_cell)),
-        _ => None,
-    };
-    if let Some((table, first_cell)) = table {
-        sources.push(Source { table: at_zero(table), first_cell }).ok()?;
-    }
-    for quantity in new {
-        let input = channel_input(quantity, state)?;
-        if table.is_some() {
-            let first_cell = model.cells.len() as u16;
-            model.cells.push(frikan_shared::table::Cell::from_floats([0.0; 4])).ok()?;
-            let layout = UniformShape { first_cell: 0, cells: 1, low: input.low, high: input.high };
-            sources.push(Source { table: Table::Uniform(Uniform::new(layout)), first_cell }).ok()?;
-        } else if let Law::Network(_) = model.law {
+    for quantity in channels {
+        if model.inputs.iter().any(|input| input.quantity == *quantity) {
+            continue;
+        }
+        if matches!(model.law, Law::Network(_)) {
             return None;
         }
-        model.inputs.push(input).ok()?;
-    }
-    if table.is_some() {
-        let layers = heapless::Vec::from_slice(&[Layer { additive: 1, products: 0 }]).ok()?;
-        model.law = Law::Network(Network { layers, sources, outer: Outer::Linear });
+        model.inputs.push(channel_input(quantity, state)?).ok()?;
     }
     Some(())
-}
-
-/// The layout with its first cell at 0, as a network's sources have it.
-fn at_zero(table: Table) -> Table {
-    match table {
-        Table::Geometric(layout) => {
-            Table::Geometric(Geometric::new(GeometricShape { first_cell: 0, ..layout.shape() }))
-        }
-        Table::Uniform(layout) => Table::Uniform(Uniform::new(UniformShape { first_cell: 0, ..layout.shape() })),
-    }
 }
 
 fn channel_input(quantity: &Quantity, state: &JointState) -> Option<Input> {

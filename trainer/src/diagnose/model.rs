@@ -144,6 +144,8 @@ pub(crate) fn is_odd(law: &Law) -> bool {
 fn constant(operation: Operation) -> Option<f32> {
     match operation {
         Operation::ScaledInput(_, value)
+        | Operation::ScaledMagnitude(_, value)
+        | Operation::AddScaledInput(_, value)
         | Operation::Constant(value)
         | Operation::Scale(value)
         | Operation::Offset(value)
@@ -159,6 +161,8 @@ pub(crate) fn moved<const CELLS: usize>(mut model: Model<CELLS>, place: usize, b
     let add = |value: f32| (f64::from(value) + by) as f32;
     *operation = match *operation {
         Operation::ScaledInput(input, value) => Operation::ScaledInput(input, add(value)),
+        Operation::ScaledMagnitude(input, value) => Operation::ScaledMagnitude(input, add(value)),
+        Operation::AddScaledInput(input, value) => Operation::AddScaledInput(input, add(value)),
         Operation::Constant(value) => Operation::Constant(add(value)),
         Operation::Scale(value) => Operation::Scale(add(value)),
         Operation::Offset(value) => Operation::Offset(add(value)),

@@ -121,7 +121,10 @@ pub(super) fn no_image() -> Error {
 fn describe(law: &Law, cells: usize) -> String {
     match law {
         Law::Expression(program) => format!("program of {} operations", program.operations.len()),
-        Law::Network(network) => format!("network of {} nodes, {cells} cells", network.sources.len()),
+        Law::Network(network) => {
+            let nodes: usize = network.layers.iter().map(|layer| layer.nodes()).sum();
+            format!("network of {nodes} hidden nodes, {cells} cells")
+        }
         _ => format!("table of {cells} cells"),
     }
 }

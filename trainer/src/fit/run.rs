@@ -216,6 +216,7 @@ impl Builder<'_> {
         let reach = cells.iter().map(|cell| f64::from(cell.bound())).fold(0.0, f64::max);
         let limit = match law {
             Law::Geometric(_) | Law::Uniform(_) => reach * (1.0 + 1e-6),
+            Law::Network(ref network) => tables::output_bound(network),
             _ => 0.0,
         };
         assemble(&Parts {

@@ -1,11 +1,13 @@
 //! A trained network as the tables of a drive: one certified table for one input, a network of tables for several.
 
 use frikan_shared::model::Law;
-use frikan_shared::network::{Layer, MAX_SOURCES, MAX_WIDTH, Network as TableNetwork, Outer, Source};
+use frikan_shared::network::{Layer, MAX_WIDTH, Network as TableNetwork, Source};
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 
 use super::piecewise::{NetworkCurve, Piecewise};
-use crate::compile::tables::{compile_layout, compile_table};
+use crate::compile::formula::Curve;
+use crate::compile::networks::{self, Edge, Scale};
+use crate::compile::tables::{self, compile_table};
 use crate::kan::{GraphSummary, Network};
 
 /// A law as tables.
@@ -17,7 +19,7 @@ pub(super) struct Tables {
     pub(super) inputs: Vec<usize>,
 }
 
-/// How often the bound of a single node is doubled where no layout meets it: bounds for the worst case are strict.
+/// How often the bound of a layer is doubled where no layout meets it: bounds for the worst case are strict.
 const RELAXATIONS: i32 = 8;
 
 /// Compiles `network` to within `bound` (unit of the output; for several inputs in the worst case, which is far from the
@@ -37,62 +39,145 @@ fn single(network: &Network, input: usize, [low, high]: [f64; 2], bound: f64) ->
     Some(Tables { law: compiled.table.into(), cells: compiled.cells, inputs: vec![input] })
 }
 
-/// A node with outgoing activations, before its layout is chosen.
+/// A node with outgoing activations.
 struct Node {
-    /// Range of its value.
-    domain: [f64; 2],
-    /// One activation for each target of the next layer, `None` where pruned.
+    /// One activation for each sum of the next layer, `None` where pruned.
     edges: Vec<Option<Piecewise>>,
     /// Error that each activation may have.
     bounds: Vec<f64>,
 }
+
+impl Node {
+    /// The edges over rows, where all stay within their bounds times `slack`.
+    fn over(&self, (rows, coordinate_error): &(Vec<(f64, f64)>, f64), slack: f64) -> Option<Vec<Edge>> {
+        let compile = |(curve, bound): (&Option<Piecewise>, &f64)| {
+            let edge = Edge::new(curve.as_ref().map(|curve| curve as &dyn Curve), rows, *coordinate_error);
+            (edge.error <= bound * slack).then_some(edge)
+        };
+        self.edges.iter().zip(&self.bounds).map(compile).collect()
+    }
+}
+
+/// The last layer's only sum.
+const OUTPUT: Layer = Layer { additive: 1, products: 0, rows: 0, first_cell: 0 };
 
 fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) -> Option<Tables> {
     let curve = NetworkCurve::of(network);
     let alive = network.live_nodes();
     let depth = network.layers().len();
     let active = graph.edges.iter().filter(|edge| edge.active).count().max(1) as f64;
-    let mut layers = heapless::Vec::new();
-    let mut nodes = Vec::new();
+    let mut cells = Vec::new();
+    let mut sources = heapless::Vec::new();
+    let mut layers: heapless::Vec<Layer, _> = heapless::Vec::new();
+    // Ranges of the nodes that the edges of a layer leave.
+    let mut domains: Vec<[f64; 2]> = Vec::new();
+    let mut output_step = 1.0;
     for (index, layer) in network.layers().iter().enumerate() {
         let kept: Vec<usize> = (0..layer.nodes.count()).filter(|&node| alive[index + 1][node]).collect();
         let terminals: Vec<usize> = kept.iter().flat_map(|&node| layer.terminals_of(node)).collect();
         let additive = kept.iter().filter(|&&node| node < layer.nodes.sums).count();
-        let shape = Layer { additive: additive as u8, products: (kept.len() - additive) as u8 };
-        layers.push(shape).ok()?;
-        let mut first_active = index + 1 == depth;
+        let last = index + 1 == depth;
+        let into = if last {
+            OUTPUT
+        } else {
+            Layer { additive: additive as u8, products: (kept.len() - additive) as u8, ..OUTPUT }
+        };
+        if terminals.len() != into.targets() || into.targets() > MAX_WIDTH {
+            return None;
+        }
+        let mut centre = last.then_some(network.output.centre);
+        let mut nodes = Vec::new();
         for from in (0..layer.inputs).filter(|&from| alive[index][from]) {
             let mut edges: Vec<Option<Piecewise>> =
                 terminals.iter().map(|&to| curve.edges[index][to][from].clone()).collect();
             // The output's centre goes into the first activation of the last layer.
-            if first_active && let Some(edge) = edges.iter_mut().flatten().next() {
-                *edge = edge.clone().raised(network.output.centre);
-                first_active = false;
+            if let Some(edge) = edges.iter_mut().flatten().next()
+                && let Some(centre) = centre.take()
+            {
+                *edge = edge.clone().raised(centre);
             }
-            let domain = graph.edges.iter().find(|e| e.layer == index && e.from == from)?.domain;
+            if index == 0 {
+                domains.push(graph.edges.iter().find(|e| e.layer == index && e.from == from)?.domain);
+            }
             let bounds = terminals
                 .iter()
                 .map(|&to| bound / (active * sensitivity(graph, &curve, index + 1, layer_node(layer, to))))
                 .collect();
-            nodes.push(Node { domain, edges, bounds });
+            nodes.push(Node { edges, bounds });
+        }
+        let rows = (0..=RELAXATIONS).find_map(|k| {
+            let slack = 2f64.powi(k);
+            if index == 0 { smallest_layouts(&nodes, &domains, slack) } else { smallest_rows(&nodes, &domains, slack) }
+        })?;
+        let sums: Vec<Vec<&Edge>> =
+            (0..into.targets()).map(|target| rows.edges.iter().map(|edges| &edges[target]).collect()).collect();
+        let positive = |target: usize| !last && target < usize::from(into.additive);
+        let scale = |(target, edges): (usize, &Vec<&Edge>)| {
+            if positive(target) { Scale::positive(edges) } else { Scale::signed(edges) }
+        };
+        let scales: Vec<Scale> = sums.iter().enumerate().map(scale).collect();
+        let mut blocks = networks::cells(&rows.edges, &scales, positive).into_iter();
+        let first_cell = |cells: &Vec<Cell>| u16::try_from(cells.len()).ok();
+        if let Some(from) = layers.last_mut() {
+            (from.rows, from.first_cell) = (rows.count, first_cell(&cells)?);
+        }
+        for table in rows.layouts {
+            sources.push(Source { table, first_cell: first_cell(&cells)? }).ok()?;
+            cells.extend(blocks.next()?);
+        }
+        cells.extend(blocks.flatten());
+        let (sums, factors) = scales.split_at(usize::from(into.additive));
+        let products = factors.chunks_exact(2).map(|pair| pair[0].of_product(pair[1]));
+        domains = sums.iter().copied().chain(products).map(Scale::range).collect();
+        if last {
+            output_step = scales.first()?.step as f32;
+        } else {
+            layers.push(into).ok()?;
         }
     }
-    if nodes.len() > MAX_SOURCES || layers.iter().any(|layer: &Layer| layer.targets() > MAX_WIDTH) {
-        return None;
-    }
-    let mut cells = Vec::new();
-    let mut sources = heapless::Vec::new();
-    for node in &nodes {
-        let first_cell = u16::try_from(cells.len()).ok()?;
-        let (table, columns) = (0..=RELAXATIONS).find_map(|k| smallest(node, 2f64.powi(k)))?;
-        for row in 0..table.cells() as usize {
-            cells.extend(columns.iter().map(|column| column.get(row).copied().unwrap_or_default()));
-        }
-        sources.push(Source { table, first_cell }).ok()?;
-    }
-    let law = Law::Network(TableNetwork { layers, sources, outer: Outer::Linear });
+    let law = Law::Network(TableNetwork { sources, layers, output_step });
     Some(Tables { law, cells, inputs: live.to_vec() })
 }
+
+/// What validation allows a network to put out, in the unit of the output.
+pub(super) fn output_bound(network: &TableNetwork) -> f64 {
+    f64::from(i32::MAX) * f64::from(network.output_step)
+}
+
+/// The edges of a layer over the rows that were found for them.
+struct Rows {
+    /// Layouts of the inputs; none in later layers.
+    layouts: Vec<Table>,
+    /// Rows of each node in later layers.
+    count: u16,
+    /// Edges of each node.
+    edges: Vec<Vec<Edge>>,
+}
+
+/// For each input the layout of fewest rows in which its activations stay within their bounds times `slack`.
+fn smallest_layouts(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<Rows> {
+    let found = nodes.iter().zip(domains).map(|(node, domain)| {
+        layouts(*domain).into_iter().find_map(|table| Some((table, node.over(&tables::rows(table), slack)?)))
+    });
+    let (layouts, edges) = found.collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    Some(Rows { layouts, count: 0, edges })
+}
+
+/// Fewest equal rows in which the activations of all nodes of a layer stay within their bounds times `slack`.
+fn smallest_rows(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<Rows> {
+    ROWS.into_iter().find_map(|count| {
+        let edges = nodes.iter().zip(domains).map(|(node, &[low, high])| {
+            let end = |row: u16| low + (high - low) * f64::from(row) / f64::from(count);
+            // Positions are whole numbers of 31 bits.
+            let coordinate_error = f64::from(count) * 2f64.powi(-30);
+            node.over(&((0..count).map(|row| (end(row), end(row + 1))).collect(), coordinate_error), slack)
+        });
+        Some(Rows { layouts: Vec::new(), count, edges: edges.collect::<Option<_>>()? })
+    })
+}
+
+/// Numbers of equal rows that are tried.
+const ROWS: [u16; 14] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
 
 fn layer_node(layer: &crate::kan::Layer, terminal: usize) -> usize {
     (0..layer.nodes.count()).find(|&node| layer.terminals_of(node).contains(&terminal)).unwrap_or(0)
@@ -111,30 +196,11 @@ fn sensitivity(graph: &GraphSummary, curve: &NetworkCurve, layer: usize, node: u
     if layer >= curve.edges.len() { 1.0 } else { slopes.iter().sum::<f64>().max(1e-12) }
 }
 
-/// The layout of fewest cells in which every activation of the node stays within its bound times `slack`.
-fn smallest(node: &Node, slack: f64) -> Option<(Table, Vec<Vec<Cell>>)> {
-    layouts(node.domain).into_iter().find_map(|table| {
-        let mut columns = Vec::new();
-        for (edge, bound) in node.edges.iter().zip(&node.bounds) {
-            let Some(edge) = edge else {
-                columns.push(Vec::new());
-                continue;
-            };
-            let compiled = compile_layout(edge, table);
-            if compiled.certificate.total() > bound * slack {
-                return None;
-            }
-            columns.push(compiled.cells);
-        }
-        Some((table, columns))
-    })
-}
-
 /// Layouts for a range, few cells first.
 fn layouts([low, high]: [f64; 2]) -> Vec<Table> {
     let margin = 1e-6 * (high - low).max(1e-6);
     let (low, high) = ((low - margin) as f32, (high + margin) as f32);
-    let mut tables: Vec<Table> = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128]
+    let mut tables: Vec<Table> = ROWS
         .into_iter()
         .map(|cells| Table::Uniform(Uniform::new(UniformShape { first_cell: 0, cells, low, high })))
         .collect();

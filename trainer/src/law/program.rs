@@ -13,6 +13,10 @@ pub fn expression_of(program: &Program) -> Option<Expr> {
         let expression = match *operation {
             Operation::Input(index) => Expr::Input(usize::from(index)),
             Operation::ScaledInput(index, factor) => number(factor) * Expr::Input(usize::from(index)),
+            Operation::ScaledMagnitude(index, factor) => {
+                number(factor) * Expr::Input(usize::from(index)).then(Unary::Abs)
+            }
+            Operation::AddScaledInput(index, factor) => stack.pop()? + number(factor) * Expr::Input(usize::from(index)),
             Operation::Constant(value) => number(value),
             Operation::Scale(factor) => number(factor) * stack.pop()?,
             Operation::Offset(summand) => number(summand) + stack.pop()?,

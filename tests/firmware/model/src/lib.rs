@@ -33,6 +33,7 @@ impl Evaluator for Drive {
 }
 
 /// A drive without floating-point unit: input and output are counts, in the bits of the row and of the answer.
+#[repr(C)]
 pub struct IntegerDrive {
     table: IntegerTable,
     cells: Pool<CELLS>,

@@ -1,0 +1,102 @@
+//! What holds for every bit pattern of an input: its cell lies in the table, and runtime and reference agree. With
+//! `FRIKAN_EXHAUSTIVE=1` all 2^32 patterns are looked at, which takes minutes; else an even part of them.
+
+use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::integer_table::evaluate_integer;
+use frikan_runtime::shared::model::Law;
+use frikan_runtime::shared::table::{Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
+use frikan_runtime::table::place;
+use frikan_tests::exhaustive;
+use frikan_tests::models::{self, TestModel};
+use frikan_trainer::compile::reference::{evaluate_one, integer_value};
+use frikan_trainer::compile::verify::{compare, sweep};
+use rayon::prelude::*;
+
+/// Patterns that are passed over otherwise; prime, so that every exponent and a spread of mantissas occur.
+const STRIDE: usize = 4099;
+
+/// The first pattern for which `holds` does not, of all or of an even part.
+fn first_exception(holds: impl Fn(u32) -> bool + Sync) -> Option<u32> {
+    let stride = if exhaustive() { 1 } else { STRIDE };
+    let exception = |high: u32| {
+        let first = high << 16;
+        let offset = (stride - first as usize % stride) % stride;
+        (offset..1 << 16).step_by(stride).map(|low| first | low as u32).find(|&bits| !holds(bits))
+    };
+    (0..1u32 << 16).into_par_iter().filter_map(exception).find_first(|_| true)
+}
+
+/// Finding a cell never leaves the table, and the coordinate never leaves `[1, 2)`: no index is checked in an evaluation.
+#[test]
+fn every_input_has_its_cell() {
+    let geometric = |symmetry, octave_cells_log2, offset_exponent, reach| {
+        Table::Geometric(Geometric::new(GeometricShape {
+            first_cell: 3,
+            offset_exponent,
+            octave_cells_log2,
+            symmetry,
+            reach,
+            reach_negative: 0.7 * reach,
+        }))
+    };
+    let uniform = |cells, low, high| Table::Uniform(Uniform::new(UniformShape { first_cell: 5, cells, low, high }));
+    let tables = [
+        geometric(Symmetry::Odd, 2, -6, 2.0),
+        geometric(Symmetry::Sided, 0, -14, 1.0e9),
+        geometric(Symmetry::Sided, 5, 3, 0.3),
+        geometric(Symmetry::Even, 1, -60, 1.0e-9),
+        uniform(1, -2.0, 2.0),
+        uniform(37, -1.7, 2.1),
+        uniform(1024, -1.0e9, 1.0e9),
+        uniform(64, 0.999_999, 1.0),
+    ];
+    for table in tables {
+        let cells = table.first_cell()..table.first_cell() + table.cells();
+        let exception = first_exception(|bits| {
+            let place = place(&table, f32::from_bits(bits));
+            cells.contains(&place.row) && (1.0..2.0).contains(&place.t)
+        });
+        assert_eq!(exception, None, "{table:?}");
+    }
+}
+
+fn agrees(name: &str, model: &TestModel) {
+    let exception = first_exception(|bits| {
+        let point = [f32::from_bits(bits), 0.0, 0.0, 0.0];
+        evaluate(model, &point).to_bits() == evaluate_one(model, &point).to_bits()
+    });
+    assert_eq!(exception, None, "{name}");
+}
+
+#[test]
+fn one_input_models_agree_at_every_input() {
+    for (name, model) in models::every_kind() {
+        if model.inputs.len() == 1 {
+            agrees(name, &model);
+        }
+    }
+    agrees("integer table", &models::integer_table());
+}
+
+#[test]
+fn the_integer_table_agrees_at_every_count() {
+    let model = models::integer_table();
+    let Law::IntegerTable(table) = &model.law else { unreachable!() };
+    let shape = table.shape();
+    let exception = first_exception(|bits| {
+        let count = bits as i32;
+        evaluate_integer(table, &model.cells, count) == integer_value(&shape, &model.cells, count)
+    });
+    assert_eq!(exception, None);
+}
+
+/// Two and three inputs on a set that fills their space, special values among them.
+#[test]
+fn models_of_several_inputs_agree_on_a_million_rows() {
+    for (name, model) in models::every_kind() {
+        if model.inputs.len() > 1 {
+            let comparison = compare(&model, &sweep(&model, 1_000_000));
+            assert!(comparison.identical() && comparison.compared >= 1_000_000, "{name}: {comparison:?}");
+        }
+    }
+}
