@@ -51,12 +51,12 @@ fn the_newest_valid_slot_wins() {
 #[test]
 fn an_intact_slot_that_cannot_be_used_gives_way_to_the_older() {
     let mut later_format = image(2.0, 0);
-    later_format[4] = 2;
+    later_format[4] = frikan_shared::image::FORMAT_VERSION as u8 + 1;
     let (old, new) = (slot(4, &image(1.0, 0)), slot(5, &later_format));
     assert_eq!((loaded(&old, &new), next(&old, &new)), (Ok(Which::First), (Which::Second, 6)));
     assert_eq!((loaded(&new, &old), next(&new, &old)), (Ok(Which::Second), (Which::First, 6)));
     let erased = vec![0xFF; SLOT_BYTES];
-    assert_eq!(loaded(&erased, &new), Err(ImageError::UnsupportedVersion(2)));
+    assert_eq!(loaded(&erased, &new), Err(ImageError::UnsupportedVersion(frikan_shared::image::FORMAT_VERSION + 1)));
 }
 
 #[test]
