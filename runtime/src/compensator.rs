@@ -92,6 +92,12 @@ impl<const CELLS: usize> Compensator<CELLS> {
         self.model.as_ref().ok()
     }
 
+    /// What a step would say of the model: active, or why there is none.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        self.model.as_ref().map_or_else(|error| Status::NoModel(*error), |_| Status::Active)
+    }
+
     /// Changes the limits between two steps; the slew limit holds across the change.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;

@@ -1,5 +1,6 @@
 //! What the cross-crate tests share.
 
+pub mod c;
 pub mod command;
 pub mod concealed;
 pub mod cost;

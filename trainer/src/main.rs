@@ -9,7 +9,7 @@ use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
 ///
-/// Exit status: 0 fine, 1 `diagnose` or `verify` found something, 2 usage, 3 bad input data, 4 fitted but not
+/// Exit status: 0 fine, 1 `diagnose`, `verify` or `show --compare` found something, 2 usage, 3 bad input data, 4 fitted but not
 /// identifiable or not converged, 5 input or output.
 #[derive(Parser)]
 #[command(name = "trainer", version, arg_required_else_help = true)]
@@ -33,7 +33,7 @@ enum Command {
 fn run(command: &Command) -> Result<u8> {
     match command {
         Command::Fit(arguments) => fit::run(arguments),
-        Command::Show(arguments) => show::run(arguments).map(|()| 0),
+        Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),

@@ -4,6 +4,7 @@ use crate::test_models::{coulomb_model, image_of};
 use frikan_shared::effect::Effect;
 use nalgebra::SVector;
 use proptest::prelude::*;
+use std::vec::Vec;
 
 const DT: f32 = 1.0e-3;
 
@@ -46,6 +47,136 @@ fn what_is_not_finite_gives_zero_torque_and_says_so() {
     let mut off = Compensator::<16>::new(b"not an image, but long enough", Limits::new(1.0, 100.0, 1.0e9));
     let answer = off.step(&moving(1.0), DT);
     assert_eq!((answer.torque, answer.status), (0.0, Status::NoModel(ImageError::BadMagic)));
+}
+
+/// Over a sweep through zero in steps of 10 um/s, no change of torque is larger than the law's slope allows, and the sign is the
+/// velocity's.
+#[test]
+fn the_torque_goes_smoothly_through_zero() {
+    let mut compensator = compensator(Limits::new(1.0, 100.0, 1.0e9));
+    let step = 1.0e-5;
+    // d/dv 10 tanh(50 v) is at most 500.
+    let largest = 1.01 * 500.0 * step;
+    let mut before = compensator.step(&moving(-0.1), DT).torque;
+    for index in -9_999..=10_000 {
+        let velocity = step * index as f32;
+        let torque = compensator.step(&moving(velocity), DT).torque;
+        assert!((0.0..=largest).contains(&(torque - before)), "{velocity}: {before} to {torque}");
+        assert!(torque * velocity >= 0.0 && (velocity == 0.0) == (torque == 0.0), "{velocity}: {torque}");
+        before = torque;
+    }
+    assert!(before > 9.99);
+}
+
+/// No step moves the torque faster than the slew limit: not a reversal, not a change of the limits, not the way back from a fault.
+#[test]
+fn the_slew_limit_holds_for_every_step() {
+    let slew = 2000.0;
+    let mut compensator = compensator(Limits::new(1.0, 100.0, slew));
+    let mut before = 0.0;
+    for index in 0..200 {
+        let velocity = if (index / 20) % 2 == 0 { 2.0 } else { -2.0 };
+        if index == 50 {
+            compensator.set_limits(Limits::new(0.3, 100.0, slew));
+        }
+        let faulty = index % 33 == 32;
+        let answer = compensator.step(&moving(if faulty { f32::NAN } else { velocity }), DT);
+        // A fault takes the torque away at once: that is the one step that may be larger.
+        assert!(
+            faulty || (answer.torque - before).abs() <= 1.0001 * slew * DT,
+            "{index}: {before} to {}",
+            answer.torque
+        );
+        assert_eq!(faulty, answer.status == Status::NotFinite && answer.torque == 0.0);
+        before = answer.torque;
+    }
+}
+
+#[test]
+fn no_image_exceeds_the_limit_of_the_firmware() {
+    for (gain, limit) in [(1.0, 5.0), (3.0, 5.0), (0.0, 5.0), (1.0, 0.0), (f32::MAX, 5.0), (1.0, -1.0), (-1.0, 5.0)] {
+        let image = image_of(coulomb_model(1.0e3, &[]));
+        let mut compensator = Compensator::<16>::new(&image, Limits::new(gain, limit, 1.0e9));
+        let torque = compensator.step(&moving(1.0), DT).torque;
+        let expected = if gain > 0.0 { limit.max(0.0) } else { 0.0 };
+        assert_eq!(torque, expected, "gain {gain}, limit {limit}");
+        assert_eq!(compensator.step(&moving(-1.0), DT).torque, -expected, "gain {gain}, limit {limit}");
+    }
+}
+
+/// Every channel that the model reads switches compensation off; one that it does not read may be anything.
+#[test]
+fn only_what_the_model_reads_must_be_finite() {
+    let mut model = coulomb_model(10.0, &[]);
+    model.inputs.truncate(3);
+    let mut compensator = Compensator::<16>::new(&image_of(model), Limits::new(1.0, 100.0, 1.0e9));
+    let nan = f32::NAN;
+    let sound = moving(1.0);
+    let unread = Measurement { temperature: nan, acceleration: nan, other: [nan; 4], ..sound };
+    assert_eq!(compensator.step(&unread, DT).status, Status::Active);
+    for faulty in [Measurement { load: nan, ..sound }, Measurement { position: nan, ..sound }] {
+        let answer = compensator.step(&faulty, DT);
+        assert_eq!((answer.torque, answer.status), (0.0, Status::NotFinite));
+    }
+    for dt in [-DT, 1.5] {
+        assert_eq!(compensator.step(&sound, dt).status, Status::NotFinite);
+    }
+    assert_eq!(compensator.step(&sound, 0.0).status, Status::Active);
+}
+
+/// A reset forgets the slew and the memory of the effects: the same samples give the same bits again.
+#[test]
+fn a_reset_starts_over() {
+    for mut compensator in every_effect() {
+        let mut run = || -> Vec<u32> {
+            (0..50).map(|index| compensator.step(&moving((0.3 * index as f32).sin()), DT).torque.to_bits()).collect()
+        };
+        let first = run();
+        assert_ne!(run(), first);
+        compensator.reset();
+        let again: Vec<u32> =
+            (0..50).map(|index| compensator.step(&moving((0.3 * index as f32).sin()), DT).torque.to_bits()).collect();
+        assert_eq!(again, first);
+    }
+}
+
+#[test]
+fn a_key_and_slots_reach_the_compensator() {
+    use frikan_shared::authentication::{Key, Trust};
+    let key = Key::new([4; 32]);
+    let image = image_of(coulomb_model(10.0, &[]));
+    let limits = Limits::new(1.0, 100.0, 1.0e9);
+    let plain = Compensator::<16>::trusting(&image, Trust::Key(&key), limits);
+    assert_eq!(plain.status(), Status::NoModel(ImageError::NotAuthentic));
+    let tagged = [&image[..], &key.tag(&image)].concat();
+    assert_eq!(Compensator::<16>::trusting(&tagged, Trust::Key(&key), limits).status(), Status::Active);
+    let slot = [&crate::slots::slot_header(1, &tagged).unwrap()[..], &tagged].concat();
+    let mut from_slots = Compensator::<16>::from_slots(&[], &slot, Trust::Key(&key), limits);
+    assert!(from_slots.step(&moving(1.0), DT).torque > 9.9);
+    let off = Compensator::<16>::from_slots(&[], &[], Trust::Anyone, limits);
+    assert_eq!(off.status(), Status::NoModel(ImageError::NoImage));
+}
+
+/// Every joint gets the answer that it would get alone.
+#[test]
+fn six_joints_are_six_compensators() {
+    let limits = |joint: usize| Limits::new(1.0, 2.0 + joint as f32, 500.0 * (joint + 1) as f32);
+    let alone = |joint: usize| -> Compensator<16> {
+        Compensator::new(&image_of(coulomb_model(1.0 + joint as f32, &[])), limits(joint))
+    };
+    let mut singles: [_; 6] = std::array::from_fn(alone);
+    let mut joints = Joints::new(std::array::from_fn::<_, 6, _>(alone));
+    for index in 0..100 {
+        let velocity = SVector::<f32, 6>::from_fn(|joint, _| (0.1 * (index * (joint + 1)) as f32).sin());
+        let mut measurements = JointMeasurements::of_velocity(velocity);
+        measurements.load[3] = if index % 10 == 9 { f32::INFINITY } else { 1.0 };
+        let (torques, statuses) = joints.step(&measurements, DT);
+        for (joint, single) in singles.iter_mut().enumerate() {
+            let sample = Measurement { load: measurements.load[joint], ..moving(velocity[joint]) };
+            let answer = single.step(&sample, DT);
+            assert_eq!((torques[joint].to_bits(), statuses[joint]), (answer.torque.to_bits(), answer.status));
+        }
+    }
 }
 
 #[test]

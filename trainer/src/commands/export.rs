@@ -1,21 +1,24 @@
 //! `trainer export`: an image in the form that a tool chain takes.
 
-use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use frikan_shared::image::{Image, image_crc32};
+use frikan_runtime::slots::slot_header;
+use frikan_shared::image::Image;
 use frikan_shared::model::Law;
-use serde_json::json;
 
-use super::output::Outputs;
+use super::output::{Outputs, print};
 use crate::error::{Error, Result, codes};
+use crate::export::elf::{Processor, object_file};
+use crate::export::flashing::{Addressing, commands};
+use crate::export::{c, c_array, hex, readable, title, uf2};
 use crate::fit::{CELLS, model};
+use crate::key;
 use crate::law::canonical::canonical;
 use crate::law::program::expression_of;
 use crate::law::{Language, render};
 
-/// Export an image for a build or a flash tool.
+/// Export an image for a build or a flash tool, and print the commands that flash it.
 #[derive(Args, Clone, Debug)]
 pub struct Export {
     /// Image to export
@@ -24,10 +27,25 @@ pub struct Export {
     /// Form to export to
     #[arg(long, value_enum)]
     pub to: Format,
-    /// First address, for `hex`
-    #[arg(long, default_value = "0", value_parser = address, value_name = "ADDRESS")]
-    pub address: u32,
-    /// File to write; `-` for standard output
+    /// First address, for `hex`, `uf2` and the commands
+    #[arg(long, value_parser = number, value_name = "ADDRESS")]
+    pub address: Option<u32>,
+    /// Put the header of a flash slot in front, with this sequence number
+    #[arg(long, value_parser = number, value_name = "SEQUENCE")]
+    pub slot: Option<u32>,
+    /// Put the tag of the key in this file behind the image, for drives that ask for one
+    #[arg(long, value_name = "KEY")]
+    pub key_file: Option<PathBuf>,
+    /// Processor family, for `uf2` boot loaders that ask for one
+    #[arg(long, value_parser = number, value_name = "NUMBER")]
+    pub family: Option<u32>,
+    /// Processor, for `elf`
+    #[arg(long, value_enum, default_value = "arm")]
+    pub processor: ElfProcessor,
+    /// Chip, for the commands, as probe-rs names it
+    #[arg(long, value_name = "NAME")]
+    pub chip: Option<String>,
+    /// File to write; `-` for standard output. `c` writes the header beside it
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 }
@@ -35,16 +53,20 @@ pub struct Export {
 /// A form of export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// The bytes of the image
+    /// The bytes as they go to flash
     Bin,
     /// Intel HEX
     Hex,
-    /// An array for a C compiler
+    /// UF2, for boot loaders that show up as a drive
+    Uf2,
+    /// An object file with the bytes in its section `.frikan`
+    Elf,
+    /// The bytes as an array for a C compiler
     CHeader,
+    /// The law as C source that needs nothing else: FILE.c and FILE.h
+    C,
     /// Everything that the image says, readable
     Json,
-    /// The law as a C function of doubles
-    C,
     /// The law as a Rust function
     Rust,
     /// The law as a Python function over NumPy arrays
@@ -57,28 +79,51 @@ pub enum Format {
     Text,
 }
 
+/// A processor of `elf`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ElfProcessor {
+    /// 32-bit Arm
+    Arm,
+    /// 32-bit RISC-V
+    Riscv32,
+}
+
 /// Runs the command.
 ///
 /// # Errors
-/// `FRK-D020` for what is no image, `FRK-I...` when a file cannot be read or written.
+/// `FRK-D020` for what is no image, `FRK-D022` for what is no key, `FRK-U001` and `FRK-U005` where the form does not suit the model
+/// or the options, `FRK-I...` when a file cannot be read or written.
 pub fn run(arguments: &Export) -> Result<()> {
-    let (bytes, image) = model::load(&arguments.model)?;
+    let (image_bytes, image) = model::load(&arguments.model)?;
+    let title = title(&image_bytes, &image);
+    let bytes = flashed(arguments, image_bytes.clone())?;
+    let first = arguments.address.unwrap_or(0);
+    let mut outputs = Outputs::default();
     let content = match arguments.to {
-        Format::Bin => bytes,
-        Format::Hex => intel_hex(&bytes, arguments.address).into_bytes(),
-        Format::CHeader => c_header(&bytes, &image).into_bytes(),
-        Format::Json => readable(&bytes, &image).into_bytes(),
-        Format::C => law(&image, Language::C)?,
+        Format::Bin => bytes.clone(),
+        Format::Hex => hex::intel_hex(&bytes, first).into_bytes(),
+        Format::Uf2 => uf2::uf2(&bytes, first, arguments.family),
+        Format::Elf => object_file(&bytes, processor(arguments.processor))?,
+        Format::CHeader => c_array::c_header(&bytes, &title).into_bytes(),
+        Format::Json => readable::readable(&image_bytes, &image).into_bytes(),
         Format::Rust => law(&image, Language::Rust)?,
         Format::Python => law(&image, Language::Python)?,
         Format::Sympy => law(&image, Language::SymPy)?,
         Format::Latex => law(&image, Language::Latex)?,
         Format::Text => law(&image, Language::Unicode)?,
+        Format::C => {
+            let (name, header) = c_names(&arguments.output)?;
+            let evaluator = c::evaluator(&name, &title, &image)?;
+            outputs.add(&header, evaluator.header);
+            evaluator.source.into_bytes()
+        }
     };
-    let mut outputs = Outputs::default();
     outputs.add(&arguments.output, content);
-    outputs.refuse_overwriting(&[arguments.model.as_path()])?;
-    outputs.write()
+    let mut inputs = vec![arguments.model.as_path()];
+    inputs.extend(arguments.key_file.as_deref());
+    outputs.refuse_overwriting(&inputs)?;
+    outputs.write()?;
+    if arguments.output == Path::new("-") { Ok(()) } else { print(&advice(arguments, bytes.len())) }
 }
 
 /// The law of an image, inputs by their names, without rigid body and effects.
@@ -101,123 +146,60 @@ fn identifier(name: &str) -> String {
     if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain } else { format!("x_{plain}") }
 }
 
-fn address(text: &str) -> std::result::Result<u32, String> {
+/// Whether a format holds the bytes of flash.
+fn is_of_flash(format: Format) -> bool {
+    matches!(format, Format::Bin | Format::Hex | Format::Uf2 | Format::Elf | Format::CHeader)
+}
+
+/// What goes to flash: the image, its tag behind it and the header of its slot in front, as asked for.
+fn flashed(arguments: &Export, image: Vec<u8>) -> Result<Vec<u8>> {
+    let dressed = arguments.slot.is_some() || arguments.key_file.is_some();
+    if dressed && !is_of_flash(arguments.to) {
+        return Err(Error::new(&codes::USAGE, "this form is not the bytes of flash: it takes neither slot nor key"));
+    }
+    let mut bytes = image;
+    if let Some(path) = &arguments.key_file {
+        let tag = key::load(path)?.tag(&bytes);
+        bytes.extend(tag);
+    }
+    if let Some(sequence) = arguments.slot {
+        let header = slot_header(sequence, &bytes)
+            .ok_or_else(|| Error::new(&codes::FILE_TOO_LARGE, "the image is too large for a slot"))?;
+        bytes.splice(..0, header);
+    }
+    Ok(bytes)
+}
+
+/// The commands by which the file gets into the drive.
+fn advice(arguments: &Export, bytes: usize) -> String {
+    let file = arguments.output.display().to_string();
+    let chip = arguments.chip.as_deref();
+    match arguments.to {
+        Format::Bin => commands(&file, arguments.address, bytes, Addressing::None, chip),
+        Format::Hex => commands(&file, Some(arguments.address.unwrap_or(0)), bytes, Addressing::Inside, chip),
+        Format::Uf2 => format!("cp {file} /media/BOOT-LOADER/\n"),
+        _ => String::new(),
+    }
+}
+
+fn processor(processor: ElfProcessor) -> Processor {
+    match processor {
+        ElfProcessor::Arm => Processor::Arm,
+        ElfProcessor::Riscv32 => Processor::Riscv32,
+    }
+}
+
+/// The name of the evaluator and the path of its header, from the path of its source.
+fn c_names(source: &Path) -> Result<(String, PathBuf)> {
+    let name = source.file_stem().filter(|_| source.extension().is_some_and(|extension| extension == "c"));
+    let name = name.ok_or_else(|| Error::new(&codes::USAGE, "`--to c` writes two files: name one that ends in .c"))?;
+    Ok((name.to_string_lossy().into_owned(), source.with_extension("h")))
+}
+
+fn number(text: &str) -> std::result::Result<u32, String> {
     let parsed = match text.strip_prefix("0x") {
         Some(digits) => u32::from_str_radix(digits, 16),
         None => text.parse(),
     };
-    parsed.map_err(|_| "an address such as 0x08060000 is expected".to_owned())
-}
-
-/// Intel HEX records of sixteen bytes with extended linear addresses (Intel 1988).
-fn intel_hex(bytes: &[u8], first: u32) -> String {
-    let mut text = String::new();
-    let mut record = |offset: u16, kind: u8, data: &[u8]| {
-        let mut fields = vec![data.len() as u8, (offset >> 8) as u8, offset as u8, kind];
-        fields.extend_from_slice(data);
-        let sum = fields.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
-        fields.push(sum.wrapping_neg());
-        text.push(':');
-        for byte in fields {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02X}");
-        }
-        text.push('\n');
-    };
-    let mut upper = None;
-    let mut at = 0usize;
-    while at < bytes.len() {
-        let address = u64::from(first) + at as u64;
-        let high = (address >> 16) as u16;
-        if upper != Some(high) {
-            record(0, 4, &high.to_be_bytes());
-            upper = Some(high);
-        }
-        // A record may not run over the end of its 64 KiB.
-        let room = (0x1_0000 - (address & 0xFFFF)) as usize;
-        let length = room.min(16).min(bytes.len() - at);
-        record(address as u16, 0, &bytes[at..at + length]);
-        at += length;
-    }
-    record(0, 1, &[]);
-    text
-}
-
-fn c_header(bytes: &[u8], image: &Image<CELLS>) -> String {
-    let mut text = String::from("/* Frikan friction image");
-    if !image.provenance.joint.is_empty() {
-        let joint = image.provenance.joint.replace("*/", "* /");
-        let _ = write!(text, " of joint \"{}\"", joint.escape_debug());
-    }
-    let _ = writeln!(
-        text,
-        ", {} bytes, CRC-32 {:08x}. Made by `trainer export --to c-header`; do not edit. */",
-        bytes.len(),
-        image_crc32(bytes).unwrap_or(0)
-    );
-    text.push_str("#ifndef FRIKAN_IMAGE_H\n#define FRIKAN_IMAGE_H\n\n#include <stdint.h>\n\n");
-    let _ = writeln!(text, "#define FRIKAN_IMAGE_BYTES {}u\n", bytes.len());
-    text.push_str("static const uint8_t frikan_image[FRIKAN_IMAGE_BYTES] = {\n");
-    for chunk in bytes.chunks(12) {
-        text.push_str("   ");
-        for byte in chunk {
-            let _ = write!(text, " 0x{byte:02x},");
-        }
-        text.push('\n');
-    }
-    text.push_str("};\n\n#endif\n");
-    text
-}
-
-fn readable(bytes: &[u8], image: &Image<CELLS>) -> String {
-    let (model, provenance) = (&image.model, &image.provenance);
-    let inputs: Vec<_> = model
-        .inputs
-        .iter()
-        .map(|input| {
-            json!({"input": input.quantity.name(), "unit": input.unit.symbol(), "low": input.low, "high": input.high})
-        })
-        .collect();
-    let cells: Vec<[f32; 4]> = model.cells.iter().map(|cell| cell.floats()).collect();
-    let body = model.rigid_body;
-    let object = json!({
-        "schema": "frikan.image/1",
-        "joint": provenance.joint.as_str(),
-        "trainer_version": provenance.trainer_version.as_str(),
-        "recordings_hash": format!("{:016x}", provenance.recordings_hash),
-        "seed": provenance.seed,
-        "bytes": bytes.len(),
-        "crc32": image_crc32(bytes).unwrap_or(0),
-        "inputs": inputs,
-        "output_unit": model.output_unit.symbol(),
-        "output_limit": model.output_limit,
-        "rigid_body": {
-            "inertia": body.inertia, "gravity_sin": body.gravity_sin, "gravity_cos": body.gravity_cos,
-            "offset": body.offset, "given_scale": body.given_scale,
-        },
-        "law": model.law,
-        "effects": model.effects.as_slice(),
-        "cells": cells,
-    });
-    format!("{object:#}\n")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn hex_records_have_their_checksum_and_cross_a_bank() {
-        let text = intel_hex(&[0xAB; 20], 0x0800_FFF8);
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], ":020000040800F2");
-        assert!(lines[1].starts_with(":08FFF800ABAB"));
-        assert_eq!(lines[2], ":020000040801F1");
-        assert_eq!(lines.last(), Some(&":00000001FF"));
-        for line in lines {
-            let bytes: Vec<u8> =
-                (1..line.len()).step_by(2).map(|i| u8::from_str_radix(&line[i..i + 2], 16).unwrap()).collect();
-            assert_eq!(bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)), 0, "{line}");
-        }
-    }
+    parsed.map_err(|_| "a number such as 1 or 0x08060000 is expected".to_owned())
 }

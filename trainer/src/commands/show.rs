@@ -9,7 +9,10 @@ use frikan_shared::model::Law;
 
 use super::output::print;
 use crate::error::Result;
+use crate::export::dump::{Found, images, in_use};
+use crate::files::read_whole;
 use crate::fit::{CELLS, model};
+use crate::key;
 use crate::law::canonical::canonical;
 use crate::law::program::expression_of;
 use crate::law::render::significant;
@@ -18,24 +21,74 @@ use crate::law::{Language, render};
 /// Significant digits of printed figures.
 const DIGITS: usize = 6;
 
-/// Show what an image holds: joint, inputs and ranges, law, rigid body, provenance.
+/// Largest dump that is read: the flash of a large microcontroller.
+const DUMP_LIMIT_BYTES: u64 = 16 << 20;
+
+/// Show what an image holds: joint, inputs and ranges, law, rigid body, provenance. Or what a dump of flash holds.
 #[derive(Args, Clone, Debug)]
 pub struct Show {
-    /// Image to show
-    #[arg(value_name = "MODEL.frk")]
+    /// Image to show, or a dump of flash with images in it
+    #[arg(value_name = "MODEL.frk|DUMP")]
     pub model: PathBuf,
+    /// Say whether the image in use is this one; exit status 1 where it is not
+    #[arg(long, value_name = "MODEL.frk")]
+    pub compare: Option<PathBuf>,
+    /// Ask for the tag of the key in this file, as the drive does
+    #[arg(long, value_name = "KEY")]
+    pub key_file: Option<PathBuf>,
 }
 
-/// Runs the command.
+/// Runs the command and returns its exit status.
 ///
 /// # Errors
-/// `FRK-D020` for what is no image, `FRK-I...` when it cannot be read.
-pub fn run(arguments: &Show) -> Result<()> {
-    let (bytes, image) = model::load(&arguments.model)?;
+/// `FRK-D020` for what holds no image, `FRK-D022` for what is no key, `FRK-I...` when a file cannot be read.
+pub fn run(arguments: &Show) -> Result<u8> {
+    let key = arguments.key_file.as_deref().map(key::load).transpose()?;
+    let wanted = arguments.compare.as_deref().map(model::load).transpose()?;
+    let bytes = read_whole(&arguments.model, DUMP_LIMIT_BYTES)?;
+    let found = images(&bytes, key.as_ref());
+    if !found.iter().any(|found| found.image.is_ok()) {
+        // Nothing to show: what a decoder says of the file as a whole.
+        return model::from_bytes(&bytes).map(|_| 0).map_err(|e| e.in_file(arguments.model.display().to_string()));
+    }
+    let is_dump = found.len() > 1
+        || found.iter().any(|found| found.image.as_ref().is_ok_and(|image| image.0.len() < bytes.len()));
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = describe(&mut text, &bytes, &image);
-    print(&text)
+    for found in &found {
+        // Writing to a string cannot fail.
+        let _ = describe_found(&mut text, found, is_dump);
+    }
+    let in_use = in_use(&found).and_then(|found| found.image.as_ref().ok());
+    let mut status = 0;
+    if let (Some(path), Some((wanted, _))) = (&arguments.compare, &wanted) {
+        let is_the_one = in_use.is_some_and(|(bytes, _)| bytes == wanted);
+        let verdict = match (is_the_one, in_use) {
+            (true, _) => "this is the image of",
+            (false, Some(_)) => "this is NOT the image of",
+            (false, None) => "no image is in use, not that of",
+        };
+        let _ = writeln!(text, "verdict     {verdict} {}", path.display());
+        status = u8::from(!is_the_one);
+    }
+    print(&text).map(|()| status)
+}
+
+/// One image, or what is wrong with it; in a dump, where it lies.
+fn describe_found(out: &mut String, found: &Found<'_>, is_dump: bool) -> std::fmt::Result {
+    if is_dump {
+        let slot =
+            found.sequence.map_or_else(String::new, |sequence| format!(", in an intact slot, sequence {sequence}"));
+        writeln!(out, "found       at byte {:#x} of the dump{slot}", found.offset)?;
+    }
+    match &found.image {
+        Ok((bytes, image)) => describe(out, bytes, image)?,
+        Err(error) => writeln!(out, "image       refused: {error}")?,
+    }
+    match found.authentic {
+        Some(true) => writeln!(out, "tag         authentic"),
+        Some(false) => writeln!(out, "tag         NOT authentic: the drive refuses this image"),
+        None => Ok(()),
+    }
 }
 
 fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::Result {

@@ -59,8 +59,10 @@ const LEAST_ROWS: usize = 150;
 const WITHDRAWN_BELOW_NATS: f64 = -3.0;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
-/// Share of the removable error below which an effect beside others is minor.
+/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque.
 const MINOR_SHARE: f64 = 0.1;
+/// Root mean square over that of the recorded torque below which it is small.
+const MINOR_TORQUE: f64 = 0.025;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
@@ -175,10 +177,13 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
     withdrawn
 }
 
-/// Sets aside, smallest first, what accounts for little of the mismatch beside a larger finding: there the error of the
-/// larger one's formula may pass for an effect. Effects that repeat count together.
+/// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the
+/// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
     let energy = |accepted: &[Accepted]| refit(search, accepted).map(|refit| refit.noise.rms.powi(2));
+    let torque = search.prepared.filtered(&search.prepared.torque);
+    let torque_energy = torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64;
+    let small = MINOR_TORQUE * MINOR_TORQUE * torque_energy;
     let mut minor = Vec::new();
     while let (Some(all), true) = (energy(accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
@@ -189,7 +194,7 @@ fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Ref
         // A one-off event is short: its share says nothing of its size.
         let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
         match effects.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((effect, share)) if share < MINOR_SHARE => {
+            Some((effect, share)) if share < MINOR_SHARE && share * removable < small => {
                 accepted.retain(|other| other.effect() != effect);
                 minor.push((effect, share));
             }

@@ -73,14 +73,34 @@ impl Firmware {
     /// # Errors
     /// `FRK-I005` where the cross target is not installed, `FRK-I007` where the build fails.
     pub fn build(&self, target: &Target, binary: &str) -> Result<PathBuf> {
-        let toolchain = Toolchain::find(target)?;
-        let target_folder = self.folder.join("target").join(&target.name);
         let mut flags = target.rustflags.clone();
         flags.push(format!("-Clink-arg=-Ltargets/{}", target.name));
-        flags.extend(toolchain.flags(target));
+        let arguments = ["build", "--release", "--bin", binary];
+        let folder = self.cargo(&self.folder, target, &flags, &arguments)?;
+        Ok(folder.join("release").join(binary))
+    }
+
+    /// Builds the static library for C for a target, if it is not up to date, and returns its path.
+    ///
+    /// # Errors
+    /// As [`Firmware::build`].
+    pub fn build_c_library(&self, target: &Target) -> Result<PathBuf> {
+        // Flags that concern the linker belong to the firmware that the library goes into.
+        let is_for_compiler = |flag: &&String| flag.starts_with("target-cpu");
+        let processor = target.rustflags.iter().find(is_for_compiler).map(|processor| format!("-C{processor}"));
+        let arguments = ["rustc", "--package", "frikan-c", "--profile", "drive", "--crate-type", "staticlib"];
+        let folder = self.cargo(&self.folder.join("../.."), target, processor.as_slice(), &arguments)?;
+        Ok(folder.join("drive").join("libfrikan.a"))
+    }
+
+    /// Runs cargo in `folder` for a target and returns the folder of what it built.
+    fn cargo(&self, folder: &Path, target: &Target, flags: &[String], arguments: &[&str]) -> Result<PathBuf> {
+        let toolchain = Toolchain::find(target)?;
+        let target_folder = self.folder.join("target").join(&target.name);
+        let flags = [flags, &toolchain.flags(target)].concat();
 
         let mut cargo = Command::new(&toolchain.cargo);
-        cargo.current_dir(&self.folder).args(["build", "--release", "--locked", "--bin", binary]);
+        cargo.current_dir(folder).args(arguments).arg("--locked");
         cargo.args(["--target", &target.triple]).arg("--target-dir").arg(&target_folder);
         cargo.args(toolchain.arguments());
         cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
@@ -102,7 +122,7 @@ impl Firmware {
             );
             return Err(Error::new(&codes::FIRMWARE_BUILD, message));
         }
-        Ok(target_folder.join(&target.triple).join("release").join(binary))
+        Ok(target_folder.join(&target.triple))
     }
 }
 

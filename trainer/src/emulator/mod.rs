@@ -44,8 +44,16 @@ impl Emulator {
     /// As [`Emulator::new`].
     pub fn with_binary(firmware: &Firmware, target: &str, binary: &str) -> Result<Self> {
         let target = firmware.target(target)?;
-        qemu::check_installed(&target)?;
         let elf = firmware.build(&target, binary)?;
+        Self::with_elf(target, elf)
+    }
+
+    /// As [`Emulator::with_binary`], with a program that somebody else linked, such as one in C.
+    ///
+    /// # Errors
+    /// `FRK-I004` where the emulator is missing, `FRK-I007` where the program keeps no flash for an image.
+    pub fn with_elf(target: Target, elf: PathBuf) -> Result<Self> {
+        qemu::check_installed(&target)?;
         let image_window = elf::image_window(&elf)?;
         Ok(Self { target, elf, image_window })
     }

@@ -127,6 +127,10 @@ registry! {
         "The URDF file is not valid XML, lacks the joint, or its links have no mass.",
         "A xacro file that has not been expanded, a joint of another name, or links for display only.",
         "Expand xacro first; name the joint under `[rigid_body] joint`; or give inertia and gravity yourself.";
+    BAD_KEY = "FRK-D022" Data "key file cannot be used",
+        "The key file does not hold 64 hexadecimal digits, which are the 32 bytes of a key.",
+        "Another file is named, or the key was made in another form.",
+        "`openssl rand -hex 32 > drive.key` makes one.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",
@@ -183,6 +187,10 @@ registry! {
         "`--target` names a processor for which there is no firmware.",
         "A misspelt name.",
         "Use one of the names that the message lists.";
+    UNSUITABLE_FORM = "FRK-U005" Usage "form does not suit the model",
+        "The form that `--to` names cannot hold what is in this image.",
+        "A model with correction terms or with a network, exported to a form that has neither memory nor tables of tables.",
+        "Take `bin`, `hex`, `uf2`, `elf` or `c-header`, which hold every image, and the library on the drive.";
 }
 
 #[cfg(test)]

@@ -34,6 +34,9 @@ pub struct Advice {
     pub sentence: String,
 }
 
+/// Predicts the reference's torque at given states.
+pub type ReferenceAt<'a> = dyn Fn(&JointState) -> Option<Reference> + Sync + 'a;
+
 /// Everything from which a plan is made.
 pub struct Question<'a> {
     /// The recording that was diagnosed.
@@ -45,7 +48,7 @@ pub struct Question<'a> {
     /// Within which the joint may move.
     pub limits: Limits,
     /// The reference of [`super::BaseKind::Reference`] at other states.
-    pub reference: Option<&'a (dyn Fn(&JointState) -> Option<Reference> + Sync)>,
+    pub reference: Option<&'a ReferenceAt<'a>>,
 }
 
 /// Within which a joint may move; SI units, rotary or linear. What is absent is taken from the recording.

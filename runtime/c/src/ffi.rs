@@ -1,0 +1,235 @@
+//! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call, and a
+//! compensator is read only behind the mark that [`start`] leaves.
+
+use core::mem::MaybeUninit;
+use core::slice;
+
+use frikan_runtime::compensator::{Compensator, Limits};
+use frikan_runtime::friction::Measurement;
+use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
+use frikan_runtime::shared::model::MAX_INPUTS;
+use frikan_runtime::slots::{SLOT_HEADER_BYTES, Which, next_write, slot_header};
+
+use crate::types::{
+    FRIKAN_CELLS, FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_SLOT_HEADER_BYTES, FRIKAN_STORAGE_WORDS,
+    FrikanCompensation, FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus,
+};
+
+/// Friction compensation of one joint. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory is
+/// off until it is started.
+#[repr(C)]
+pub struct FrikanCompensator {
+    /// Whether there is a compensator in the memory.
+    started: u32,
+    /// Its memory.
+    storage: [u64; FRIKAN_STORAGE_WORDS],
+}
+
+type Inner = Compensator<FRIKAN_CELLS>;
+
+const _: () = {
+    assert!(size_of::<Inner>() <= 8 * FRIKAN_STORAGE_WORDS && align_of::<Inner>() <= align_of::<u64>());
+    assert!(KEY_BYTES == FRIKAN_KEY_BYTES && SLOT_HEADER_BYTES == FRIKAN_SLOT_HEADER_BYTES);
+    assert!(MAX_INPUTS == FRIKAN_OTHER_CHANNELS);
+};
+
+/// Value of `started` behind which the memory holds a compensator.
+const STARTED: u32 = u32::from_le_bytes(*b"FRKC");
+
+/// Puts a compensator into its memory and says whether it has a model.
+///
+/// # Safety
+/// `memory` is null or may be written to.
+unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let Some(memory) = (unsafe { memory.cast::<MaybeUninit<FrikanCompensator>>().as_mut() }) else {
+        return FrikanStatus::NotStarted;
+    };
+    let status = compensator.status().into();
+    let memory = memory.as_mut_ptr();
+    // SAFETY: both fields lie in the memory; the storage is large enough and aligned, as asserted above. A compensator that was there
+    // before needs no drop.
+    unsafe {
+        (&raw mut (*memory).storage).cast::<Inner>().write(compensator);
+        (&raw mut (*memory).started).write(STARTED);
+    }
+    status
+}
+
+/// The compensator in its memory, where it was started.
+///
+/// # Safety
+/// `memory` is null or points to initialised memory that nobody else uses during the call.
+unsafe fn inner<'a>(memory: *mut FrikanCompensator) -> Option<&'a mut Inner> {
+    // SAFETY: the caller's word.
+    let memory = unsafe { memory.as_mut() }?;
+    // SAFETY: only `start` leaves this mark, and after it nobody but the compensator writes to the storage.
+    (memory.started == STARTED).then(|| unsafe { &mut *memory.storage.as_mut_ptr().cast::<Inner>() })
+}
+
+/// Bytes of C; none for a null pointer.
+///
+/// # Safety
+/// `bytes` is null or `length` bytes may be read from it during the call.
+unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
+    // SAFETY: the caller's word; no object is larger than `isize::MAX`.
+    if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
+}
+
+/// The key of C, where there is one.
+///
+/// # Safety
+/// `key` is null or KEY_BYTES may be read from it.
+unsafe fn key_at(key: *const u8) -> Option<Key> {
+    // SAFETY: the caller's word; an array of bytes has no alignment.
+    unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() }.map(|bytes| Key::new(*bytes))
+}
+
+fn trust_of(key: Option<&Key>) -> Trust<'_> {
+    key.map_or(Trust::Anyone, Trust::Key)
+}
+
+/// Limits of C; off for a null pointer.
+///
+/// # Safety
+/// `limits` is null or may be read.
+unsafe fn limits_at(limits: *const FrikanLimits) -> Limits {
+    // SAFETY: the caller's word.
+    unsafe { limits.as_ref() }
+        .map_or(Limits::new(0.0, 0.0, 0.0), |limits| Limits::new(limits.gain, limits.torque, limits.slew))
+}
+
+/// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why.
+///
+/// @param flash  where the image begins
+/// @param bytes  bytes that may be read there; what follows image and tag is not looked at
+/// @param key    FRIKAN_KEY_BYTES: an image without its tag is refused; null for a drive that takes anyone's images
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_start(
+    compensator: *mut FrikanCompensator,
+    flash: *const u8,
+    bytes: usize,
+    key: *const u8,
+    limits: *const FrikanLimits,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
+    let trust = trust_of(key.as_ref());
+    let created = match trust.stored(flash) {
+        Ok(image) => Inner::trusting(image, trust, limits),
+        Err(error) => Inner::with_model(Err(error), limits),
+    };
+    // SAFETY: the caller's word.
+    unsafe { start(compensator, created) }
+}
+
+/// Starts a compensator with the newest usable image of two slots of flash.
+///
+/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_start_from_slots(
+    compensator: *mut FrikanCompensator,
+    first: *const u8,
+    first_bytes: usize,
+    second: *const u8,
+    second_bytes: usize,
+    key: *const u8,
+    limits: *const FrikanLimits,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    unsafe {
+        let key = key_at(key);
+        let (first, second) = (readable(first, first_bytes), readable(second, second_bytes));
+        start(compensator, Inner::from_slots(first, second, trust_of(key.as_ref()), limits_at(limits)))
+    }
+}
+
+/// The compensation after a sample period of `dt` seconds. Call it at a fixed rate.
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_step(
+    compensator: *mut FrikanCompensator,
+    measurement: *const FrikanMeasurement,
+    dt: f32,
+) -> FrikanCompensation {
+    // SAFETY: the caller's word.
+    let (Some(compensator), Some(measurement)) = (unsafe { (inner(compensator), measurement.as_ref()) }) else {
+        return FrikanCompensation { torque: 0.0, position: 0.0, status: FrikanStatus::NotStarted };
+    };
+    let FrikanMeasurement { velocity, position, acceleration, load, temperature, other } = *measurement;
+    let measurement = Measurement { velocity, position, acceleration, load, temperature, other };
+    let answer = compensator.step(&measurement, dt);
+    FrikanCompensation { torque: answer.torque, position: answer.position, status: answer.status.into() }
+}
+
+/// Changes the limits between two steps; the slew limit holds across the change.
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_set_limits(compensator: *mut FrikanCompensator, limits: *const FrikanLimits) {
+    // SAFETY: the caller's word.
+    let (compensator, limits) = unsafe { (inner(compensator), limits_at(limits)) };
+    if let Some(compensator) = compensator {
+        compensator.set_limits(limits);
+    }
+}
+
+/// Forgets what the effects remember and starts from zero torque.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_reset(compensator: *mut FrikanCompensator) {
+    // SAFETY: the caller's word.
+    if let Some(compensator) = unsafe { inner(compensator) } {
+        compensator.reset();
+    }
+}
+
+/// The slot to write next, never the one in use. Erase it, program the image, and the header of frikan_slot_header last.
+///
+/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_next_write(
+    first: *const u8,
+    first_bytes: usize,
+    second: *const u8,
+    second_bytes: usize,
+    key: *const u8,
+) -> FrikanSlotWrite {
+    // SAFETY: the caller's word.
+    let (key, first, second) = unsafe { (key_at(key), readable(first, first_bytes), readable(second, second_bytes)) };
+    let (which, sequence) = next_write::<FRIKAN_CELLS>(first, second, trust_of(key.as_ref()));
+    FrikanSlotWrite { slot: u32::from(which == Which::Second), sequence }
+}
+
+/// Writes the header of a slot, FRIKAN_SLOT_HEADER_BYTES, for an image (and its tag). False where there is none.
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_slot_header(sequence: u32, image: *const u8, bytes: usize, header: *mut u8) -> bool {
+    // SAFETY: the caller's word.
+    let (made, room) = unsafe {
+        (slot_header(sequence, readable(image, bytes)), header.cast::<MaybeUninit<[u8; SLOT_HEADER_BYTES]>>().as_mut())
+    };
+    match (made, room) {
+        (Some(made), Some(room)) => {
+            room.write(made);
+            true
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,24 @@
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs` and `ffi.rs`, the only file with `unsafe`.
+//!
+//! The static library for a target:
+//!
+//! ```text
+//! cargo rustc -p frikan-c --profile drive --crate-type staticlib --target thumbv7em-none-eabihf
+//! ```
+//!
+//! `example/` is a firmware for a Cortex-M4F that uses it. On a host the library links the standard library, for tests.
+#![no_std]
+
+#[cfg(not(target_os = "none"))]
+extern crate std;
+
+#[allow(unsafe_code)]
+pub mod ffi;
+pub mod types;
+
+/// No panic can be reached, and linking with `--gc-sections` leaves nothing of this handler.
+#[cfg(target_os = "none")]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
+}

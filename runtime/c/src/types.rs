@@ -1,0 +1,130 @@
+//! What C hands over and gets back.
+
+use frikan_runtime::compensator::Status;
+use frikan_runtime::shared::image::ImageError;
+
+/// Cells of tables for which a compensator has room; an image with more is refused.
+pub const FRIKAN_CELLS: usize = 128;
+
+/// Bytes of a key.
+pub const FRIKAN_KEY_BYTES: usize = 32;
+
+/// Bytes of the header of a slot.
+pub const FRIKAN_SLOT_HEADER_BYTES: usize = 16;
+
+/// Words of a compensator's memory.
+pub const FRIKAN_STORAGE_WORDS: usize = 640;
+
+/// Channels without a standard quantity.
+pub const FRIKAN_OTHER_CHANNELS: usize = 4;
+
+/// Whether a torque is a compensation, and why not.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrikanStatus {
+    /// The torque compensates friction.
+    Active = 0,
+    /// A channel that the model reads, or the sample period, was not finite: the torque is 0.
+    NotFinite = 1,
+    /// The compensator was never started, or a pointer is null.
+    NotStarted = 2,
+    /// Neither slot holds an intact image.
+    NoImage = 3,
+    /// The tag of the key does not stand behind the image.
+    NotAuthentic = 4,
+    /// The bytes end before the image does.
+    Truncated = 5,
+    /// The bytes are no image.
+    BadMagic = 6,
+    /// The image is of a later format.
+    UnsupportedVersion = 7,
+    /// The image has more cells than FRIKAN_CELLS.
+    TooLarge = 8,
+    /// Bytes follow the image in its slot.
+    TrailingBytes = 9,
+    /// The image is damaged.
+    CrcMismatch = 10,
+    /// The image is not what its format says.
+    Malformed = 11,
+    /// The model cannot be evaluated.
+    InvalidModel = 12,
+}
+
+impl From<ImageError> for FrikanStatus {
+    fn from(error: ImageError) -> Self {
+        match error {
+            ImageError::NoImage => Self::NoImage,
+            ImageError::NotAuthentic => Self::NotAuthentic,
+            ImageError::Truncated => Self::Truncated,
+            ImageError::BadMagic => Self::BadMagic,
+            ImageError::UnsupportedVersion(_) => Self::UnsupportedVersion,
+            ImageError::TooLarge => Self::TooLarge,
+            ImageError::TrailingBytes => Self::TrailingBytes,
+            ImageError::CrcMismatch => Self::CrcMismatch,
+            ImageError::InvalidModel(_) => Self::InvalidModel,
+            _ => Self::Malformed,
+        }
+    }
+}
+
+impl From<Status> for FrikanStatus {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Active => Self::Active,
+            Status::NotFinite => Self::NotFinite,
+            Status::NoModel(error) => error.into(),
+        }
+    }
+}
+
+/// Limits of the firmware; no image changes them. What is negative or not finite counts as 0, that is, off.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrikanLimits {
+    /// Share of the friction that is compensated, 0 to 1 in most drives.
+    pub gain: f32,
+    /// Largest torque put out, in the unit of the model's output.
+    pub torque: f32,
+    /// Its largest change in a second.
+    pub slew: f32,
+}
+
+/// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FrikanMeasurement {
+    /// Velocity, measured or of the reference, rad/s or m/s.
+    pub velocity: f32,
+    /// Position, rad or m.
+    pub position: f32,
+    /// Acceleration, rad/s^2 or m/s^2.
+    pub acceleration: f32,
+    /// Torque or force transmitted by the gear, N m or N.
+    pub load: f32,
+    /// Temperature, degC.
+    pub temperature: f32,
+    /// Channels without a standard quantity, in the order of the model's inputs.
+    pub other: [f32; FRIKAN_OTHER_CHANNELS],
+}
+
+/// The answer to one sample.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrikanCompensation {
+    /// Torque to add, in the unit of the model's output; 0 unless active.
+    pub torque: f32,
+    /// What the model says of the link's position against the motor's, rad; 0 unless active.
+    pub position: f32,
+    /// Whether it is a compensation.
+    pub status: FrikanStatus,
+}
+
+/// A write to come.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrikanSlotWrite {
+    /// 0 for the first slot, 1 for the second.
+    pub slot: u32,
+    /// Number for the slot's header.
+    pub sequence: u32,
+}

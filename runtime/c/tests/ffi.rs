@@ -1,0 +1,117 @@
+//! The functions as C calls them, on the host: bad pointers, memory that was never started, slots.
+#![allow(unsafe_code)]
+
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+
+use frikan::ffi::{
+    FrikanCompensator, frikan_next_write, frikan_reset, frikan_set_limits, frikan_slot_header, frikan_start,
+    frikan_start_from_slots, frikan_step,
+};
+use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
+use frikan_runtime::shared::authentication::Key;
+
+const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
+const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9 };
+const MOVING: FrikanMeasurement =
+    FrikanMeasurement { velocity: 0.5, position: 0.0, acceleration: 0.0, load: 0.0, temperature: 0.0, other: [0.0; 4] };
+
+/// As the static data of a firmware.
+fn zeroed() -> Box<FrikanCompensator> {
+    // SAFETY: words, of which every pattern is one.
+    unsafe { Box::new(MaybeUninit::zeroed().assume_init()) }
+}
+
+fn step(compensator: &mut FrikanCompensator) -> (f32, FrikanStatus) {
+    // SAFETY: references.
+    let answer = unsafe { frikan_step(compensator, &MOVING, 1.0e-3) };
+    (answer.torque, answer.status)
+}
+
+fn start(compensator: &mut FrikanCompensator, flash: &[u8], key: Option<&[u8; 32]>) -> FrikanStatus {
+    let key = key.map_or(null(), |key| key.as_ptr());
+    // SAFETY: a slice and its length, an array of a key's length.
+    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), key, &LIMITS) }
+}
+
+#[test]
+fn a_compensator_is_off_until_it_has_an_image() {
+    let mut elbow = zeroed();
+    assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotStarted));
+    assert_eq!(start(&mut elbow, &IMAGE[..20], None), FrikanStatus::Truncated);
+    assert_eq!(step(&mut elbow), (0.0, FrikanStatus::Truncated));
+    assert_eq!(start(&mut elbow, &[], None), FrikanStatus::Truncated);
+    let flash = [IMAGE, &[0xFF; 64]].concat();
+    assert_eq!(start(&mut elbow, &flash, None), FrikanStatus::Active);
+    let (torque, status) = step(&mut elbow);
+    assert!(torque > 10.0 && status == FrikanStatus::Active);
+    // SAFETY: references.
+    unsafe {
+        frikan_set_limits(&mut *elbow, &FrikanLimits { torque: 3.0, ..LIMITS });
+        assert_eq!(frikan_step(&mut *elbow, &MOVING, 1.0e-3).torque, 3.0);
+        frikan_reset(&mut *elbow);
+        let answer = frikan_step(&mut *elbow, &FrikanMeasurement { velocity: f32::NAN, ..MOVING }, 1.0e-3);
+        assert_eq!((answer.torque, answer.status), (0.0, FrikanStatus::NotFinite));
+    }
+}
+
+#[test]
+fn null_pointers_leave_everything_off() {
+    let mut elbow = zeroed();
+    // SAFETY: null is what every function is ready for.
+    unsafe {
+        assert_eq!(frikan_start(null_mut(), IMAGE.as_ptr(), IMAGE.len(), null(), &LIMITS), FrikanStatus::NotStarted);
+        assert_eq!(frikan_start(&mut *elbow, null(), 100, null(), &LIMITS), FrikanStatus::Truncated);
+        assert_eq!(frikan_start(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null(), null()), FrikanStatus::Active);
+        assert_eq!(frikan_step(&mut *elbow, &MOVING, 1.0e-3).torque, 0.0);
+        assert_eq!(frikan_step(&mut *elbow, null(), 1.0e-3).status, FrikanStatus::NotStarted);
+        assert_eq!(frikan_step(null_mut(), &MOVING, 1.0e-3).status, FrikanStatus::NotStarted);
+        assert!(!frikan_slot_header(1, IMAGE.as_ptr(), IMAGE.len(), null_mut()));
+        frikan_set_limits(null_mut(), &LIMITS);
+        frikan_reset(null_mut());
+    }
+}
+
+#[test]
+fn a_key_asks_for_its_tag() {
+    let key = [9; 32];
+    let tagged = [IMAGE, &Key::new(key).tag(IMAGE), &[0xFF; 8]].concat();
+    let mut elbow = zeroed();
+    assert_eq!(start(&mut elbow, &tagged, Some(&key)), FrikanStatus::Active);
+    assert_eq!(start(&mut elbow, &tagged, Some(&[8; 32])), FrikanStatus::NotAuthentic);
+    assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotAuthentic));
+    assert_eq!(start(&mut elbow, &[IMAGE, &[0xFF; 64]].concat(), Some(&key)), FrikanStatus::NotAuthentic);
+}
+
+#[test]
+fn an_update_goes_to_the_slot_that_is_not_in_use() {
+    let mut flash = [vec![0xFF; 2048], vec![0xFF; 2048]];
+    let mut elbow = zeroed();
+    for round in 1..=3 {
+        let [first, second] = &flash;
+        // SAFETY: slices and their lengths, no key.
+        let write = unsafe { frikan_next_write(first.as_ptr(), first.len(), second.as_ptr(), second.len(), null()) };
+        assert_eq!(write, FrikanSlotWrite { slot: (round + 1) % 2, sequence: round });
+        let mut header = [0; 16];
+        // SAFETY: a slice and its length, room for a header.
+        assert!(unsafe { frikan_slot_header(write.sequence, IMAGE.as_ptr(), IMAGE.len(), header.as_mut_ptr()) });
+        let slot = &mut flash[write.slot as usize];
+        slot[16..16 + IMAGE.len()].copy_from_slice(IMAGE);
+        slot[..16].copy_from_slice(&header);
+        let [first, second] = &flash;
+        // SAFETY: slices and their lengths, no key.
+        let status = unsafe {
+            frikan_start_from_slots(
+                &mut *elbow,
+                first.as_ptr(),
+                first.len(),
+                second.as_ptr(),
+                second.len(),
+                null(),
+                &LIMITS,
+            )
+        };
+        assert_eq!(status, FrikanStatus::Active);
+        assert!(step(&mut elbow).0 > 10.0);
+    }
+}

@@ -1,0 +1,168 @@
+//! `--to c`: the exported source, compiled on the host and for the emulated Cortex-M4F, against the runtime.
+
+use std::path::{Path, PathBuf};
+
+use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::shared::expression::{Operation, Program};
+use frikan_runtime::shared::model::{Input, Law};
+use frikan_runtime::shared::units::{Quantity, Unit};
+use frikan_tests::c::{firmware, floats_through, host_program};
+use frikan_tests::models::{self, TestModel};
+use frikan_tests::vectors::{one_input, space_filling};
+use frikan_trainer::emulator::{Emulator, Firmware, Mode, Request};
+use frikan_trainer::export::c::evaluator;
+use frikan_trainer::fit::model::from_bytes;
+
+const ROWS: usize = 200_000;
+
+/// An expression of two inputs.
+fn expression(operations: &[Operation]) -> TestModel {
+    let mut model = models::stribeck_expression();
+    let load = Input { quantity: Quantity::Load, unit: Unit::NewtonMetre, low: -1.0e9, high: 1.0e9 };
+    model.inputs[0].low = -100.0;
+    model.inputs[0].high = 1.0e9;
+    model.inputs.extend([load]);
+    model.output_limit = 1.0e9;
+    model.law = Law::Expression(Program { operations: operations.iter().copied().collect() });
+    model.validate().unwrap();
+    model
+}
+
+/// Programs in which every operation occurs.
+fn every_operation() -> Vec<(String, TestModel)> {
+    use Operation::*;
+    let of_one = [
+        Scale(-0.3),
+        Offset(-1.5),
+        PowerOf(0.7),
+        PowerOf(-2.0),
+        Negate,
+        Absolute,
+        Square,
+        Reciprocal,
+        Exp,
+        Log,
+        Tanh,
+        Sin,
+        Cos,
+        Atan,
+        SquareRoot,
+        Sign,
+    ];
+    let of_two = [Add, Subtract, Multiply, Divide, Minimum, Maximum, Power];
+    let one = of_one.into_iter().map(|operation| (format!("{operation:?}"), expression(&[Input(0), operation])));
+    let two = of_two.into_iter().map(|operation| {
+        (format!("{operation:?}"), expression(&[ScaledInput(1, 0.5), Input(0), Constant(-0.25), Add, operation]))
+    });
+    one.chain(two).collect()
+}
+
+/// Every model that has a form in C.
+fn exportable() -> Vec<(String, TestModel)> {
+    let kinds = models::every_kind().into_iter().filter(|(_, model)| !matches!(model.law, Law::Network(_)));
+    kinds.map(|(name, model)| (name.to_owned(), model)).collect()
+}
+
+fn rows(model: &TestModel, count: usize) -> Vec<f32> {
+    match model.inputs.as_slice() {
+        [input] => one_input(count, input.high, 4),
+        _ => {
+            let mut values = space_filling(count, &[100.0, 1.0e4]);
+            // Any bit pattern in either input.
+            let wild = one_input(count, 50.0, 5);
+            values[..count].copy_from_slice(&wild);
+            values
+        }
+    }
+}
+
+fn expected(model: &TestModel, values: &[f32]) -> Vec<f32> {
+    let point = |row: &[f32]| std::array::from_fn(|index| row.get(index).copied().unwrap_or(0.0));
+    values.chunks_exact(model.inputs.len()).map(|row| evaluate(model, &point(row))).collect()
+}
+
+/// Writes `law.c` and `law.h`, and returns the path of the source.
+fn write(folder: &Path, model: &TestModel) -> PathBuf {
+    let files = evaluator("law", "test", &from_bytes(&models::image(model)).unwrap()).unwrap();
+    std::fs::write(folder.join("law.h"), files.header).unwrap();
+    let source = folder.join("law.c");
+    std::fs::write(&source, files.source).unwrap();
+    source
+}
+
+/// A call of the exported function on the elements of an array.
+fn call(model: &TestModel, array: &str) -> String {
+    let arguments: Vec<String> = (0..model.inputs.len()).map(|index| format!("{array}[{index}]")).collect();
+    format!("law_friction({})", arguments.join(", "))
+}
+
+#[track_caller]
+fn assert_same_bits(name: &str, values: &[f32], outputs: &[f32], expected: &[f32]) {
+    assert_eq!(outputs.len(), expected.len(), "{name}");
+    let inputs = values.len() / expected.len();
+    let bits = outputs.iter().zip(expected).map(|(output, expected)| (output.to_bits(), expected.to_bits()));
+    for (row, (output, expected)) in bits.enumerate() {
+        let row = &values[row * inputs..(row + 1) * inputs];
+        assert!(output == expected, "{name} at {row:?}: {output:#010x} instead of {expected:#010x}");
+    }
+}
+
+#[test]
+fn the_host_computes_the_bits_of_the_runtime() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, model) in exportable().into_iter().chain(every_operation()) {
+        let main = at.join("main.c");
+        let text = format!(
+            "#include \"law.h\"\n#include <stdio.h>\nint main(void) {{\n    float x[{count}];\n    \
+             while (fread(x, sizeof x, 1, stdin) == 1) {{\n        const float y = {};\n        \
+             fwrite(&y, sizeof y, 1, stdout);\n    }}\n    return 0;\n}}\n",
+            call(&model, "x"),
+            count = model.inputs.len()
+        );
+        std::fs::write(&main, text).unwrap();
+        let program = at.join("program");
+        host_program(&[write(at, &model), main], &program);
+        let values = rows(&model, ROWS);
+        assert_same_bits(&name, &values, &floats_through(&program, &values), &expected(&model, &values));
+    }
+}
+
+#[test]
+fn the_cortex_m4f_computes_the_bits_of_the_runtime() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let square_root = ("SquareRoot".to_owned(), expression(&[Operation::Input(0), Operation::SquareRoot]));
+    for (name, mut model) in exportable().into_iter().chain([square_root]) {
+        model.inputs.truncate(1);
+        let drive = at.join("drive.c");
+        let text = "#include \"drive.h\"\n#include \"law.h\"\n\
+            FrikanStatus drive_start(void) { return FRIKAN_STATUS_ACTIVE; }\n\
+            float drive_step(const FrikanMeasurement *sample) { return law_friction(sample->velocity); }\n";
+        std::fs::write(&drive, text).unwrap();
+        let elf = at.join("drive.elf");
+        firmware(&[write(at, &model), drive], &[], &elf);
+        let emulator = Emulator::with_elf(Firmware::find().unwrap().target("cortex-m4f").unwrap(), elf).unwrap();
+        let values = rows(&model, ROWS / 10);
+        let padded: Vec<f32> = values.iter().flat_map(|value| [*value, 0.0, 0.0, 0.0]).collect();
+        let request =
+            Request { image: &[], values: &padded, inputs: 4, mode: Mode::Evaluate, floating_point_control: 0 };
+        let answer = emulator.run(&request).unwrap();
+        assert_same_bits(&name, &values, &answer.outputs, &expected(&model, &values));
+    }
+}
+
+/// What has no form in C is refused, and says where to turn.
+#[test]
+fn networks_and_corrections_are_refused() {
+    let refusal = |model: &TestModel| {
+        let error = evaluator("law", "test", &from_bytes(&models::image(model)).unwrap()).unwrap_err();
+        assert_eq!(error.code().id, "FRK-U005");
+        error.to_string()
+    };
+    assert!(refusal(&models::network_1_5_1()).contains("network"));
+    let mut corrected = models::symmetric_table();
+    let spring = frikan_runtime::shared::effect::Effect::FrictionalLag { time_constant: 0.01 };
+    corrected.effects.extend([spring]);
+    assert!(refusal(&corrected).contains("remember"));
+}
