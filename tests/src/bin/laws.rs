@@ -27,6 +27,10 @@ const OTHERS: [[&str; 5]; 4] = [
     ["PyOperon, 60 s", ".99995-.999998", "12-16", "60", "wrong in 24 of 24"],
 ];
 
+const NODE_BUDGET: &str = "\
+Bengisu-Akay and the quadratic drag are written in more than 20 nodes. The search takes such a law only where it lowers the
+held-out mean square by 15 %, which noise of 2.5 % does not leave room for: there the budget of nodes decides, not the data.";
+
 const HEAD: &str = "\
 # Laws that were found
 
@@ -135,7 +139,7 @@ fn others(page: &mut String, draws: u64) -> std::fmt::Result {
         writeln!(page, "| {name} | {} |", counts.map(|n| n.to_string()).join(" | "))?;
     }
     let all = names.len() as u64 * draws;
-    writeln!(page, "| all, of {all} | {} |\n", totals.map(|n| n.to_string()).join(" | "))
+    writeln!(page, "| all, of {all} | {} |\n\n{NODE_BUDGET}\n", totals.map(|n| n.to_string()).join(" | "))
 }
 
 fn simple(page: &mut String, sets: u64) -> std::fmt::Result {

@@ -75,5 +75,7 @@ fn value(operation: Operation, stack: &mut Vec<String>) -> String {
         Operation::Atan => format!("f_atan({})", pop()),
         Operation::SquareRoot => format!("f_square_root({})", pop()),
         Operation::Sign => format!("f_sign({})", pop()),
+        Operation::ScaledMagnitude(index, factor) => format!("magnitude_of(x{index}) * {}", literal(factor)),
+        Operation::AddScaledInput(index, factor) => format!("{} + x{index} * {}", pop(), literal(factor)),
     }
 }
