@@ -41,8 +41,6 @@ fn value(operation: Operation, stack: &mut Vec<String>) -> String {
     match operation {
         Operation::Input(index) => format!("x{index}"),
         Operation::ScaledInput(index, factor) => format!("x{index} * {}", literal(factor)),
-        Operation::ScaledMagnitude(index, factor) => format!("magnitude_of(x{index}) * {}", literal(factor)),
-        Operation::AddScaledInput(index, factor) => format!("{} + x{index} * {}", pop(), literal(factor)),
         Operation::Constant(constant) => literal(constant),
         Operation::Scale(factor) => format!("{} * {}", pop(), literal(factor)),
         Operation::Offset(summand) => format!("{} + {}", pop(), literal(summand)),
