@@ -108,17 +108,6 @@ fn executed(at: &Path, form: &str, velocities: &[f32]) -> Vec<f64> {
     let list = velocities.iter().map(|v| format!("{:?}", f64::from(*v))).collect::<Vec<_>>();
     let source = std::fs::read_to_string(at.join(form)).unwrap();
     let printed = match form {
-        "c" => {
-            let points = list.join(", ");
-            let main = format!(
-                "{source}\n#include <stdio.h>\nint main(void) {{\n    const double v[] = {{{points}}};\n    \
-                 for (int i = 0; i < {}; i++) printf(\"%.17g\\n\", friction(v[i]));\n    return 0;\n}}\n",
-                list.len()
-            );
-            std::fs::write(at.join("law.c"), main).unwrap();
-            succeed(Command::new("cc").current_dir(at).args(["-Wall", "-Werror", "-o", "law-c", "law.c", "-lm"]));
-            succeed(&mut Command::new(at.join("law-c")))
-        }
         "rust" => {
             let points = list.join(", ");
             let main = format!(
@@ -150,8 +139,8 @@ fn agree(law: &HostModel, bytes: &[u8]) {
     let expected: Vec<f64> = expected.collect();
     let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let python = Command::new("python3").arg("--version").output().is_ok();
-    let forms = ["c", "rust", "python", "sympy", "latex", "text"];
-    for form in forms.into_iter().filter(|form| python || ["c", "rust"].contains(form)) {
+    let forms = ["rust", "python", "sympy", "latex", "text"];
+    for form in forms.into_iter().filter(|form| python || *form == "rust") {
         let got = executed(folder.path(), form, &velocities);
         assert_eq!(got.len(), expected.len(), "{form}");
         let worst = got.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -188,8 +177,8 @@ fn every_function_and_bracket_is_the_same_in_every_language() {
 fn a_table_has_no_formula() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(frikan_tests::fixtures::folder().join("stribeck.frk"), folder.path().join("law.frk")).unwrap();
-    let export = run(folder.path(), &["export", "law.frk", "--to", "c", "-o", "law.c"]);
+    let export = run(folder.path(), &["export", "law.frk", "--to", "rust", "-o", "law.rs"]);
     assert_eq!(export.status, 2);
     assert!(export.messages.contains("--representation expression"), "{}", export.messages);
-    assert!(!folder.path().join("law.c").exists());
+    assert!(!folder.path().join("law.rs").exists());
 }
