@@ -31,8 +31,8 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            family_wise_level: 0.01,
-            least_score: 3.0,
+            family_wise_level: 0.003,
+            least_score: 4.0,
             ambiguity_margin: 3.0,
             null_draws: 200,
             most_findings: 4,
