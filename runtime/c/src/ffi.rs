@@ -1,5 +1,5 @@
 //! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call, and a
-//! compensator is read only behind the mark that [`start`] leaves.
+//! compensator is read only behind the mark that `start` leaves.
 
 use core::mem::MaybeUninit;
 use core::slice;
