@@ -2,7 +2,7 @@
 
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
-use frikan_tests::concealed::{Case, Hidden, conceal, signals};
+use frikan_tests::concealed::{Case, Concealed, Hidden, conceal, signals};
 use frikan_trainer::diagnose::improve::{Origin, improve};
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, Prepared, diagnose, model};
 use frikan_trainer::plant::NoiseKind;
@@ -29,7 +29,7 @@ fn the_image_leaves_what_the_diagnosis_leaves() {
             base: BaseKind::CoulombViscous,
             seed: 5,
         };
-        let (recording, joint, _, _) = conceal(&case).unwrap();
+        let Concealed { recording, joint, .. } = conceal(&case).unwrap();
         let signals = signals(&recording, &joint);
         let diagnosis = diagnose(&signals, "N m", &Options::default()).unwrap();
         let origin = Origin::Recording(RigidBody::default());

@@ -1,8 +1,10 @@
 //! The proof on concealed effects: hides every effect at several strengths, runs the diagnosis, writes the tables.
 
 use clap::Parser;
+use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
+use frikan_tests::concealed::semi_real::Added;
 use frikan_tests::concealed::summary::{Row, report};
-use frikan_tests::concealed::{Case, Hidden, run};
+use frikan_tests::concealed::{Case, Hidden, advised, afterwards, run, semi_real};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
@@ -32,9 +34,13 @@ struct Arguments {
     /// Only effects of these names.
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Also from a spline base of nine coefficients.
-    #[arg(long)]
-    spline: bool,
+    /// Seeds of each effect when the diagnosis starts from a spline of nine coefficients, and from the law that `trainer fit`
+    /// finds in the very recording; at the last strength.
+    #[arg(long, default_value_t = 0)]
+    bases: u64,
+    /// Seeds of the other trajectories of the same joint; the confounded and the real recordings go with them.
+    #[arg(long, default_value_t = 0)]
+    afterwards: u64,
     /// Where the Markdown goes; standard output when absent.
     #[arg(short, long)]
     output: Option<std::path::PathBuf>,
@@ -69,8 +75,11 @@ fn main() -> std::io::Result<()> {
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
     let errors: Vec<String> = errors.into_iter().filter_map(Result::err).collect();
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
-    let text =
-        report(&rows, &errors, &format!("cargo run --release -p frikan-tests --bin concealed-suite -- {command}"));
+    let command = format!("cargo run --release -p frikan-tests --bin concealed-suite -- {command}");
+    let mut text = report(&rows, &errors, &command);
+    if arguments.afterwards > 0 {
+        text += &beyond(&arguments);
+    }
     match &arguments.output {
         Some(path) => std::fs::write(path, text),
         None => {
@@ -80,39 +89,62 @@ fn main() -> std::io::Result<()> {
     }
 }
 
+/// What goes beyond one recording each: other trajectories, confounded recordings with the proposed motion, real recordings.
+fn beyond(arguments: &Arguments) -> String {
+    const STRENGTH: f64 = 80.0;
+    let seeds = arguments.first_seed..arguments.first_seed + arguments.afterwards;
+    let jobs: Vec<(&'static str, u64)> =
+        FEED_FORWARD.iter().flat_map(|effect| seeds.clone().map(|seed| (*effect, seed))).collect();
+    let later: Vec<Afterwards> =
+        jobs.par_iter().filter_map(|(effect, seed)| said(afterwards::run(effect, STRENGTH, *seed))).collect();
+    let confounded: Vec<_> = advised::pairs()
+        .into_par_iter()
+        .filter_map(|case| said(advised::run(&case, arguments.first_seed)).map(|advised| (case, advised)))
+        .collect();
+    let real: Vec<Added> = semi_real::folder().map_or(Vec::new(), |folder| {
+        let added =
+            semi_real::RECORDINGS.into_par_iter().filter_map(|name| said(semi_real::run(&folder, name, STRENGTH)));
+        added.flatten().collect()
+    });
+    afterwards::table(&later) + &advised::table(&confounded) + &semi_real::table(&real, STRENGTH)
+}
+
+/// The result, or nothing and what was wrong on standard error.
+fn said<T>(result: Result<T, String>) -> Option<T> {
+    result.map_err(|error| eprintln!("{error}")).ok()
+}
+
 fn cases(arguments: &Arguments) -> Vec<Case> {
     let mut cases = Vec::new();
     let seeds = |count: u64| arguments.first_seed..arguments.first_seed + count;
-    let mut bases = vec![BaseKind::CoulombViscous];
-    if arguments.spline {
-        bases.push(BaseKind::Spline);
-    }
     let wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
-    let case = |hidden: Hidden, noise, base, seed| Case { hidden, noise, base, seed };
-    for base in bases {
-        for seed in seeds(arguments.controls) {
-            cases.extend(NoiseKind::ALL.map(|noise| case(Hidden::Nothing, noise, base, seed)));
+    let case = |hidden, noise, base, seed| Case { hidden, noise, base, seed };
+    let effects = || CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
+    let mut conceal = |base, strength, count| {
+        for entry in effects() {
+            let hidden = || Hidden::Effect(entry.name, strength);
+            cases.extend(seeds(count).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
         }
-        for strength in &arguments.strengths {
-            for entry in CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name)) {
-                cases.extend(
-                    seeds(arguments.seeds)
-                        .map(|seed| case(Hidden::Effect(entry.name, *strength), NoiseKind::Coloured, base, seed)),
-                );
-            }
-        }
-        for entry in OUTSIDE.iter().filter(|entry| wanted(entry.name)) {
-            cases.extend(
-                seeds(arguments.outside)
-                    .map(|seed| case(Hidden::Effect(entry.name, 80.0), NoiseKind::Coloured, base, seed)),
-            );
-        }
-        for (first, second) in PAIRS {
-            cases.extend(
-                seeds(arguments.pairs)
-                    .map(|seed| case(Hidden::Pair(first, second, 150.0), NoiseKind::Coloured, base, seed)),
-            );
-        }
+    };
+    for strength in &arguments.strengths {
+        conceal(BaseKind::CoulombViscous, *strength, arguments.seeds);
+    }
+    for base in [BaseKind::Spline, BaseKind::Reference] {
+        conceal(base, *arguments.strengths.last().unwrap_or(&80.0), arguments.bases);
+    }
+    let base = BaseKind::CoulombViscous;
+    for seed in seeds(arguments.controls) {
+        // Every control has a seed of its own.
+        let own = |kind: usize| seed * NoiseKind::ALL.len() as u64 + kind as u64;
+        cases.extend((0..).zip(NoiseKind::ALL).map(|(kind, noise)| case(Hidden::Nothing, noise, base, own(kind))));
+    }
+    for entry in OUTSIDE.iter().filter(|entry| wanted(entry.name)) {
+        let hidden = || Hidden::Effect(entry.name, 80.0);
+        cases.extend(seeds(arguments.outside).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
+    }
+    for (first, second) in PAIRS {
+        let hidden = || Hidden::Pair(first, second, 150.0);
+        cases.extend(seeds(arguments.pairs).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
     }
     cases
 }

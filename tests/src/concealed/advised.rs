@@ -1,8 +1,13 @@
 //! Confounded pairs: recordings that cannot tell two effects apart, the motion that the diagnosis proposes for them, and
 //! what the two recordings together tell.
 
+use std::fmt::Write;
+
 use super::signals;
-use frikan_trainer::diagnose::{Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan};
+use super::summary::share;
+use frikan_trainer::diagnose::{
+    Diagnosis, Finding, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan,
+};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, Campaign, Motion, Trajectory};
 
@@ -155,4 +160,44 @@ impl Confounded {
         let id = |name| EffectId::from_name(name).unwrap_or(EffectId::Unknown);
         (id(self.truth), id(self.rival))
     }
+}
+
+/// The results as a section of Markdown.
+pub fn table(results: &[(Confounded, Advised)]) -> String {
+    let mut text = String::from(
+        "\n## Confounded recordings, and the motion that is proposed for them\n\nRecordings in which a rival explains nearly as much as the truth: only the set is right. Nats are the lead of the truth over\nthe rival once the proposed motion is recorded too.\n\n| hidden | rival | answer | both in the set | proposed | expected nats | reached nats |\n|---|---|---|---|---|---|---|\n",
+    );
+    let (mut open, mut proposed, mut resolved) = (0, 0, 0);
+    for (case, advised) in results {
+        let names = |found: &Finding| {
+            let set = std::iter::once(found.effect).chain(found.alternatives.iter().map(|(effect, _)| *effect));
+            set.map(EffectId::name).collect::<Vec<_>>().join(" or ")
+        };
+        let answer: Vec<String> = advised.before.findings.iter().map(names).collect();
+        let was_open = advised.was_open(case);
+        open += usize::from(was_open);
+        let (words, expected) =
+            advised.plan.as_ref().map_or(("-", f64::NAN), |plan| (plan.words.as_str(), plan.expected_nats));
+        if was_open && advised.plan.is_some() {
+            proposed += 1;
+            resolved += usize::from(advised.is_resolved(case));
+        }
+        let reached = advised.reached_nats(case).map_or("-".to_string(), |nats| format!("{nats:.0}"));
+        let expected = if expected.is_nan() { "-".to_string() } else { format!("{expected:.0}") };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {words} | {expected} | {reached} |",
+            case.truth,
+            case.rival,
+            answer.join(", "),
+            if was_open { "yes" } else { "no" },
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\nBoth in the set: {}; of these told apart by the proposed motion: {}.",
+        share(open, results.len()),
+        share(resolved, proposed)
+    );
+    text
 }

@@ -3,7 +3,11 @@
 //! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
 
 pub mod advised;
+pub mod afterwards;
+pub mod intervals;
+pub mod semi_real;
 pub mod summary;
+pub mod symbolic;
 
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};
 use frikan_trainer::physics::EffectId;
@@ -27,10 +31,23 @@ pub struct Case {
     pub hidden: Hidden,
     /// Noise of the recording.
     pub noise: NoiseKind,
-    /// Base model that the diagnosis starts from.
+    /// Base model that the diagnosis starts from; a reference is the law that `trainer fit` finds in the recording.
     pub base: BaseKind,
     /// Seed of everything.
     pub seed: u64,
+}
+
+/// A recording with the effects of a case hidden in it.
+#[derive(Clone, Debug)]
+pub struct Concealed {
+    /// The recording with its truth.
+    pub recording: SimulatedRecording,
+    /// The joint with its effects at the amplitudes that were chosen.
+    pub joint: plant::Joint,
+    /// Reached non-centrality; 0 for a control.
+    pub lambda: f64,
+    /// Effect-to-noise ratio behind the filter.
+    pub effect_to_noise: f64,
 }
 
 /// What came of a case.
@@ -38,10 +55,8 @@ pub struct Case {
 pub struct Outcome {
     /// The case.
     pub case: Case,
-    /// Reached non-centrality; 0 for a control.
-    pub lambda: f64,
-    /// Effect-to-noise ratio behind the filter.
-    pub effect_to_noise: f64,
+    /// What was diagnosed.
+    pub concealed: Concealed,
     /// The diagnosis.
     pub diagnosis: Diagnosis,
 }
@@ -96,13 +111,13 @@ pub fn joint_of(case: &Case) -> plant::Joint {
 /// Largest number of passes in which the amplitude is brought to the wanted strength.
 const PASSES: usize = 6;
 
-/// Hides the effects of a case at the wanted strength and returns recording, joint, non-centrality and effect-to-noise.
-pub fn conceal(case: &Case) -> Result<(SimulatedRecording, plant::Joint, f64, f64), plant::PlantError> {
+/// Hides the effects of a case at the wanted strength.
+pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
     let mut joint = joint_of(case);
     let (names, wanted): (Vec<&'static str>, f64) = match &case.hidden {
         Hidden::Nothing => {
             let recording = plant::simulate(&joint, case.seed)?;
-            return Ok((recording, joint, 0.0, 0.0));
+            return Ok(Concealed { recording, joint, lambda: 0.0, effect_to_noise: 0.0 });
         }
         Hidden::Effect(name, lambda) => (vec![name], *lambda),
         Hidden::Pair(first, second, lambda) => (vec![first, second], *lambda),
@@ -115,8 +130,8 @@ pub fn conceal(case: &Case) -> Result<(SimulatedRecording, plant::Joint, f64, f6
         joint.effects.push(plant::Hidden { name: (*name).to_string(), amplitude: *amplitude });
     }
     let recording = plant::simulate(&joint, case.seed)?;
-    let reached = reach(&recording, &joint, case);
-    Ok((recording, joint, reached.0, reached.1))
+    let (lambda, effect_to_noise) = reach(&recording, &joint, case);
+    Ok(Concealed { recording, joint, lambda, effect_to_noise })
 }
 
 fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (f64, f64) {
@@ -124,7 +139,7 @@ fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (
         &signals(recording, joint),
         &recording.truth.effect_torque,
         &recording.truth.noise_torque,
-        case.base,
+        if case.base == BaseKind::Spline { BaseKind::Spline } else { BaseKind::CoulombViscous },
         Lock::Spread,
     )
     .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
@@ -158,14 +173,18 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
 
 /// Runs a case.
 pub fn run(case: &Case) -> Result<Outcome, String> {
-    let (recording, joint, lambda, effect_to_noise) = conceal(case).map_err(|e| e.to_string())?;
+    let concealed = conceal(case).map_err(|e| e.to_string())?;
     let options = Options {
         base: case.base,
         settings: Settings { seed: case.seed, ..Settings::default() },
         ..Options::default()
     };
-    let diagnosis = diagnose(&signals(&recording, &joint), "N m", &options).map_err(|e| e.to_string())?;
-    Ok(Outcome { case: case.clone(), lambda, effect_to_noise, diagnosis })
+    let mut signals = signals(&concealed.recording, &concealed.joint);
+    if case.base == BaseKind::Reference {
+        symbolic::compare_with_own_law(&mut signals, case.seed)?;
+    }
+    let diagnosis = diagnose(&signals, "N m", &options).map_err(|e| e.to_string())?;
+    Ok(Outcome { case: case.clone(), concealed, diagnosis })
 }
 
 impl Outcome {

@@ -120,6 +120,7 @@ impl Terms {
             }
             EffectId::Temperature => {
                 self.read(Quantity::Temperature);
+                // A viscosity that decays is taken by its slope at the reference.
                 let (coulomb, viscous) = pair(shape[0]);
                 Effect::Temperature { reference: shape[1] as f32, coulomb, viscous, smoothing_velocity }
             }

@@ -209,6 +209,7 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
         Dimension::TorquePerVelocity => format!("{actuator} s/{position}"),
         Dimension::TorquePerVelocityPower => format!("{actuator} (s/{position})^p"),
         Dimension::TorquePerKelvin => format!("{actuator}/K"),
+        Dimension::PerKelvin => "1/K".to_string(),
         Dimension::TorquePerVelocityKelvin => format!("{actuator} s/({position} K)"),
         Dimension::TorquePerPosition => format!("{actuator}/{position}"),
         Dimension::Inertia => match (actuator, rotary) {

@@ -49,6 +49,8 @@ pub enum Dimension {
     TorquePerVelocityPower,
     /// Torque per kelvin.
     TorquePerKelvin,
+    /// 1/K.
+    PerKelvin,
     /// Torque per velocity and kelvin.
     TorquePerVelocityKelvin,
     /// Torque per unit of position.

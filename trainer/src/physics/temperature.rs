@@ -1,4 +1,5 @@
-//! B1, Bittencourt and Gunnarsson 2012: friction depends on the measured temperature.
+//! B1, Bittencourt and Gunnarsson 2012: friction depends on the measured temperature, its dry part linearly, its viscous
+//! part linearly or as the viscosity of a grease that falls exponentially.
 
 use super::state::quantile;
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
@@ -7,6 +8,9 @@ pub(super) struct Temperature;
 
 /// Least spread of temperature, in K, that can show an effect.
 const LEAST_SPREAD_K: f64 = 0.5;
+/// Fall of a grease's viscosity with temperature that is looked for first, 1/K, and the range in which it is refined.
+const DECAY: f64 = 0.03;
+const DECAYS: (f64, f64) = (0.005, 0.12);
 
 impl Hypothesis for Temperature {
     fn id(&self) -> EffectId {
@@ -14,7 +18,7 @@ impl Hypothesis for Temperature {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = (b_0 tanh(v/v_eps) + b_1 v) (T - T_ref)"
+        "dF = b_0 tanh(v/v_eps) (T - T_ref) + b_1 v (1 - exp(-k (T - T_ref))) / k"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
@@ -24,7 +28,8 @@ impl Hypothesis for Temperature {
             return Vec::new();
         }
         let reference = at(0.5);
-        vec![vec![0.0, reference], vec![1.0, reference], vec![2.0, reference]]
+        let viscous = |variant| [0.0, DECAY].map(|decay| vec![variant, reference, decay]);
+        [vec![vec![0.0, reference, 0.0]], viscous(1.0).into(), viscous(2.0).into()].concat()
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
@@ -35,7 +40,9 @@ impl Hypothesis for Temperature {
             columns.push(state.map(|i| warmth(i) * state.sign[i]));
         }
         if shape[0] != 0.0 {
-            columns.push(state.map(|i| warmth(i) * state.velocity[i]));
+            let decay = shape[2];
+            let thinned = |warmth: f64| if decay > 0.0 { -(-decay * warmth).exp_m1() / decay } else { warmth };
+            columns.push(state.map(|i| thinned(warmth(i)) * state.velocity[i]));
         }
         columns
     }
@@ -54,6 +61,11 @@ impl Hypothesis for Temperature {
         vec![
             ShapeName::new("variant", "variant", Dimension::One),
             ShapeName::new("reference_temperature", "T_ref", Dimension::One),
+            ShapeName::new("viscosity_decay", "k", Dimension::PerKelvin),
         ]
+    }
+
+    fn bounds(&self, _state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        (index == 2 && shape[2] > 0.0).then_some(DECAYS)
     }
 }

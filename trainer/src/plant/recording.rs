@@ -82,7 +82,8 @@ impl SimulatedRecording {
         parts
     }
 
-    fn part(&self, range: std::ops::Range<usize>) -> Self {
+    /// The samples of a range (within the recording) as a recording of their own; the drawn parameters go with it.
+    pub fn part(&self, range: std::ops::Range<usize>) -> Self {
         let columns = self
             .columns
             .iter()
