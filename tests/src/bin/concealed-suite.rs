@@ -34,8 +34,8 @@ struct Arguments {
     /// Only effects of these names.
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Seeds of each effect when the diagnosis starts from a spline of nine coefficients, and from the law that `trainer fit`
-    /// finds in the very recording; at the last strength.
+    /// Seeds of each effect when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law; at the last
+    /// strength.
     #[arg(long, default_value_t = 0)]
     bases: u64,
     /// Seeds of the other trajectories of the same joint; the confounded and the real recordings go with them.
@@ -102,11 +102,10 @@ fn beyond(arguments: &Arguments) -> String {
         .filter_map(|case| said(advised::run(&case, arguments.first_seed)).map(|advised| (case, advised)))
         .collect();
     let real: Vec<Added> = semi_real::folder().map_or(Vec::new(), |folder| {
-        let added =
-            semi_real::RECORDINGS.into_par_iter().filter_map(|name| said(semi_real::run(&folder, name, STRENGTH)));
+        let added = semi_real::RECORDINGS.into_par_iter().filter_map(|name| said(semi_real::run(&folder, name)));
         added.flatten().collect()
     });
-    afterwards::table(&later) + &advised::table(&confounded) + &semi_real::table(&real, STRENGTH)
+    afterwards::table(&later) + &advised::table(&confounded) + &semi_real::table(&real)
 }
 
 /// The result, or nothing and what was wrong on standard error.
@@ -121,7 +120,8 @@ fn cases(arguments: &Arguments) -> Vec<Case> {
     let case = |hidden, noise, base, seed| Case { hidden, noise, base, seed };
     let effects = || CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
     let mut conceal = |base, strength, count| {
-        for entry in effects() {
+        // A base that holds the effect misses nothing.
+        for entry in effects().filter(|entry| base == BaseKind::CoulombViscous || entry.name != "stribeck") {
             let hidden = || Hidden::Effect(entry.name, strength);
             cases.extend(seeds(count).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
         }

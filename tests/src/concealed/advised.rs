@@ -140,6 +140,14 @@ impl Advised {
         })
     }
 
+    /// Whether the truth is the first name or in its set.
+    #[must_use]
+    pub fn holds_truth(&self, case: &Confounded) -> bool {
+        let truth = case.pair().0;
+        let first = self.before.findings.first();
+        first.is_some_and(|f| f.effect == truth || f.alternatives.iter().any(|(rival, _)| *rival == truth))
+    }
+
     /// Distance in nats from the truth to its rival after the proposed motion; `None` where the truth is not found.
     #[must_use]
     pub fn reached_nats(&self, case: &Confounded) -> Option<f64> {
@@ -165,8 +173,9 @@ impl Confounded {
 /// The results as a section of Markdown.
 pub fn table(results: &[(Confounded, Advised)]) -> String {
     let mut text = String::from(
-        "\n## Confounded recordings, and the motion that is proposed for them\n\nRecordings in which a rival explains nearly as much as the truth: only the set is right. Nats are the lead of the truth over\nthe rival once the proposed motion is recorded too.\n\n| hidden | rival | answer | both in the set | proposed | expected nats | reached nats |\n|---|---|---|---|---|---|---|\n",
+        "\n## Confounded recordings, and the motion that is proposed for them\n\nRecordings in which a rival explains nearly as much as the truth: only the set is right. Nats are the lead of the truth over\nthe rival once the proposed motion is recorded too.\n\n| hidden | rival | answer | truth in the set | both in the set | proposed | expected nats | reached nats |\n|---|---|---|---|---|---|---|---|\n",
     );
+    let said = |yes| if yes { "yes" } else { "no" };
     let (mut open, mut proposed, mut resolved) = (0, 0, 0);
     for (case, advised) in results {
         let names = |found: &Finding| {
@@ -186,16 +195,18 @@ pub fn table(results: &[(Confounded, Advised)]) -> String {
         let expected = if expected.is_nan() { "-".to_string() } else { format!("{expected:.0}") };
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {words} | {expected} | {reached} |",
+            "| {} | {} | {} | {} | {} | {words} | {expected} | {reached} |",
             case.truth,
             case.rival,
             answer.join(", "),
-            if was_open { "yes" } else { "no" },
+            said(advised.holds_truth(case)),
+            said(was_open),
         );
     }
     let _ = writeln!(
         text,
-        "\nBoth in the set: {}; of these told apart by the proposed motion: {}.",
+        "\nThe truth in the set: {}. Both in the set: {}; of these told apart by the proposed motion: {}.",
+        share(results.iter().filter(|(case, advised)| advised.holds_truth(case)).count(), results.len()),
         share(open, results.len()),
         share(resolved, proposed)
     );

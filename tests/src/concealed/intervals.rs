@@ -5,24 +5,19 @@ use frikan_trainer::physics::EffectId;
 
 /// Parameters that simulator and diagnosis define alike: effect, the simulator's name, whether the amplitude scales it, and
 /// the diagnosis' name.
-const ALIKE: [(&str, &str, bool, &str); 17] = [
+const ALIKE: [(&str, &str, bool, &str); 12] = [
     ("direction_asymmetry", "coulomb_difference_Nm", true, "coulomb_asymmetry"),
     ("direction_asymmetry", "viscous_difference_Nm_s_rad", true, "viscous_asymmetry"),
     ("viscous_nonlinearity", "exponent", false, "viscous_exponent"),
     ("warm_up", "time_constant_s", false, "thermal_time_constant"),
     ("drive_backdrive", "driving_coefficient", true, "driving_loss"),
     ("drive_backdrive", "backdriving_coefficient", true, "backdriving_loss"),
-    ("frictional_lag", "lag_s", false, "friction_lag"),
     ("gravity_error", "sine_Nm", true, "gravity_sine_torque"),
     ("gravity_error", "cosine_Nm", true, "gravity_cosine_torque"),
     ("torque_scale", "relative_error", true, "torque_scale_error"),
     ("torque_offset", "offset_Nm", true, "torque_offset"),
     ("spring", "stiffness_Nm_rad", true, "spring_stiffness"),
-    ("coupling", "mutual_inertia_kgm2", true, "coupling_inertia"),
-    ("contact", "stop_rad", false, "contact_position"),
-    ("saturation", "threshold_Nm", false, "torque_limit"),
     ("position_ripple", "order", false, "ripple_order"),
-    ("time_misalignment", "delay_s", true, "torque_delay"),
 ];
 
 /// Effects beside which Coulomb torque and viscous coefficient keep their meaning.

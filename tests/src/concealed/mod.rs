@@ -9,7 +9,7 @@ pub mod semi_real;
 pub mod summary;
 pub mod symbolic;
 
-use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, diagnose, strength};
+use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, Strength, diagnose, strength};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
 
@@ -31,7 +31,7 @@ pub struct Case {
     pub hidden: Hidden,
     /// Noise of the recording.
     pub noise: NoiseKind,
-    /// Base model that the diagnosis starts from; a reference is the law that `trainer fit` finds in the recording.
+    /// Base model that the diagnosis starts from; a reference is a Stribeck law fitted to the recording.
     pub base: BaseKind,
     /// Seed of everything.
     pub seed: u64,
@@ -48,6 +48,8 @@ pub struct Concealed {
     pub lambda: f64,
     /// Effect-to-noise ratio behind the filter.
     pub effect_to_noise: f64,
+    /// What the base leaves at every working row once the hidden torque is taken off; empty for a control.
+    pub rest_without: Vec<f64>,
 }
 
 /// What came of a case.
@@ -117,7 +119,7 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
     let (names, wanted): (Vec<&'static str>, f64) = match &case.hidden {
         Hidden::Nothing => {
             let recording = plant::simulate(&joint, case.seed)?;
-            return Ok(Concealed { recording, joint, lambda: 0.0, effect_to_noise: 0.0 });
+            return Ok(Concealed { recording, joint, lambda: 0.0, effect_to_noise: 0.0, rest_without: Vec::new() });
         }
         Hidden::Effect(name, lambda) => (vec![name], *lambda),
         Hidden::Pair(first, second, lambda) => (vec![first, second], *lambda),
@@ -130,19 +132,16 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
         joint.effects.push(plant::Hidden { name: (*name).to_string(), amplitude: *amplitude });
     }
     let recording = plant::simulate(&joint, case.seed)?;
-    let (lambda, effect_to_noise) = reach(&recording, &joint, case);
-    Ok(Concealed { recording, joint, lambda, effect_to_noise })
+    let reached = reach(&recording, &joint, case);
+    let (lambda, effect_to_noise) = reached.as_ref().map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise));
+    let rest_without = reached.map_or(Vec::new(), |s| s.rest_without);
+    Ok(Concealed { recording, joint, lambda, effect_to_noise, rest_without })
 }
 
-fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> (f64, f64) {
-    strength(
-        &signals(recording, joint),
-        &recording.truth.effect_torque,
-        &recording.truth.noise_torque,
-        if case.base == BaseKind::Spline { BaseKind::Spline } else { BaseKind::CoulombViscous },
-        Lock::Spread,
-    )
-    .map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise))
+fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> Option<Strength> {
+    let base = if case.base == BaseKind::Spline { BaseKind::Spline } else { BaseKind::CoulombViscous };
+    let truth = &recording.truth;
+    strength(&signals(recording, joint), &truth.effect_torque, &truth.noise_torque, base, Lock::Spread)
 }
 
 /// Faults of the measurement that have no torque of their own, or none below a threshold: their amplitude is taken as it is.
@@ -158,7 +157,7 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..PASSES {
         let recording = plant::conceal(joint, name, amplitude, case.seed)?;
-        let lambda = reach(&recording, joint, case).0.max(1e-3);
+        let lambda = reach(&recording, joint, case).map_or(0.0, |s| s.lambda).max(1e-3);
         if (wanted / lambda - 1.0).abs() < 0.1 {
             break;
         }
@@ -181,7 +180,7 @@ pub fn run(case: &Case) -> Result<Outcome, String> {
     };
     let mut signals = signals(&concealed.recording, &concealed.joint);
     if case.base == BaseKind::Reference {
-        symbolic::compare_with_own_law(&mut signals, case.seed)?;
+        symbolic::compare_with_own_law(&mut signals)?;
     }
     let diagnosis = diagnose(&signals, "N m", &options).map_err(|e| e.to_string())?;
     Ok(Outcome { case: case.clone(), concealed, diagnosis })

@@ -11,12 +11,8 @@ use frikan_trainer::physics::{EffectId, JointState};
 use frikan_trainer::recording;
 
 /// Recordings that effects are added to, and the text of their actuator's unit.
-pub const RECORDINGS: [(&str, &str); 4] = [
-    ("emps/train.csv", "N"),
-    ("kr300/axis1-A.csv", "N m"),
-    ("kr300/axis3-A.csv", "N m"),
-    ("odrive_cogging/slow2-comp_0.csv", "A"),
-];
+pub const RECORDINGS: [(&str, &str); 3] =
+    [("emps/train.csv", "N"), ("kr300/axis1-A.csv", "N m"), ("kr300/axis3-A.csv", "N m")];
 
 /// Effects that are added.
 pub const ADDED: [&str; 9] = [
@@ -50,7 +46,7 @@ impl Added {
         self.found_before.contains(&self.effect)
     }
 
-    /// Whether the effect is named or in the set of a finding.
+    /// Whether the effect is named, in the set of a finding, or set aside as minor.
     pub fn is_found(&self) -> bool {
         self.found.iter().flatten().any(|effect| *effect == self.effect)
     }
@@ -62,11 +58,14 @@ pub fn folder() -> Option<PathBuf> {
     folder.is_dir().then_some(folder)
 }
 
-/// Adds each effect in turn to a recording, at a non-centrality against what the recording itself leaves.
+/// Part of the recorded torque, root mean square, that an effect is given beyond what the base absorbs.
+const SHARE: f64 = 0.05;
+
+/// Adds each effect in turn to a recording.
 ///
 /// # Errors
 /// What keeps the recording from being read or diagnosed.
-pub fn run(folder: &Path, (name, unit): (&'static str, &'static str), lambda: f64) -> Result<Vec<Added>, String> {
+pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<Vec<Added>, String> {
     let joint = Joint::default();
     let recording = recording::load(&folder.join(name), &joint).map_err(|e| e.to_string())?;
     let signals = Signals::of(&recording, &joint).map_err(|e| e.to_string())?;
@@ -80,7 +79,7 @@ pub fn run(folder: &Path, (name, unit): (&'static str, &'static str), lambda: f6
             let shape = torque(effect, &state);
             let mut with = signals.clone();
             let one = strength(&signals, &shape, &signals.torque, BaseKind::CoulombViscous, Lock::Spread);
-            let amplitude = one.map_or(0.0, |s| (lambda / s.lambda.max(f64::MIN_POSITIVE)).sqrt());
+            let amplitude = one.map_or(0.0, |s| SHARE / s.effect_to_noise.max(f64::MIN_POSITIVE));
             with.torque.iter_mut().zip(&shape).for_each(|(t, s)| *t += amplitude * s);
             let found = sets(&diagnosed(&with)?);
             Ok(Added { recording: name, effect, found_before: found_before.clone(), found })
@@ -93,7 +92,8 @@ fn sets(diagnosis: &Diagnosis) -> Vec<Vec<&'static str>> {
         let rivals = found.alternatives.iter().map(|(effect, _)| *effect);
         std::iter::once(found.effect).chain(rivals).map(EffectId::name).collect()
     };
-    diagnosis.findings.iter().map(set).collect()
+    let minor = diagnosis.minor.iter().map(|(effect, _)| vec![effect.name()]);
+    diagnosis.findings.iter().map(set).chain(minor).collect()
 }
 
 /// Torque of an effect along a recorded motion, for unit amplitude. The equations are of this file alone.
@@ -135,9 +135,10 @@ fn bristle(state: &JointState, distance: f64) -> Vec<f64> {
 }
 
 /// The results as a section of Markdown.
-pub fn table(results: &[Added], lambda: f64) -> String {
+pub fn table(results: &[Added]) -> String {
     let mut text = format!(
-        "\n## Added to real recordings\n\nEach effect is added to the torque of a recording at lambda = {lambda:.0} against what Coulomb and viscous friction leave there.\nWhat the recording shows by itself is not counted.\n\n| recording | shows by itself | added | found |\n|---|---|---|---|\n"
+        "\n## Added to real recordings\n\nEach effect is added to the torque of a recording; what Coulomb and viscous friction cannot absorb of it is {:.0} % of the\nrecorded torque, root mean square. What the recording shows by itself is not counted; what is set aside as minor is.\n\n| recording | shows by itself | added | found |\n|---|---|---|---|\n",
+        100.0 * SHARE
     );
     for added in results {
         let found: Vec<String> = added.found.iter().map(|set| set.join(" or ")).collect();

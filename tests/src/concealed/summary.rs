@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::intervals::{Held, held};
-use super::{Case, Hidden, Outcome};
-use frikan_trainer::diagnose::BaseKind;
+use super::{Case, Concealed, Hidden, Outcome, signals};
+use frikan_trainer::diagnose::{BaseKind, Lock, Prepared};
 use frikan_trainer::physics::EffectId;
 
 /// What is kept of an outcome.
@@ -21,10 +21,8 @@ pub struct Row {
     pub findings: Vec<(EffectId, Vec<EffectId>, f64)>,
     /// Channels of an unnamed finding.
     pub unknown_channels: Vec<String>,
-    /// Baseline, improved and noise root mean square on all rows.
-    pub rmse: [f64; 3],
-    /// Locked baseline and improved error.
-    pub locked: Option<[f64; 2]>,
+    /// Share of the removable error that is removed on locked rows, from Coulomb and viscous friction.
+    pub removed_share: Option<f64>,
     /// Parameters of a right finding of which the truth is known.
     pub held: Vec<Held>,
 }
@@ -44,8 +42,7 @@ impl Row {
             effect_to_noise: outcome.concealed.effect_to_noise,
             findings,
             unknown_channels: outcome.unknown_channels(),
-            rmse: [d.baseline.rmse, d.improved.rmse, d.noise_rmse],
-            locked: d.proof.as_ref().map(|p| [p.baseline_rmse, p.improved_rmse]),
+            removed_share: removed_share(outcome),
             held: held(outcome),
         }
     }
@@ -94,13 +91,24 @@ impl Row {
         };
         self.unknown_channels.last().is_some_and(|found| channels.contains(&found.as_str()))
     }
+}
 
-    fn removed_share(&self) -> Option<f64> {
-        let [before, after] = self.locked?;
-        let floor = self.rmse[2];
-        let removable = before * before - floor * floor;
-        (removable > 0.02 * before * before).then(|| ((before * before - after * after) / removable).min(1.0))
+/// What the baseline leaves besides the noise, less what the improved model leaves of it, over what somebody who knows the
+/// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing.
+fn removed_share(outcome: &Outcome) -> Option<f64> {
+    let Concealed { recording, joint, rest_without, .. } = &outcome.concealed;
+    let noise = Prepared::new(&signals(recording, joint), Lock::Spread).filtered(&recording.truth.noise_torque);
+    let traces = &outcome.diagnosis.traces;
+    // A realigned recording has other rows, another base another rest.
+    if noise.len() != traces.len() || rest_without.len() != noise.len() || outcome.case.base != BaseKind::CoulombViscous
+    {
+        return None;
     }
+    let left = |rest: &[f64]| -> f64 {
+        (0..rest.len()).filter(|&i| traces.locked[i]).map(|i| (rest[i] - noise[i]).powi(2)).sum()
+    };
+    let before = left(&traces.before);
+    Some((before - left(&traces.after)) / (before - left(rest_without)))
 }
 
 /// A share with its Wilson 95 % interval, as text.
@@ -180,7 +188,7 @@ fn by_strength(rows: &[Row], base: BaseKind, text: &mut String) {
     let name = match base {
         BaseKind::CoulombViscous => "Coulomb and viscous friction",
         BaseKind::Spline => "a spline of nine coefficients",
-        BaseKind::Reference => "the law that `trainer fit` finds in the very recording",
+        BaseKind::Reference => "a Stribeck law fitted to the recording",
     };
     let _ = writeln!(
         text,
@@ -218,7 +226,7 @@ fn removed(rows: &[Row], text: &mut String) {
     for (low, high) in [(0.0, 0.1), (0.1, 0.15), (0.15, 0.3), (0.3, 0.6), (0.6, 1e9)] {
         let mut shares: Vec<f64> = singles(rows)
             .filter(|r| (low..high).contains(&r.effect_to_noise) && r.first_is_right())
-            .filter_map(Row::removed_share)
+            .filter_map(|row| row.removed_share)
             .collect();
         shares.sort_by(f64::total_cmp);
         if let Some(middle) = shares.get(shares.len() / 2) {

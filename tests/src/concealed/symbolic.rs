@@ -1,32 +1,47 @@
-//! The law that `trainer fit` finds in the very recording, as the model that a diagnosis starts from: whatever the law could
-//! swallow of a hidden effect, it has swallowed.
+//! A Stribeck law fitted to the very recording, as the model that a diagnosis starts from: whatever the law can swallow of a
+//! hidden effect, it has swallowed.
 
-use std::fmt::Write;
+use crate::laws::{data, velocity};
+use frikan_trainer::diagnose::{Reference, Signals};
+use frikan_trainer::law::{KnownForm, fit_form};
 
-use frikan_trainer::diagnose::{Signals, model};
-use frikan_trainer::fit::model::from_bytes;
-use frikan_trainer::fit::outcome::Representation;
-use frikan_trainer::fit::{Options, fit};
-use frikan_trainer::joint::Joint;
-use frikan_trainer::recording;
+/// Most samples that the law is fitted to.
+const MOST_SAMPLES: usize = 4000;
+/// Relative step of the central differences.
+const STEP: f64 = 1e-4;
 
-/// Fits a law to the signals (a rigid-body torque given, N m and rad) and makes it what they are compared with.
+/// Fits the law to the friction of the signals (a rigid-body torque given) and makes it what they are compared with.
 ///
 /// # Errors
-/// What keeps the recording from being fitted.
-pub fn compare_with_own_law(signals: &mut Signals, seed: u64) -> Result<(), String> {
-    let rigid_body = signals.rigid_body.as_ref().ok_or("no rigid-body torque is given")?;
-    let mut csv = String::from("time_s,position_rad,torque_Nm,rigid_body_torque_Nm\n");
-    for (i, body) in rigid_body.iter().enumerate() {
-        let _ = writeln!(csv, "{},{},{},{body}", signals.time[i], signals.position[i], signals.torque[i]);
-    }
-    let joint = Joint::default();
-    let recording = recording::parse("recording", csv.as_bytes(), &joint).map_err(|e| e.to_string())?;
-    let options = Options { seed, representation: Some(Representation::Expression), ..Options::default() };
-    let outcome = fit(&[recording], &[], &joint, &options, &|_| ()).map_err(|e| e.to_string())?;
-    let image = from_bytes(&outcome.image).map_err(|e| e.to_string())?;
+/// What keeps the law from being fitted.
+pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
     let state = signals.states();
-    let reference = model::at(&image.model, &state, state.rigid_body.as_deref()).map_err(|e| e.to_string())?;
+    let rigid_body = state.rigid_body.clone().ok_or("no rigid-body torque is given")?;
+    let moving: Vec<usize> = (0..state.len()).filter(|&i| !state.memory.at_rest[i]).collect();
+    let step = moving.len().div_ceil(MOST_SAMPLES).max(1);
+    let picked: Vec<usize> = moving.into_iter().step_by(step).collect();
+    let friction = picked.iter().map(|&i| state.torque[i] - rigid_body[i]).collect();
+    let samples = data(vec![velocity(picked.iter().map(|&i| state.velocity[i]).collect())], friction);
+    let law = fit_form(KnownForm::Stribeck, &samples, None).map_err(|e| e.to_string())?.law;
+    let constants: Vec<f64> = law.parameters.iter().map(|parameter| parameter.value).collect();
+    let friction = |v: f64, constants: &[f64]| law.template.value(&[v], constants);
+    let moved = |index: usize, by: f64| {
+        let mut moved = constants.clone();
+        moved[index] += by;
+        moved
+    };
+    let jacobian = (0..constants.len()).map(|index| {
+        let by = STEP * constants[index].abs().max(STEP);
+        let (up, down) = (moved(index, by), moved(index, -by));
+        state.velocity.iter().map(|v| (friction(*v, &up) - friction(*v, &down)) / (2.0 * by)).collect()
+    });
+    let reach = 1.2 * state.top_speed();
+    let reference = Reference {
+        torque: state.velocity.iter().zip(&rigid_body).map(|(v, body)| friction(*v, &constants) + body).collect(),
+        jacobian: jacobian.collect(),
+        friction: (-200..=200).map(|k| f64::from(k) / 200.0 * reach).map(|v| (v, friction(v, &constants))).collect(),
+        rigid_body,
+    };
     signals.compare_with(reference);
     Ok(())
 }

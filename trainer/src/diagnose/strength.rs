@@ -9,7 +9,7 @@ use super::search::noise_features;
 use super::signals::Signals;
 
 /// Strength of a torque that a recording conceals.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Strength {
     /// Non-centrality lambda: squared norm of the whitened torque that the base cannot absorb, on the open rows.
     pub lambda: f64,
@@ -17,6 +17,8 @@ pub struct Strength {
     pub effect_to_noise: f64,
     /// Share of the torque's energy that the base absorbs.
     pub absorbed: f64,
+    /// What the base leaves at every working row once that torque is taken off: the least that a diagnosis can leave.
+    pub rest_without: Vec<f64>,
 }
 
 /// Strength of `torque` (one value a sample, unfiltered) against `noise` in the same recording. What the diagnosis
@@ -40,6 +42,9 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
     let whitened = Bench::new(columns, white(&filtered), vec![trimmed]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
+    let bare: Vec<f64> = base.target.iter().zip(&filtered).map(|(t, f)| t - f).collect();
+    let without = Bench::new(whitened.base.clone(), white(&bare), whitened.blocks.clone());
+    let rest_without = residual(&base.columns, &bare, &without.solve(&[])?.0);
     let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
     let rows: usize = runs.iter().map(|run| run.len()).sum();
@@ -50,5 +55,6 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
         lambda,
         effect_to_noise: (kept / rows as f64).sqrt() / noise_rms.max(f64::MIN_POSITIVE),
         absorbed: 1.0 - kept / energy.max(f64::MIN_POSITIVE),
+        rest_without,
     })
 }

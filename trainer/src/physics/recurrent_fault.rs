@@ -10,6 +10,9 @@ const WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
 /// Widths of a pulse that is only passed to and fro: what is wider has other names.
 const NARROW_TURNS: [f64; 2] = [0.004, 0.008];
 
+/// Logarithm of the pulse's height below which it is nothing.
+const NOTHING_LEFT: f64 = 40.0;
+
 impl Hypothesis for RecurrentFault {
     fn id(&self) -> EffectId {
         EffectId::RecurrentFault
@@ -52,7 +55,8 @@ impl Hypothesis for RecurrentFault {
         let (order, phase, friction) = (shape[0], shape[1], shape[3]);
         let sharpness = (TAU * shape[2]).powi(-2);
         vec![state.map(|i| {
-            let pulse = (((order * state.position[i] - phase).cos() - 1.0) * sharpness).exp();
+            let fall = (1.0 - (order * state.position[i] - phase).cos()) * sharpness;
+            let pulse = if fall < NOTHING_LEFT { (-fall).exp() } else { 0.0 };
             if friction == 1.0 { pulse * state.sign[i] } else { pulse }
         })]
     }
