@@ -1,0 +1,114 @@
+//! What the diagnosis makes of other people's recordings, read from `../shared/recordings`, where more is known than they show.
+
+use std::f64::consts::TAU;
+
+use frikan_runtime::shared::model::RigidBody;
+use frikan_runtime::shared::units::Unit;
+use frikan_tests::concealed::semi_real;
+use frikan_trainer::diagnose::improve::{Origin, improve};
+use frikan_trainer::diagnose::{Diagnosis, Lock, Options, Signals, diagnose};
+use frikan_trainer::fit::predict::trace;
+use frikan_trainer::joint::Joint;
+use frikan_trainer::physics::EffectId;
+use frikan_trainer::recording::{self, Recording};
+
+/// A recording; `None`, said aloud, where the folder is absent. In CI its absence is a failure.
+fn load(name: &str, joint: &Joint) -> Option<Recording> {
+    let Some(folder) = semi_real::folder() else {
+        assert!(std::env::var_os("CI").is_none(), "the recordings are absent");
+        eprintln!("skipped: the recordings are absent");
+        return None;
+    };
+    Some(recording::load(&folder.join(name), joint).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn diagnosed(recording: &Recording, joint: &Joint, unit: &str, lock: Lock) -> (Signals, Diagnosis) {
+    let signals = Signals::of(recording, joint).unwrap();
+    let diagnosis = diagnose(&signals, unit, &Options { lock, ..Options::default() }).unwrap();
+    (signals, diagnosis)
+}
+
+fn named(diagnosis: &Diagnosis) -> Vec<EffectId> {
+    diagnosis.findings.iter().map(|finding| finding.effect).collect()
+}
+
+/// Share of the variance of the torque on locked rows that is left to explain no more.
+fn locked_r2(diagnosis: &Diagnosis) -> [f64; 2] {
+    let traces = &diagnosis.traces;
+    let locked: Vec<usize> = (0..traces.len()).filter(|&i| traces.locked[i]).collect();
+    let mean = locked.iter().map(|&i| traces.torque[i]).sum::<f64>() / locked.len() as f64;
+    let spread: f64 = locked.iter().map(|&i| (traces.torque[i] - mean).powi(2)).sum();
+    let r2 = |rest: &[f64]| 1.0 - locked.iter().map(|&i| rest[i] * rest[i]).sum::<f64>() / spread;
+    [r2(&traces.before), r2(&traces.after)]
+}
+
+/// Janot, Gautier and Brunot (2019): 3.11 % asymmetric on the training run, 5.98 % on the pulses.
+#[test]
+fn the_emps_axis_differs_between_its_directions() {
+    let joint = Joint::default();
+    let Some(train) = load("emps/train.csv", &joint) else { return };
+    let pulses = load("emps/pulses.csv", &joint).unwrap();
+    let (signals, diagnosis) = diagnosed(&train, &joint, "N", Lock::Spread);
+    let names = named(&diagnosis);
+    let expected = [EffectId::DirectionAsymmetry, EffectId::TorqueOffset];
+    assert!(!names.is_empty() && names.iter().all(|name| expected.contains(name)), "{names:?}");
+    let image = improve(&diagnosis, &signals, Origin::Recording(RigidBody::default()), Unit::Newton).unwrap().model;
+    let error = |recording| trace(&image, recording, &joint).unwrap().filtered_score.relative_error;
+    let (on_train, on_pulses) = (error(&train), error(&pulses));
+    println!("{names:?}: {:.2} % train, {:.2} % pulses", 100.0 * on_train, 100.0 * on_pulses);
+    assert!(on_train <= 0.032 && on_pulses <= 0.055);
+}
+
+/// The firmware's own cogging map was measured apart from the recording, by standing still at every count.
+#[test]
+fn the_bare_motor_cogs_as_its_map_says() {
+    const COUNTS: usize = 8192;
+    let joint = Joint::parse(&format!("[drive]\ncounts_per_turn = {COUNTS}")).unwrap();
+    let Some(motor) = load("odrive_cogging/slow2-nocomp_0.csv", &joint) else { return };
+    let (_, diagnosis) = diagnosed(&motor, &joint, "A", Lock::Tail(0.5));
+    let [before, after] = locked_r2(&diagnosis);
+    let ripples: Vec<(f64, f64, f64)> = diagnosis
+        .findings
+        .iter()
+        .filter(|finding| finding.effect == EffectId::PositionRipple)
+        .map(|f| (f.fitted.shape[0], f.fitted.coefficients[0], f.fitted.coefficients[1]))
+        .collect();
+    let at = |count: usize| -> f64 {
+        let angle = TAU * count as f64 / COUNTS as f64;
+        ripples.iter().map(|(order, cosine, sine)| cosine * (order * angle).cos() + sine * (order * angle).sin()).sum()
+    };
+    let map = std::fs::read_to_string(semi_real::folder().unwrap().join("odrive_cogging/measured_cogging_map.csv"));
+    let map: Vec<f64> =
+        map.unwrap().lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    let found: Vec<f64> = (0..map.len()).map(at).collect();
+    let agreement = correlation(&found, &map);
+    let orders: Vec<f64> = ripples.iter().map(|(order, ..)| *order).collect();
+    println!(
+        "orders {orders:.1?}, R2 {before:.3} -> {after:.3} on the later half, correlation with the map {agreement:.3}"
+    );
+    assert_eq!(diagnosis.findings[0].effect, EffectId::PositionRipple);
+    // Seven pole pairs.
+    assert!((ripples[0].0 - 7.0).abs() < 0.1);
+    assert!(before < 0.11 && after > 0.93);
+    assert!(agreement > 0.85);
+}
+
+/// A pin on a plate, stroke 0.24 mm: most of the motion is break-away.
+#[test]
+fn the_tribometer_slides_little_beyond_break_away() {
+    let joint = Joint::default();
+    let Some(pin) = load("tribometer/reciprocating.csv", &joint) else { return };
+    let (_, diagnosis) = diagnosed(&pin, &joint, "N", Lock::Tail(0.5));
+    let [before, after] = locked_r2(&diagnosis);
+    println!("{:?}, R2 {before:.4} -> {after:.4} on the later half", named(&diagnosis));
+    assert_eq!(diagnosis.findings[0].effect, EffectId::Presliding);
+    assert!(after > 0.99);
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let product =
+        |x: &[f64], mx: f64, y: &[f64], my: f64| -> f64 { x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum() };
+    product(a, mean_a, b, mean_b) / (product(a, mean_a, a, mean_a) * product(b, mean_b, b, mean_b)).sqrt()
+}
