@@ -3,7 +3,8 @@
 use clap::Parser;
 use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
 use frikan_tests::concealed::semi_real::Added;
-use frikan_tests::concealed::summary::{Row, report};
+use frikan_tests::concealed::summary::Row;
+use frikan_tests::concealed::tables::report;
 use frikan_tests::concealed::{Case, Hidden, advised, afterwards, run, semi_real};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};

@@ -8,6 +8,7 @@ pub mod intervals;
 pub mod semi_real;
 pub mod summary;
 pub mod symbolic;
+pub mod tables;
 
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, Strength, diagnose, strength};
 use frikan_trainer::physics::EffectId;

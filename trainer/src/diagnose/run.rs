@@ -232,10 +232,10 @@ fn finding(
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
     let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index));
     let evidence = format!(
-        "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {:.1e}, {} rival{} within reach",
+        "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {}, {} rival{} within reach",
         found.score,
         found.fold_gain.iter().sum::<f64>(),
-        found.family_wise,
+        probability_text(found.family_wise),
         found.rivals.len(),
         if found.rivals.len() == 1 { "" } else { "s" },
     );
@@ -255,6 +255,11 @@ fn finding(
         standings: found.standings.clone(),
         locked_gain_nats: locked,
     }
+}
+
+/// A small probability; what a double cannot hold is bounded.
+fn probability_text(probability: f64) -> String {
+    if probability < 1e-99 { "below 1e-99".to_string() } else { format!("{probability:.1e}") }
 }
 
 /// Coefficients, then free shapes, with units and 95 % intervals.

@@ -15,7 +15,7 @@ const MOST_ACTIVATIONS: usize = 12;
 #[must_use]
 pub fn fit(outcome: &Outcome) -> String {
     let name = if outcome.joint.is_empty() { "a joint" } else { &outcome.joint };
-    let mut page = Page::new(&format!("Friction of {name}"), &format!("{} Seed {}.", outcome.filter, outcome.seed));
+    let mut page = Page::new(&format!("Friction of {name}"), &format!("{}. Seed {}.", outcome.filter, outcome.seed));
     summary(&mut page, outcome);
     page.equation(&outcome.law.expression);
     page.paragraph(&outcome.choice);
@@ -79,18 +79,18 @@ fn over_velocity(page: &mut Page, outcome: &Outcome) {
     let (x, y) = (Scale::over(velocities), Scale::over(outcome.cloud.iter().chain(&outcome.law_curve).map(|p| p[1])));
     page.heading("Friction over velocity");
     let mut law = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
-    law.dots(&outcome.cloud, Ink::Data, "measured, rigid body taken off");
-    law.area(&outcome.band, Ink::Two, "95 % of the network");
+    law.dots(&outcome.cloud, Ink::Data, "measured");
+    law.area(&outcome.band, Ink::Two, "95 % band");
     law.line(&outcome.law_curve, Ink::One, "exported law");
     let mut stages = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
     stages.dots(&outcome.cloud, Ink::Data, "");
     for ((share, points), ink) in outcome.network.stages.iter().zip([Ink::Three, Ink::Two, Ink::One]) {
-        stages.line(points, ink, &format!("{:.0} % of the training", 100.0 * share));
+        stages.line(points, ink, &format!("{:.0} % trained", 100.0 * share));
     }
     page.figures(&[
         (
             law.svg(),
-            "The law in the image, other inputs at their mean, with the band that the network leaves for it."
+            "The law in the image, other inputs at their mean, with the band that the network leaves for it; measured torque less the rigid body."
                 .to_string(),
         ),
         (stages.svg(), "The network while it was trained.".to_string()),
