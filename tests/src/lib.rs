@@ -15,3 +15,18 @@ pub mod vectors;
 pub fn exhaustive() -> bool {
     std::env::var("FRIKAN_EXHAUSTIVE").is_ok_and(|value| value == "1")
 }
+
+/// The folder of other people's recordings; `None`, said aloud, where it is absent.
+///
+/// # Panics
+/// Where it is absent in CI.
+#[must_use]
+pub fn recordings() -> Option<std::path::PathBuf> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    assert!(std::env::var_os("CI").is_none(), "{} is absent", folder.display());
+    eprintln!("skipped: {} is absent", folder.display());
+    None
+}

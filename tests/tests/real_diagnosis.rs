@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
-use frikan_tests::concealed::semi_real;
+use frikan_tests::recordings;
 use frikan_trainer::diagnose::improve::{Origin, improve};
 use frikan_trainer::diagnose::{Diagnosis, Lock, Options, Signals, diagnose};
 use frikan_trainer::fit::predict::trace;
@@ -12,14 +12,8 @@ use frikan_trainer::joint::Joint;
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::recording::{self, Recording};
 
-/// A recording; `None`, said aloud, where the folder is absent. In CI its absence is a failure.
 fn load(name: &str, joint: &Joint) -> Option<Recording> {
-    let Some(folder) = semi_real::folder() else {
-        assert!(std::env::var_os("CI").is_none(), "the recordings are absent");
-        eprintln!("skipped: the recordings are absent");
-        return None;
-    };
-    Some(recording::load(&folder.join(name), joint).unwrap_or_else(|error| panic!("{error}")))
+    Some(recording::load(&recordings()?.join(name), joint).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn diagnosed(recording: &Recording, joint: &Joint, unit: &str, lock: Lock) -> (Signals, Diagnosis) {
@@ -77,7 +71,7 @@ fn the_bare_motor_cogs_as_its_map_says() {
         let angle = TAU * count as f64 / COUNTS as f64;
         ripples.iter().map(|(order, cosine, sine)| cosine * (order * angle).cos() + sine * (order * angle).sin()).sum()
     };
-    let map = std::fs::read_to_string(semi_real::folder().unwrap().join("odrive_cogging/measured_cogging_map.csv"));
+    let map = std::fs::read_to_string(recordings().unwrap().join("odrive_cogging/measured_cogging_map.csv"));
     let map: Vec<f64> =
         map.unwrap().lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
     let found: Vec<f64> = (0..map.len()).map(at).collect();

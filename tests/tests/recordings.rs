@@ -1,24 +1,14 @@
 //! The whole way on other people's recordings, read from `../shared/recordings`: published figures are reached.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use frikan_tests::fixtures::separated_recording;
 use frikan_tests::paper::JOINTS;
+use frikan_tests::recordings;
 use frikan_trainer::fit::outcome::Outcome;
 use frikan_trainer::fit::{Options, fit};
 use frikan_trainer::joint::Joint;
 use frikan_trainer::recording::{self, Recording};
-
-/// The folder of recordings; `None`, said aloud, where it is absent. In CI its absence is a failure.
-fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(std::env::var_os("CI").is_none(), "{} is absent", folder.display());
-    eprintln!("skipped: {} is absent", folder.display());
-    None
-}
 
 fn load(path: &Path) -> Recording {
     recording::load(path, &Joint::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -32,7 +22,7 @@ fn fitted(train: &[Recording], tests: &[Recording]) -> Outcome {
 /// Janot, Gautier and Brunot (2019) publish 3.11 % and 5.98 % and the parameters below.
 #[test]
 fn emps_reaches_the_published_errors_and_parameters() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = recordings() else { return };
     let outcome = fitted(&[load(&folder.join("emps/train.csv"))], &[load(&folder.join("emps/pulses.csv"))]);
     let (train, pulses) = (&outcome.train[0].filtered_score, &outcome.tests[0].filtered_score);
     println!("train {:.3} %, pulses {:.3} %", 100.0 * train.relative_error, 100.0 * pulses.relative_error);
@@ -47,7 +37,7 @@ fn emps_reaches_the_published_errors_and_parameters() {
 /// A hand-made linear model of the same rigid-body terms reaches 385 N m.
 #[test]
 fn kr300_axis_3_predicts_an_unseen_trajectory() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = recordings() else { return };
     let [a, b, c] = ["A", "B", "C"].map(|run| load(&folder.join(format!("kr300/axis3-{run}.csv"))));
     let outcome = fitted(&[a, b], &[c]);
     println!("{:.1} N m on C", outcome.tests[0].score.rmse);

@@ -102,7 +102,7 @@ fn beyond(arguments: &Arguments) -> String {
         .into_par_iter()
         .filter_map(|case| said(advised::run(&case, arguments.first_seed)).map(|advised| (case, advised)))
         .collect();
-    let real: Vec<Added> = semi_real::folder().map_or(Vec::new(), |folder| {
+    let real: Vec<Added> = frikan_tests::recordings().map_or(Vec::new(), |folder| {
         let added = semi_real::RECORDINGS.into_par_iter().filter_map(|name| said(semi_real::run(&folder, name)));
         added.flatten().collect()
     });

@@ -2,7 +2,7 @@
 //! besides.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::summary::share;
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Signals, diagnose, strength};
@@ -50,12 +50,6 @@ impl Added {
     pub fn is_found(&self) -> bool {
         self.found.iter().flatten().any(|effect| *effect == self.effect)
     }
-}
-
-/// The folder of recordings, where it is there.
-pub fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
-    folder.is_dir().then_some(folder)
 }
 
 /// Part of the recorded torque, root mean square, that an effect is given beyond what the base absorbs.
