@@ -6,7 +6,7 @@ use super::linear::{dot, invert_symmetric, least_squares, residual};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
-use crate::physics::{Dimension, JointState, Shape};
+use crate::physics::{Dimension, Shape};
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -143,14 +143,11 @@ fn widen_by_shapes(
     effects: &mut [Fitted],
     places: &[std::ops::Range<usize>],
 ) {
-    let state = &search.prepared.state;
     let mut tangents: Vec<Vec<f64>> = Vec::new();
     let mut owners: Vec<(usize, usize)> = Vec::new();
     for (index, effect) in effects.iter().enumerate() {
-        let Label::Named(id) = effect.label else { continue };
-        let Some(hypothesis) = search.hypothesis(id) else { continue };
-        for (slot, tangent) in search.shape_tangents(hypothesis, state, effect).into_iter() {
-            tangents.push(tangent);
+        for (slot, columns) in search.column_tangents(&effect.label, &effect.shape) {
+            tangents.push(weighted(&columns, &effect.coefficients));
             owners.push((index, slot));
         }
     }
@@ -165,30 +162,6 @@ fn widen_by_shapes(
     }
     for (row, (index, slot)) in (bench.base.len()..).zip(owners) {
         effects[index].shape_deviation[slot] = Some(covariance[(row, row)].max(0.0).sqrt());
-    }
-}
-
-impl Search<'_> {
-    /// Change of an effect's fitted torque with each refinable shape parameter, filtered.
-    fn shape_tangents(
-        &self,
-        hypothesis: &dyn crate::physics::Hypothesis,
-        state: &JointState,
-        effect: &Fitted,
-    ) -> Vec<(usize, Vec<f64>)> {
-        (0..effect.shape.len())
-            .filter(|&slot| hypothesis.bounds(state, slot, &effect.shape).is_some())
-            .map(|slot| {
-                let step = 0.05 * hypothesis.step(state, slot, &effect.shape);
-                let torque = |by: f64| {
-                    let mut shape = effect.shape.clone();
-                    shape[slot] += by;
-                    weighted(&self.filtered_columns(&effect.label, &shape), &effect.coefficients)
-                };
-                let (up, down) = (torque(step), torque(-step));
-                (slot, up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect())
-            })
-            .collect()
     }
 }
 

@@ -10,6 +10,7 @@ mod conclude;
 mod confidence;
 mod evidence;
 mod filter;
+mod findings;
 mod health;
 pub mod improve;
 mod join;

@@ -184,34 +184,32 @@ impl<'a> Search<'a> {
         for (index, effect) in accepted.iter().enumerate() {
             if Some(index) != without {
                 columns.extend(self.filtered_columns(&effect.label, &effect.shape));
-                columns.extend(self.tangents(&effect.label, &effect.shape));
+                let tangents = self.column_tangents(&effect.label, &effect.shape);
+                columns.extend(tangents.into_iter().flat_map(|(_, columns)| columns));
             }
         }
         columns
     }
 
-    /// Change of the filtered columns with each refinable shape parameter, summed per coefficient by their own columns:
-    /// one column a coefficient and shape parameter.
-    pub(crate) fn tangents(&self, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
+    /// Change of every filtered column with each refinable shape parameter, with the place of that parameter.
+    pub(crate) fn column_tangents(&self, label: &Label, shape: &[f64]) -> Vec<(usize, Vec<Vec<f64>>)> {
         let Label::Named(effect) = label else { return Vec::new() };
         let Some(hypothesis) = self.hypothesis(*effect) else { return Vec::new() };
         let state = &self.prepared.state;
-        let mut tangents = Vec::new();
-        for index in 0..shape.len() {
-            if hypothesis.bounds(state, index, shape).is_none() {
-                continue;
-            }
+        let free = (0..shape.len()).filter(|&index| hypothesis.bounds(state, index, shape).is_some());
+        free.map(|index| {
             let step = 0.05 * hypothesis.step(state, index, shape);
             let shifted = |by: f64| {
                 let mut moved = shape.to_vec();
                 moved[index] += by;
                 self.filtered_columns(label, &moved)
             };
-            for (up, down) in shifted(step).into_iter().zip(shifted(-step)) {
-                tangents.push(up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect());
-            }
-        }
-        tangents
+            let difference = |(up, down): (Vec<f64>, Vec<f64>)| -> Vec<f64> {
+                up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect()
+            };
+            (index, shifted(step).into_iter().zip(shifted(-step)).map(difference).collect())
+        })
+        .collect()
     }
 
     /// Drops every effect that the others have made superfluous.

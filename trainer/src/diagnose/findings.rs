@@ -1,0 +1,146 @@
+//! What one accepted effect tells its reader: name, probability, parameters with units and intervals, place, evidence.
+
+use super::advise::{Advice, separation};
+use super::base::Base;
+use super::candidates::Label;
+use super::conclude::{Fitted, Refit, unit_text};
+use super::confidence::{alternatives, probability};
+use super::health::HealthNote;
+use super::localise::{Location, locate};
+use super::outcome::Finding;
+use super::run::locked_gain;
+use super::search::{Accepted, Search};
+use super::signals::Signals;
+use crate::parameter::Parameter;
+use crate::physics::{Action, Dimension, EffectId};
+
+/// An accepted effect, the `index`th of `all`, after the joint refit.
+pub(super) fn finding(
+    search: &Search,
+    found: &Accepted,
+    all: &[Accepted],
+    index: usize,
+    improved: &Refit,
+    actuator: &str,
+) -> Finding {
+    let effect = found.effect();
+    let fitted = improved.effects[index].clone();
+    let location = locate(search, improved, index);
+    let equation = match &found.label {
+        Label::Named(id) => search.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
+        Label::Generic(rival) => format!("dF = {} c({})", rival.factor.text(), rival.channel.name()),
+    };
+    let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
+    let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
+    let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index));
+    let evidence = format!(
+        "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {}, {} rival{} within reach",
+        found.score,
+        found.fold_gain.iter().sum::<f64>(),
+        probability_text(found.family_wise),
+        found.rivals.len(),
+        if found.rivals.len() == 1 { "" } else { "s" },
+    );
+    Finding {
+        effect,
+        probability: probability(found),
+        alternatives: alternatives(found),
+        action: effect.action(),
+        equation,
+        parameters: parameters(search, &fitted, actuator),
+        location,
+        evidence,
+        separate_by: Advice { sentence: advice },
+        fitted,
+        score: found.score,
+        margin: found.margin,
+        standings: found.standings.clone(),
+        locked_gain_nats: locked,
+    }
+}
+
+/// A small probability; what a double cannot hold is bounded.
+fn probability_text(probability: f64) -> String {
+    if probability < 1e-99 { "below 1e-99".to_string() } else { format!("{probability:.1e}") }
+}
+
+/// Coefficients, then free shapes, with units and 95 % intervals.
+fn parameters(search: &Search, fitted: &Fitted, actuator: &str) -> Vec<Parameter> {
+    let Label::Named(effect) = fitted.label else { return Vec::new() };
+    let Some(hypothesis) = search.hypothesis(effect) else { return Vec::new() };
+    let rotary = search.prepared.state.rotary;
+    let parameter = |name: &str, symbol: &str, dimension: Dimension, value: f64, deviation: f64| Parameter {
+        name: name.to_string(),
+        symbol: symbol.to_string(),
+        value,
+        unit: unit_text(dimension, rotary, actuator),
+        ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+    };
+    let linear =
+        hypothesis.coefficients(&fitted.shape).into_iter().zip(fitted.coefficients.iter().zip(&fitted.deviation)).map(
+            |((name, symbol, dimension), (value, deviation))| parameter(name, symbol, dimension, *value, *deviation),
+        );
+    let shapes = hypothesis
+        .shape_names()
+        .into_iter()
+        .zip(fitted.shape.iter().zip(&fitted.shape_deviation))
+        .filter(|(shape, _)| shape.name != "variant")
+        .map(|(shape, (value, deviation))| {
+            parameter(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0))
+        });
+    linear.chain(shapes).collect()
+}
+
+pub(super) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, actuator: &str) -> Vec<Parameter> {
+    let dimension = |name: &str| match name {
+        "viscous_coefficient" => Dimension::TorquePerVelocity,
+        "inertia" => Dimension::Inertia,
+        _ => Dimension::Torque,
+    };
+    base.names
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| !matches!(**name, "model_parameter" | "friction_knot"))
+        .map(|(i, name)| {
+            let (value, deviation) = (refit.base[i], refit.base_deviation[i]);
+            Parameter {
+                name: (*name).to_string(),
+                symbol: match *name {
+                    "coulomb_torque" => "F_c",
+                    "viscous_coefficient" => "F_v",
+                    _ => "J",
+                }
+                .to_string(),
+                value,
+                unit: unit_text(dimension(name), signals.rotary, actuator),
+                ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+            }
+        })
+        .collect()
+}
+
+/// A fault of the measurement as a finding, without a fitted term.
+pub(super) fn measurement_finding(note: &HealthNote) -> Finding {
+    Finding {
+        effect: note.effect,
+        probability: if note.blocking { 0.99 } else { 0.5 },
+        alternatives: Vec::new(),
+        action: Action::Measurement,
+        equation: String::new(),
+        parameters: Vec::new(),
+        location: Location::default(),
+        evidence: note.sentence.clone(),
+        separate_by: Advice { sentence: separation(note.effect).to_string() },
+        fitted: Fitted {
+            label: Label::Named(note.effect),
+            shape: Vec::new(),
+            shape_deviation: Vec::new(),
+            coefficients: Vec::new(),
+            deviation: Vec::new(),
+        },
+        score: 0.0,
+        margin: f64::INFINITY,
+        standings: Vec::new(),
+        locked_gain_nats: None,
+    }
+}
