@@ -10,11 +10,8 @@ use super::search::{Accepted, Search};
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
 
-/// Share of what a free function explains at which a name is good enough, where the recording is so telling that the error of
-/// any formula shows: from [`FORMULAS_ERR_FROM`] of explained whitened energy.
+/// Share of what a free function explains at which a name is good enough.
 const NEARLY_AS_MUCH: f64 = 0.88;
-/// Explained whitened energy from which that holds: a formula that is wrong by a tenth then loses its margin.
-const FORMULAS_ERR_FROM: f64 = 250.0;
 
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
 const PLACES_LOOKED_AT: f64 = 10.0;
@@ -187,8 +184,7 @@ impl Round<'_, '_> {
         // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
         // much, whitened or not, is kept.
         let nearly = |generic: &Scored| {
-            let telling = generic.evidence.statistic > FORMULAS_ERR_FROM;
-            table.iter().filter(is_named).filter(passes).filter(|_| telling).find(|s| {
+            table.iter().filter(is_named).filter(passes).find(|s| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
                     || s.evidence.statistic >= NEARLY_AS_MUCH * generic.evidence.statistic
             })
