@@ -20,11 +20,13 @@ pub fn report(rows: &[Row], errors: &[String], command: &str) -> String {
     for base in [BaseKind::CoulombViscous, BaseKind::Spline, BaseKind::Reference] {
         by_strength(rows, base, &mut text);
     }
-    removed(rows, &mut text);
-    intervals(rows, &mut text);
-    by_effect(rows, &mut text);
-    confusions(rows, &mut text);
-    reliability(rows, &mut text);
+    if singles(rows).next().is_some() {
+        removed(rows, &mut text);
+        intervals(rows, &mut text);
+        by_effect(rows, &mut text);
+        confusions(rows, &mut text);
+        reliability(rows, &mut text);
+    }
     outside(rows, &mut text);
     pairs(rows, &mut text);
     misses(rows, &mut text);
@@ -39,6 +41,9 @@ pub fn report(rows: &[Row], errors: &[String], command: &str) -> String {
 
 fn controls(rows: &[Row], text: &mut String) {
     let controls: Vec<&Row> = rows.iter().filter(|r| r.case.hidden == Hidden::Nothing).collect();
+    if controls.is_empty() {
+        return;
+    }
     let _ = writeln!(text, "## Controls: nothing is missing\n\n| kind | false alarms |\n|---|---|");
     let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in &controls {
@@ -239,11 +244,15 @@ fn pairs(rows: &[Row], text: &mut String) {
 }
 
 fn misses(rows: &[Row], text: &mut String) {
+    let missed: Vec<&Row> = rows.iter().filter(|r| !r.in_set() && r.lambda >= 50.0).collect();
+    if missed.is_empty() {
+        return;
+    }
     let _ = writeln!(
         text,
         "\n## Every miss at lambda of 50 and more\n\n| hidden | seed | lambda | answer |\n|---|---|---|---|"
     );
-    for row in rows.iter().filter(|r| !r.in_set() && r.lambda >= 50.0) {
+    for row in missed {
         let answer: Vec<String> = row
             .findings
             .iter()
