@@ -52,19 +52,19 @@ pub fn evaluate<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INP
 /// The laws that take longer than a call, each a function of its own: none saves the registers of another.
 #[inline(never)]
 fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> f32 {
-    let [first, ..] = *inputs;
+    let [first, ..] = inputs;
     match &model.law {
-        Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, first),
+        Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, *first),
         // Validation has proved what tables give to be within the limit.
-        Law::Uniform(layout) => unless(first.is_nan(), evaluate_table(&Table::Uniform(*layout), &model.cells, first)),
-        Law::Network(network) => evaluate_network(model, network, inputs),
-        Law::Expression(program) => evaluate_expression(model, program, inputs),
-        Law::IntegerTable(table) => evaluate_integer_table(model, table, first),
+        Law::Uniform(layout) => unless(first.is_nan(), evaluate_table(&Table::Uniform(*layout), &model.cells, *first)),
+        Law::Network(network) => evaluate_network(network, inputs, &model.cells),
+        Law::Expression(program) => evaluate_expression(model, inputs, program),
+        Law::IntegerTable(table) => evaluate_integer_table(model, table, *first),
     }
 }
 
 #[inline(never)]
-fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, program: &Program, inputs: &[f32; MAX_INPUTS]) -> f32 {
+fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS], program: &Program) -> f32 {
     let inputs = held(&model.inputs, inputs);
     let any_nan = inputs.iter().fold(false, |any, input| any | input.is_nan());
     limited(unless(any_nan, run(program, &inputs)), model.output_limit)

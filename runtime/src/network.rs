@@ -1,7 +1,9 @@
 //! Networks of tables: from the inputs on in integers, layer by layer.
 
-use frikan_shared::model::{MAX_INPUTS, Model};
-use frikan_shared::network::{Coordinate, Layer, MAX_WIDTH, MIDDLE, Network, Source};
+use core::hint::black_box;
+
+use frikan_shared::model::MAX_INPUTS;
+use frikan_shared::network::{Coordinate, Layer, MAX_WIDTH, Network, OneHiddenLayer};
 use frikan_shared::pool::Pool;
 use frikan_shared::table::{Cell, Table};
 
@@ -11,14 +13,15 @@ use crate::table::{position_geometric, position_uniform};
 #[derive(Clone, Copy)]
 struct Place {
     row: u32,
-    x: Coordinate,
+    /// The way through the row, `2^32` for the whole of it.
+    fraction: u32,
 }
 
 /// The row is the high word of the product of position and rows, the way through it the low one.
 #[inline(always)]
 fn place(position: u32, rows: u32) -> Place {
     let product = u64::from(position) * u64::from(rows);
-    Place { row: (product >> 32) as u32, x: (product as u32 >> 1) as Coordinate }
+    Place { row: (product >> 32) as u32, fraction: product as u32 }
 }
 
 #[inline(always)]
@@ -32,78 +35,78 @@ fn place_input(table: &Table, input: f32) -> Place {
     }
 }
 
-/// The value of an edge.
+/// The value of an edge at a fraction of the way through the cell.
 #[inline(always)]
-fn cubic(cell: &Cell, x: Coordinate) -> i32 {
+fn cubic(cell: &Cell, fraction: u32) -> i32 {
+    let x = (fraction >> 1) as Coordinate;
     let [a0, a1, a2, a3] = cell.integers();
     let step = |sum: i32, coefficient: i32| coefficient.wrapping_add(((i64::from(sum) * i64::from(x)) >> 32) as i32);
     step(step(step(a3, a2), a1), a0)
 }
 
-/// Evaluates the law `network` of `model` on its inputs; 0 where one is NaN.
+/// Evaluates a network on its inputs; 0 where one is NaN.
 ///
-/// The number of instructions depends on the network alone, once the inputs are placed. Meaningless, but some number, where the network does
-/// not fit its pool, which no validated network does.
+/// The number of instructions depends on the network alone. Meaningless, but some number, where the network does not fit its pool, which
+/// no validated network does.
 #[must_use]
-#[inline(never)]
-pub fn evaluate_network<const CELLS: usize>(
-    model: &Model<CELLS>,
-    network: &Network,
-    inputs: &[f32; MAX_INPUTS],
-) -> f32 {
-    let output = match (network.sources.as_slice(), network.layers.as_slice()) {
-        ([source], [layer]) if layer.products == 0 => one_hidden_layer(source, *layer, &model.cells, inputs),
-        _ => any_layers(network, &model.cells, inputs),
-    };
-    output as f32 * network.output_step
-}
-
-/// The last sum of a network of one input and one layer of additive nodes: every node goes at once to its edge.
 #[inline(always)]
-fn one_hidden_layer<const CELLS: usize>(
-    source: &Source,
-    layer: Layer,
-    pool: &Pool<CELLS>,
-    &[input, ..]: &[f32; MAX_INPUTS],
-) -> i32 {
-    let first = place_input(&source.table, input);
-    let width = u32::from(layer.additive);
-    let row = first.row.wrapping_mul(width).wrapping_add(u32::from(source.first_cell));
-    let rows_doubled = 2 * u32::from(layer.rows);
-    let mut node_doubled = 2 * u32::from(layer.first_cell);
-    let mut output = 0i32;
-    for target in 0..width {
-        let sum = cubic(pool.at(row.wrapping_add(target)), first.x);
-        let second = place(sum as u32, rows_doubled);
-        // Not `at`: with a way out, the compiler leaves this loop as it is; unrolled, it takes longer for a handful of nodes.
-        let Some(cell) = pool.within(second.row.wrapping_add(node_doubled >> 1)) else { break };
-        output = output.wrapping_add(cubic(cell, second.x));
-        node_doubled = node_doubled.wrapping_add(rows_doubled);
+pub fn evaluate_network<const CELLS: usize>(network: &Network, inputs: &[f32; MAX_INPUTS], pool: &Pool<CELLS>) -> f32 {
+    match &network.one_hidden_layer {
+        Some(layer) => evaluate_one_hidden_layer(layer, inputs, pool, network.output_step),
+        None => evaluate_any_layers(network, inputs, pool),
     }
-    if input.is_nan() { 0 } else { output }
 }
 
-/// The last sum of any network.
+/// The output of a network of one input and one layer of additive nodes: every node goes at once to its edge.
 #[inline(never)]
-fn any_layers<const CELLS: usize>(network: &Network, pool: &Pool<CELLS>, inputs: &[f32; MAX_INPUTS]) -> i32 {
-    let targets = |layer: usize| network.layers.get(layer).map_or(1, |layer| layer.targets());
+fn evaluate_one_hidden_layer<const CELLS: usize>(
+    layer: &OneHiddenLayer,
+    &[input, ..]: &[f32; MAX_INPUTS],
+    pool: &Pool<CELLS>,
+    output_step: f32,
+) -> f32 {
+    let first = place_input(&layer.source.table, input);
+    let row = first.row.wrapping_mul(layer.nodes).wrapping_add(u32::from(layer.source.first_cell));
+    let Some([edge, others @ ..]) = pool.run(row, layer.nodes) else { return 0.0 };
+    let (mut edge, mut others) = (edge, others.iter());
+    let rows_per_turn = layer.rows_per_turn;
+    let mut output = 0i32;
+    // The last node leaves the loop halfway, where the place of its second cell is known: a compiler that sees a plain loop
+    // unrolls it, which takes longer for a handful of nodes, and finds every second cell twice.
+    let (cell, fraction) = loop {
+        let second = place(cubic(edge, first.fraction) as u32, rows_per_turn);
+        let cell = pool.at(second.row);
+        let Some(next) = others.next() else { break (cell, second.fraction) };
+        // No instruction: keeps the two ends of the loop apart.
+        black_box(());
+        output = output.wrapping_add(cubic(cell, second.fraction));
+        edge = next;
+    };
+    output = output.wrapping_add(cubic(cell, fraction));
+    let output = if input.is_nan() { 0 } else { output };
+    output as f32 * output_step
+}
+
+/// The output of any network.
+#[inline(never)]
+fn evaluate_any_layers<const CELLS: usize>(network: &Network, inputs: &[f32; MAX_INPUTS], pool: &Pool<CELLS>) -> f32 {
     let mut sums = [0i32; MAX_WIDTH];
-    for (source, input) in network.sources.iter().zip(inputs) {
-        add_edges(&mut sums, targets(0), pool, u32::from(source.first_cell), place_input(&source.table, *input));
+    let mut any_nan = false;
+    for (source, input) in network.sources().iter().zip(inputs) {
+        any_nan |= input.is_nan();
+        let place = place_input(&source.table, *input);
+        add_edges(&mut sums, network.targets(0), pool, u32::from(source.first_cell), place);
     }
-    for (layer, next) in network.layers.iter().zip(1..) {
-        let values = values(&sums, *layer);
-        let (rows, columns) = (u32::from(layer.rows), targets(next));
-        let mut first_cell = u32::from(layer.first_cell);
+    for (layer, next) in network.layers().iter().zip(1..) {
+        let positions = positions(&sums, *layer);
         sums = [0; MAX_WIDTH];
-        for &value in values.iter().take(layer.nodes()) {
-            add_edges(&mut sums, columns, pool, first_cell, place(value as u32, 2 * rows));
-            first_cell = first_cell.wrapping_add(rows.wrapping_mul(columns as u32));
+        for &position in positions.iter().take(layer.nodes()) {
+            add_edges(&mut sums, network.targets(next), pool, 0, place(position, layer.rows_per_turn()));
         }
     }
-    let any_nan = inputs.iter().zip(&network.sources).fold(false, |any, (input, _)| any | input.is_nan());
     let [output, ..] = sums;
-    if any_nan { 0 } else { output }
+    let output = if any_nan { 0 } else { output };
+    output as f32 * network.output_step
 }
 
 /// Adds the edges of one source to the sums of their targets.
@@ -117,18 +120,20 @@ fn add_edges<const CELLS: usize>(
 ) {
     let row = place.row.wrapping_mul(targets as u32).wrapping_add(first_cell);
     for (sum, target) in sums.iter_mut().take(targets).zip(0u32..) {
-        *sum = sum.wrapping_add(cubic(pool.at(row.wrapping_add(target)), place.x));
+        *sum = sum.wrapping_add(cubic(pool.at(row.wrapping_add(target)), place.fraction));
     }
 }
 
-/// The nodes of a layer: its additive sums, then the products of the pairs at their end.
+/// The positions of the nodes of a layer: its additive sums, then the products of the pairs at their end.
 #[inline(always)]
-fn values(sums: &[i32; MAX_WIDTH], layer: Layer) -> [i32; MAX_WIDTH] {
-    let mut values = *sums;
+fn positions(sums: &[i32; MAX_WIDTH], layer: Layer) -> [u32; MAX_WIDTH] {
+    let mut positions = sums.map(|sum| sum as u32);
     let additive = usize::from(layer.additive);
     let (pairs, _) = sums.get(additive..).unwrap_or_default().as_chunks::<2>();
-    for (value, [first, second]) in values.iter_mut().skip(additive).take(usize::from(layer.products)).zip(pairs) {
-        *value = MIDDLE.wrapping_add(((i64::from(*first) * i64::from(*second)) >> 32) as i32);
+    let nodes = positions.iter_mut().zip(0..).skip(additive).take(usize::from(layer.products));
+    for ((position, node), [first, second]) in nodes.zip(pairs) {
+        let middle = layer.start(node).wrapping_add(layer.half_width());
+        *position = middle.wrapping_add(((i64::from(*first) * i64::from(*second)) >> 32) as u32);
     }
-    values
+    positions
 }

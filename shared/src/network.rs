@@ -11,11 +11,12 @@
 //! a0 + high(x (a1 + high(x (a2 + high(x a3)))))
 //! ```
 //!
-//! so that `a_k` is `2^k` times the coefficient of the `k`-th power of the way from 0 to 1.
+//! so that `a_k` is `2^k` times the coefficient of the `k`-th power of the way from 0 to 1. Sums are taken modulo `2^32`.
 //!
-//! A sum `s` in an additive node of a hidden layer lies in `[0, 2^31)`, the whole range of its outgoing edges. A multiplicative node has
-//! two sums `s` and `t` of either sign, and its value in that range is `2^30 + high(s t)`. The last sum is the output in steps. That the
-//! cells of a network keep to all of this is validated, for every input there can be.
+//! A sum in an additive node of a hidden layer is a *position*: its upper bits number a row of the pool, and the lower
+//! [`Layer::row_bits`] ones are the way through it. Row `r` of a layer with `k` targets is the pool's cells `r k .. (r + 1) k`. A
+//! multiplicative node has two sums `s` and `t` of either sign, and its position is `high(s t)` from the middle of its rows. The last sum
+//! is the output in steps. That the sums of a network keep to the rows of their nodes is validated, for every input there can be.
 
 mod check;
 
@@ -31,9 +32,6 @@ pub const MAX_WIDTH: usize = 16;
 
 /// The way through a cell, `2^31` for the whole of it.
 pub type Coordinate = i32;
-
-/// Position in the middle of a hidden node's range.
-pub const MIDDLE: i32 = 1 << 30;
 
 /// An input: the layout that its edges share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,8 +55,8 @@ pub struct Layer {
     pub products: u8,
     /// Rows of each node, at least 1.
     pub rows: u16,
-    /// Index in the pool of the first node's first row.
-    pub first_cell: u16,
+    /// The first node's first row, counted in rows of this layer from the start of the pool.
+    pub first_row: u16,
 }
 
 impl Layer {
@@ -73,11 +71,36 @@ impl Layer {
     pub fn nodes(self) -> usize {
         usize::from(self.additive) + usize::from(self.products)
     }
+
+    /// Bits of a position below the number of its row: as many as leave room for the last row.
+    #[must_use]
+    pub fn row_bits(self) -> u32 {
+        let end = u32::from(self.first_row) + self.nodes() as u32 * u32::from(self.rows);
+        end.leading_zeros().min(31)
+    }
+
+    /// `2^32 / 2^row_bits`: the product of a position with it has the row in the high word and the way through it in the low one.
+    #[must_use]
+    pub fn rows_per_turn(self) -> u32 {
+        1 << (32 - self.row_bits())
+    }
+
+    /// Position of the start of a node's first row.
+    #[must_use]
+    pub fn start(self, node: usize) -> u32 {
+        (u32::from(self.first_row) + node as u32 * u32::from(self.rows)) << self.row_bits()
+    }
+
+    /// Half of the positions of a node.
+    #[must_use]
+    pub fn half_width(self) -> u32 {
+        u32::from(self.rows) << (self.row_bits() - 1)
+    }
 }
 
-/// A network of tables. After the last hidden layer all edges end in one sum.
+/// What the image says of a network; everything else of [`Network`] follows from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Network {
+pub struct NetworkShape {
     /// The model's inputs in their order.
     pub sources: heapless::Vec<Source, { crate::model::MAX_INPUTS }>,
     /// Hidden layers from input to output.
@@ -86,12 +109,84 @@ pub struct Network {
     pub output_step: f32,
 }
 
+/// A network of one input and one hidden layer of additive nodes: each node is on the way to its only edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OneHiddenLayer {
+    /// The input.
+    pub source: Source,
+    /// Nodes of the layer.
+    pub nodes: u32,
+    /// [`Layer::rows_per_turn`] of the layer.
+    pub rows_per_turn: u32,
+}
+
+/// A network of tables, ready to evaluate. After the last hidden layer all edges end in one sum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "NetworkShape", into = "NetworkShape")]
+pub struct Network {
+    shape: NetworkShape,
+    /// The network once more, where it is of this simple kind.
+    pub one_hidden_layer: Option<OneHiddenLayer>,
+    /// Unit of the output for each step of the last sum.
+    pub output_step: f32,
+}
+
+impl Network {
+    /// The network of a shape. A shape out of its documented range gives a harmless network, which validation refuses.
+    #[must_use]
+    pub fn new(shape: NetworkShape) -> Self {
+        let one_hidden_layer = match (shape.sources.as_slice(), shape.layers.as_slice()) {
+            (&[source], &[layer]) if layer.products == 0 => {
+                Some(OneHiddenLayer { source, nodes: u32::from(layer.additive), rows_per_turn: layer.rows_per_turn() })
+            }
+            _ => None,
+        };
+        Self { one_hidden_layer, output_step: shape.output_step, shape }
+    }
+
+    /// What the image says of this network.
+    #[must_use]
+    pub fn shape(&self) -> &NetworkShape {
+        &self.shape
+    }
+
+    /// The inputs in their order.
+    #[must_use]
+    pub fn sources(&self) -> &[Source] {
+        &self.shape.sources
+    }
+
+    /// Hidden layers from input to output.
+    #[must_use]
+    pub fn layers(&self) -> &[Layer] {
+        &self.shape.layers
+    }
+
+    /// Sums after the edges that leave layer `index`, counted from the inputs.
+    #[must_use]
+    pub fn targets(&self, index: usize) -> usize {
+        self.layers().get(index).map_or(1, |layer| layer.targets())
+    }
+}
+
+impl From<NetworkShape> for Network {
+    fn from(shape: NetworkShape) -> Self {
+        Self::new(shape)
+    }
+}
+
+impl From<Network> for NetworkShape {
+    fn from(network: Network) -> Self {
+        network.shape
+    }
+}
+
 /// Units by which the flooring of the evaluation and the whole numbers of its bound are off together, at most.
 const FLOORING: i64 = 8;
 
 impl Cell {
-    /// The range of the value of a cell of a network, as it is evaluated: between the least and the largest of the cubic's Bernstein
-    /// coefficients, give or take the flooring. `None` where a partial sum could exceed 32 bits.
+    /// The range of the value of a cell of a network, as it is evaluated but for the modulus: between the least and the largest of the
+    /// cubic's Bernstein coefficients, give or take the flooring. `None` where a partial sum before the last could exceed 32 bits.
     #[must_use]
     pub fn integer_range(&self) -> Option<(i64, i64)> {
         let [a0, a1, a2, a3] = self.integers().map(i64::from);
@@ -103,6 +198,6 @@ impl Cell {
         let bernstein = [a0, a0 + d1 / 3, a0 + (2 * d1 + d2) / 3, a0 + d1 + d2 + d3];
         let low = bernstein.into_iter().fold(i64::MAX, i64::min) - FLOORING;
         let high = bernstein.into_iter().fold(i64::MIN, i64::max) + FLOORING;
-        (second <= limit && first <= limit && low >= -limit && high <= limit).then_some((low, high))
+        (second <= limit && first <= limit).then_some((low, high))
     }
 }

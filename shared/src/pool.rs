@@ -61,11 +61,11 @@ impl<const CELLS: usize> Pool<CELLS> {
         &self.cells[inside]
     }
 
-    /// The cell of a row, `None` beyond the room.
+    /// `count` cells from a row on, `None` where they reach beyond the room.
     #[must_use]
     #[inline(always)]
-    pub fn within(&self, row: u32) -> Option<&Cell> {
-        self.cells.get(row as usize)
+    pub fn run(&self, row: u32, count: u32) -> Option<&[Cell]> {
+        self.cells.get(row as usize..)?.get(..count as usize)
     }
 
     /// Forgets all cells after the first `length`.

@@ -4,9 +4,12 @@ use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::image::{Image, encode};
 use frikan_runtime::shared::integer_table::{IntegerShape, IntegerTable, SEGMENT_BITS, SEGMENTS};
 use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
-use frikan_runtime::shared::network::{Layer, MIDDLE, Network, Source};
 use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 use frikan_runtime::shared::units::{Quantity, Unit};
+
+mod network;
+
+pub use network::{network_1_5_1, network_three_inputs, network_two_inputs};
 
 /// Cells of the firmware's models.
 pub const CELLS: usize = 128;
@@ -162,93 +165,22 @@ pub fn integer_table() -> TestModel {
     model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &pool)
 }
 
-/// A network `[1,5,1]` whose inner edges are shifted sigmoids.
+/// A program that uses every operation, and makes a NaN of its own where the input is 0.
 #[must_use]
-pub fn network_1_5_1() -> TestModel {
-    network(1, &[(5, 0)])
-}
-
-/// A network of two inputs, `[2,[3,1],1]`: three sums and a product.
-#[must_use]
-pub fn network_two_inputs() -> TestModel {
-    network(2, &[(3, 1)])
-}
-
-/// A network of three inputs, `[3,3,2,1]`.
-#[must_use]
-pub fn network_three_inputs() -> TestModel {
-    network(3, &[(3, 0), (2, 0)])
-}
-
-/// Rows of a test network's inputs and of its nodes.
-const INPUT_ROWS: u16 = 8;
-const NODE_ROWS: u16 = 4;
-
-/// Steps of a test network's output in one N m.
-const OUTPUT_STEPS: f64 = 16_777_216.0;
-
-/// A network over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have `[-1, 1]` for
-/// their range.
-fn network(inputs: usize, shapes: &[(u8, u8)]) -> TestModel {
-    let reaches = &[2.0, 30.0, 60.0][..inputs];
-    let layer = |&(additive, products)| Layer { additive, products, rows: NODE_ROWS, first_cell: 0 };
-    let mut layers: heapless::Vec<Layer, _> = shapes.iter().map(layer).collect();
-    let mut pool = Vec::new();
-    let first = layers[0];
-    let sources = reaches.iter().enumerate().map(|(input, reach)| {
-        let edges: Vec<_> = (0..first.targets())
-            .map(|target| {
-                let centre = 0.2 * target as f64 - 0.3 - 0.1 * input as f64;
-                into_target(first, target, inputs, move |share: f64| (3.0 * share - centre).tanh())
-            })
-            .collect();
-        let layout = UniformShape { first_cell: 0, cells: INPUT_ROWS, low: -reach, high: *reach };
-        Source { table: Table::Uniform(Uniform::new(layout)), first_cell: push_rows(&mut pool, INPUT_ROWS, &edges) }
-    });
-    let sources = sources.collect();
-    for index in 0..layers.len() {
-        let next = layers.get(index + 1).copied();
-        let layer = &mut layers[index];
-        layer.first_cell = pool.len() as u16;
-        for node in 0..layer.nodes() {
-            let sine = move |share: f64| (1.5 * share + 0.3 * node as f64).sin();
-            let edges: Vec<Edge> = match next {
-                Some(next) => (0..next.targets()).map(|t| into_target(next, t, layer.nodes(), sine)).collect(),
-                None => vec![Box::new(move |share| 6.0 * OUTPUT_STEPS * sine(share))],
-            };
-            push_rows(&mut pool, NODE_ROWS, &edges);
-        }
-    }
-    let network = Network { sources, layers, output_step: (1.0 / OUTPUT_STEPS) as f32 };
-    model(reaches, Law::Network(network), &pool)
-}
-
-/// A function over `[-1, 1]`, in steps of what it ends in.
-type Edge = Box<dyn Fn(f64) -> f64>;
-
-/// `f`, which stays within `[-1, 1]`, as one of `sources` edges into a sum, with a third of the sum's range to spare.
-fn into_target(layer: Layer, target: usize, sources: usize, f: impl Fn(f64) -> f64 + 'static) -> Edge {
-    let share = 1.0 / (1.5 * sources as f64);
-    if target < usize::from(layer.additive) {
-        // The middle of the sum's range is in equal parts in its edges.
-        Box::new(move |x| (share * f(x) + 1.0 / sources as f64) * f64::from(MIDDLE))
-    } else {
-        Box::new(move |x| 2.0 * share * f(x) * f64::from(MIDDLE))
-    }
-}
-
-/// Adds `rows` rows of equal width of the edges, and returns the number of the first cell.
-fn push_rows(pool: &mut Vec<Cell>, rows: u16, edges: &[Edge]) -> u16 {
-    let first_cell = pool.len() as u16;
-    let width = 2.0 / f64::from(rows);
-    for row in 0..rows {
-        let start = width * f64::from(row) - 1.0;
-        pool.extend(edges.iter().map(|edge| {
-            let [c0, c1, c2, c3] = hermite(edge, start, start + width);
-            Cell::from_integers([c0, 2.0 * c1, 4.0 * c2, 8.0 * c3].map(|coefficient| coefficient.round() as i32))
-        }));
-    }
-    first_cell
+pub fn every_operation() -> TestModel {
+    use Operation::*;
+    let operations = [
+        &[Input(0), Input(0), Divide, Atan][..],
+        &[ScaledInput(0, -3.0), Log, Add],
+        &[Input(0), Sin, Input(0), Cos, Multiply, Add],
+        &[Input(0), SquareRoot, Input(0), Sign, Multiply, Add],
+        &[Input(0), PowerOf(1.5), Input(0), Absolute, Input(0), Power, Subtract, Add],
+        &[Input(0), Reciprocal, Constant(5.0), Minimum, Constant(-5.0), Maximum, Add],
+        &[Input(0), Negate, Exp, Input(0), Square, Tanh, Add, Scale(0.3), Add],
+        &[ScaledMagnitude(0, 2.0), Offset(-1.0), Multiply, AddScaledInput(0, 0.1)],
+    ];
+    let operations = operations.into_iter().flatten().copied().collect();
+    model(&[2.0], Law::Expression(Program { operations }), &[])
 }
 
 /// Every kind of model that is evaluated in floating point, by its name.
@@ -263,6 +195,13 @@ pub fn every_kind() -> Vec<(&'static str, TestModel)> {
         ("network of two inputs", network_two_inputs()),
         ("network of three inputs", network_three_inputs()),
     ]
+}
+
+/// Every kind, and what else a floating-point interface can be put to.
+#[must_use]
+pub fn every_law() -> Vec<(&'static str, TestModel)> {
+    let others = [("every operation", every_operation()), ("integer table", integer_table())];
+    every_kind().into_iter().chain(others).collect()
 }
 
 /// The image file of a model.

@@ -59,8 +59,9 @@ fn every_operation() -> Vec<(String, TestModel)> {
 
 /// Every model that has a form in C.
 fn exportable() -> Vec<(String, TestModel)> {
-    let kinds = models::every_kind().into_iter().filter(|(_, model)| !matches!(model.law, Law::Network(_)));
-    kinds.map(|(name, model)| (name.to_owned(), model)).collect()
+    let has_form = |law: &Law| !matches!(law, Law::Network(_) | Law::IntegerTable(_));
+    let laws = models::every_law().into_iter().filter(|(_, model)| has_form(&model.law));
+    laws.map(|(name, model)| (name.to_owned(), model)).collect()
 }
 
 fn rows(model: &TestModel, count: usize) -> Vec<f32> {

@@ -39,9 +39,9 @@ fn compare(emulator: &Emulator, name: &str, model: &TestModel, rows: usize, floa
     }
 }
 
-fn every_kind_agrees_on(target: &str) {
+fn every_law_agrees_on(target: &str) {
     let emulator = Emulator::new(target).unwrap();
-    for (name, model) in models::every_kind() {
+    for (name, model) in models::every_law() {
         let rows = if exhaustive() || name == "symmetric table" { TABLE_ROWS } else { ROWS };
         compare(&emulator, name, &model, rows, 0);
     }
@@ -66,34 +66,34 @@ fn integer_table_agrees_on(target: &str) {
 
 #[test]
 fn cortex_m4f_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("cortex-m4f");
+    every_law_agrees_on("cortex-m4f");
 }
 
 #[test]
 fn cortex_m7_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("cortex-m7");
+    every_law_agrees_on("cortex-m7");
 }
 
 #[test]
 fn cortex_m33_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("cortex-m33");
+    every_law_agrees_on("cortex-m33");
 }
 
 #[test]
 fn cortex_m0plus_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("cortex-m0plus");
+    every_law_agrees_on("cortex-m0plus");
     integer_table_agrees_on("cortex-m0plus");
 }
 
 #[test]
 fn riscv32imac_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("riscv32imac");
+    every_law_agrees_on("riscv32imac");
     integer_table_agrees_on("riscv32imac");
 }
 
 #[test]
 fn riscv32imc_computes_the_bits_of_the_host() {
-    every_kind_agrees_on("riscv32imc");
+    every_law_agrees_on("riscv32imc");
     integer_table_agrees_on("riscv32imc");
 }
 

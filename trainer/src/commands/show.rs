@@ -115,8 +115,8 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         Law::Network(network) => writeln!(
             out,
             "law         network of {} inputs and {} hidden nodes, its edges integer tables",
-            network.sources.len(),
-            network.layers.iter().map(|layer| layer.nodes()).sum::<usize>()
+            network.sources().len(),
+            network.layers().iter().map(|layer| layer.nodes()).sum::<usize>()
         )?,
         Law::Expression(program) => {
             let names: Vec<&str> = model.inputs.iter().map(|input| input.quantity.name()).collect();

@@ -34,20 +34,18 @@ pub fn instructions<const CELLS: usize>(model: &Model<CELLS>) -> u32 {
 }
 
 fn of_network(network: &Network) -> u32 {
-    if let ([_], [layer]) = (network.sources.as_slice(), network.layers.as_slice())
-        && layer.products == 0
-    {
-        return ONE_HIDDEN_LAYER + NODE * u32::from(layer.additive);
+    if let Some(layer) = &network.one_hidden_layer {
+        return ONE_HIDDEN_LAYER + NODE * layer.nodes;
     }
-    let mut width = network.sources.len();
+    let mut width = network.sources().len();
     let (mut places, mut edges) = (width, 0);
-    for layer in &network.layers {
+    for layer in network.layers() {
         edges += width * layer.targets();
         width = layer.nodes();
         places += width;
     }
     edges += width;
-    NETWORK + LAYER * network.layers.len() as u32 + PLACE * places as u32 + EDGE * edges as u32
+    NETWORK + LAYER * network.layers().len() as u32 + PLACE * places as u32 + EDGE * edges as u32
 }
 
 /// Instructions of one evaluation of a program.

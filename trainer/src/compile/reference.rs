@@ -165,7 +165,6 @@ fn edge_value(cell: Cell, x: i128) -> i128 {
 }
 
 fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
-    let targets = |layer: usize| network.layers.get(layer).map_or(1, |layer| layer.targets());
     let edges = |first: usize, row: usize, x: i128, count: usize| -> Vec<i128> {
         (0..count).map(|target| edge_value(cells[first + row * count + target], x)).collect()
     };
@@ -173,21 +172,28 @@ fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
         sums.iter_mut().zip(more).for_each(|(sum, value)| *sum += value);
         sums
     };
-    let mut sums = network.sources.iter().zip(inputs).fold(vec![0; targets(0)], |sums, (source, input)| {
+    let no_sums = |layer: usize| vec![0; network.targets(layer)];
+    let mut sums = network.sources().iter().zip(inputs).fold(no_sums(0), |sums, (source, input)| {
         let (row, x) = find_exactly(&source.table, *input);
-        total(sums, edges(usize::from(source.first_cell), row, x, targets(0)))
+        total(sums, edges(usize::from(source.first_cell), row, x, network.targets(0)))
     });
-    for (index, layer) in network.layers.iter().enumerate() {
+    for (index, layer) in network.layers().iter().enumerate() {
+        let end = i128::from(layer.first_row) + i128::from(layer.rows) * layer.nodes() as i128;
+        // The largest power of two of which the positions before the end of the last row are fewer than 2^32.
+        let width = (0..32).map(|bits| 1i128 << bits).take_while(|width| end * width < 1 << 32).last().unwrap_or(1);
         let (additive, factors) = sums.split_at(usize::from(layer.additive));
-        let products = factors.chunks(2).map(|pair| (1 << 30) + (pair[0] * pair[1]).div_euclid(1 << 32));
-        let nodes: Vec<i128> = additive.iter().copied().chain(products).collect();
-        let (rows, count) = (usize::from(layer.rows), targets(index + 1));
-        sums = nodes.into_iter().enumerate().fold(vec![0; count], |sums, (node, value)| {
-            let way = value * rows as i128;
-            let first = usize::from(layer.first_cell) + node * rows * count;
-            total(sums, edges(first, (way >> 31) as usize, way % (1 << 31), count))
+        let products = factors.chunks(2).zip(i128::from(layer.additive)..).map(|(pair, node)| {
+            let rows = i128::from(layer.rows);
+            let twice_the_middle = (2 * i128::from(layer.first_row) + (2 * node + 1) * rows) * width;
+            twice_the_middle / 2 + (pair[0] * pair[1]).div_euclid(1 << 32)
+        });
+        let positions = additive.iter().map(|sum| sum.rem_euclid(1 << 32)).chain(products);
+        sums = positions.fold(no_sums(index + 1), |sums, position| {
+            let x = (position % width) * (1 << 31) / width;
+            total(sums, edges(0, (position / width) as usize, x, network.targets(index + 1)))
         });
     }
+    // The sum of the output is in range; its edges need not be.
     sums[0] as f32 * network.output_step
 }
 

@@ -166,12 +166,11 @@ mod tests {
     use super::*;
     use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
     use crate::compile::integers::compile_integer_table;
-    use crate::compile::networks::{self, Edge, Scale};
+    use crate::compile::networks::{Edge, Edges, Nodes, assemble, node_ranges};
     use crate::compile::program::compile_program;
     use crate::compile::tables::{compile_layout, compile_table, rows};
     use frikan_shared::image::{Image, decode, encode};
     use frikan_shared::model::{Input, Law, Provenance, RigidBody};
-    use frikan_shared::network::{Layer, Network, Source};
     use frikan_shared::pool::Pool;
     use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
     use frikan_shared::units::{Quantity, Unit};
@@ -258,62 +257,33 @@ mod tests {
         }));
         let uniform = Table::Uniform(Uniform::new(UniformShape { first_cell: 0, cells: 8, low: -2.0, high: 2.0 }));
         let curve = |target: usize| stribeck_law().join(Operator::Divide, Formula::Constant(10.0 + target as f64));
-        for shapes in [&[][..], &[(2, 1)], &[(3, 0), (1, 2)]] {
-            let layer = |&(additive, products)| Layer { additive, products, rows: 6, first_cell: 0 };
-            let mut layers: heapless::Vec<Layer, _> = shapes.iter().map(layer).collect();
-            let (mut cells, mut sources) = (Vec::new(), heapless::Vec::new());
-            let mut domains = vec![[-2.0, 2.0]; 2];
-            let mut step = 1.0;
-            for index in 0..=layers.len() {
-                let into = layers.get(index).copied();
-                let targets = into.map_or(1, Layer::targets);
-                let edges: Vec<Vec<Edge>> = domains
-                    .iter()
-                    .zip([geometric, uniform, uniform, uniform])
-                    .map(|(&[low, high], table)| {
-                        let rows = if index == 0 {
-                            rows(table).0
-                        } else {
-                            let end = |row: u32| low + (high - low) * f64::from(row) / 6.0;
-                            (0..6).map(|row| (end(row), end(row + 1))).collect()
-                        };
-                        (0..targets).map(|target| Edge::new(Some(&curve(target)), &rows, 0.0)).collect()
-                    })
-                    .collect();
-                let positive = |target: usize| into.is_some_and(|into| target < usize::from(into.additive));
-                let scales: Vec<Scale> = (0..targets)
-                    .map(|target| {
-                        let column: Vec<&Edge> = edges.iter().map(|edges| &edges[target]).collect();
-                        if positive(target) { Scale::positive(&column) } else { Scale::signed(&column) }
-                    })
-                    .collect();
-                let mut blocks = networks::cells(&edges, &scales, positive).into_iter();
-                if index == 0 {
-                    for (table, block) in [geometric, uniform].into_iter().zip(&mut blocks) {
-                        sources.push(Source { table, first_cell: cells.len() as u16 }).unwrap();
-                        cells.extend(block);
-                    }
+        let nodes = |(additive, products)| Nodes { additive, products };
+        for (inputs, shapes) in [(2, &[][..]), (2, &[(2, 1)]), (2, &[(3, 0), (1, 2)]), (2, &[(2, 2)]), (1, &[(5, 0)])] {
+            let hidden: Vec<Nodes> = shapes.iter().copied().map(nodes).collect();
+            let tables = &[geometric, uniform][..inputs];
+            let mut domains = vec![[-2.0, 2.0]; inputs];
+            let mut layers: Vec<Edges> = Vec::new();
+            for index in 0..=hidden.len() {
+                let into = hidden.get(index);
+                let targets = into.map_or(1, |into| usize::from(into.additive + 2 * into.products));
+                let over = |rows: Vec<(f64, f64)>| -> Vec<Edge> {
+                    (0..targets).map(|target| Edge::new(Some(&curve(target)), &rows, 0.0)).collect()
+                };
+                let edges: Edges = if index == 0 {
+                    tables.iter().map(|table| over(rows(*table).0)).collect()
                 } else {
-                    layers[index - 1].first_cell = cells.len() as u16;
+                    let end = |low: f64, high: f64, row: u32| low + (high - low) * f64::from(row) / 6.0;
+                    let row = |low, high| move |row: u32| (end(low, high, row), end(low, high, row + 1));
+                    domains.iter().map(|&[low, high]| over((0..6).map(row(low, high)).collect())).collect()
+                };
+                if let Some(into) = into {
+                    domains = node_ranges(&edges, *into);
                 }
-                cells.extend(blocks.flatten());
-                let additive = into.map_or(1, |into| usize::from(into.additive));
-                let (sums, factors) = scales.split_at(additive);
-                let products = factors.chunks_exact(2).map(|pair| pair[0].of_product(pair[1]));
-                domains = sums.iter().copied().chain(products).map(Scale::range).collect();
-                step = scales[0].step;
+                layers.push(edges);
             }
-            let network = Network { sources, layers, output_step: step as f32 };
-            assert_identical(&model(Law::Network(network), &cells, &[Quantity::Velocity, Quantity::Load]));
+            let (network, cells) = assemble(tables, &layers, &hidden).unwrap();
+            let quantities = &[Quantity::Velocity, Quantity::Load][..inputs];
+            assert_identical(&model(Law::Network(network), &cells, quantities));
         }
-    }
-
-    #[test]
-    #[ignore = "takes minutes: all 2^32 inputs"]
-    fn all_inputs_agree_to_the_bit() {
-        let compiled = compile_table(&stribeck_law(), -2.0, 2.0, 1.0e-3, 0).unwrap();
-        let model = model(compiled.table.into(), &compiled.cells, &[Quantity::Velocity]);
-        let comparison = compare_exhaustively(&model, |_| ());
-        assert_eq!(comparison, Comparison { compared: 1 << 32, equal: 1 << 32, first_difference: None });
     }
 }

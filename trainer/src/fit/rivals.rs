@@ -122,7 +122,7 @@ fn describe(law: &Law, cells: usize) -> String {
     match law {
         Law::Expression(program) => format!("program of {} operations", program.operations.len()),
         Law::Network(network) => {
-            let nodes: usize = network.layers.iter().map(|layer| layer.nodes()).sum();
+            let nodes: usize = network.layers().iter().map(|layer| layer.nodes()).sum();
             format!("network of {nodes} hidden nodes, {cells} cells")
         }
         _ => format!("table of {cells} cells"),

@@ -1,12 +1,12 @@
 //! A trained network as the tables of a drive: one certified table for one input, a network of tables for several.
 
 use frikan_shared::model::Law;
-use frikan_shared::network::{Layer, MAX_WIDTH, Network as TableNetwork, Source};
+use frikan_shared::network::{MAX_WIDTH, Network as TableNetwork};
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 
 use super::piecewise::{NetworkCurve, Piecewise};
 use crate::compile::formula::Curve;
-use crate::compile::networks::{self, Edge, Scale};
+use crate::compile::networks::{COORDINATE_ERROR, Edge, Edges, Nodes, assemble, node_ranges};
 use crate::compile::tables::{self, compile_table};
 use crate::kan::{GraphSummary, Network};
 
@@ -58,31 +58,21 @@ impl Node {
     }
 }
 
-/// The last layer's only sum.
-const OUTPUT: Layer = Layer { additive: 1, products: 0, rows: 0, first_cell: 0 };
-
 fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) -> Option<Tables> {
     let curve = NetworkCurve::of(network);
     let alive = network.live_nodes();
     let depth = network.layers().len();
     let active = graph.edges.iter().filter(|edge| edge.active).count().max(1) as f64;
-    let mut cells = Vec::new();
-    let mut sources = heapless::Vec::new();
-    let mut layers: heapless::Vec<Layer, _> = heapless::Vec::new();
+    let (mut layouts, mut edges, mut hidden) = (Vec::new(), Vec::new(), Vec::new());
     // Ranges of the nodes that the edges of a layer leave.
     let mut domains: Vec<[f64; 2]> = Vec::new();
-    let mut output_step = 1.0;
     for (index, layer) in network.layers().iter().enumerate() {
         let kept: Vec<usize> = (0..layer.nodes.count()).filter(|&node| alive[index + 1][node]).collect();
         let terminals: Vec<usize> = kept.iter().flat_map(|&node| layer.terminals_of(node)).collect();
         let additive = kept.iter().filter(|&&node| node < layer.nodes.sums).count();
         let last = index + 1 == depth;
-        let into = if last {
-            OUTPUT
-        } else {
-            Layer { additive: additive as u8, products: (kept.len() - additive) as u8, ..OUTPUT }
-        };
-        if terminals.len() != into.targets() || into.targets() > MAX_WIDTH {
+        let sums = if last { 1 } else { 2 * kept.len() - additive };
+        if terminals.len() != sums || sums > MAX_WIDTH {
             return None;
         }
         let mut centre = last.then_some(network.output.centre);
@@ -105,38 +95,23 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
                 .collect();
             nodes.push(Node { edges, bounds });
         }
-        let rows = (0..=RELAXATIONS).find_map(|k| {
-            let slack = 2f64.powi(k);
-            if index == 0 { smallest_layouts(&nodes, &domains, slack) } else { smallest_rows(&nodes, &domains, slack) }
-        })?;
-        let sums: Vec<Vec<&Edge>> =
-            (0..into.targets()).map(|target| rows.edges.iter().map(|edges| &edges[target]).collect()).collect();
-        let positive = |target: usize| !last && target < usize::from(into.additive);
-        let scale = |(target, edges): (usize, &Vec<&Edge>)| {
-            if positive(target) { Scale::positive(edges) } else { Scale::signed(edges) }
-        };
-        let scales: Vec<Scale> = sums.iter().enumerate().map(scale).collect();
-        let mut blocks = networks::cells(&rows.edges, &scales, positive).into_iter();
-        let first_cell = |cells: &Vec<Cell>| u16::try_from(cells.len()).ok();
-        if let Some(from) = layers.last_mut() {
-            (from.rows, from.first_cell) = (rows.count, first_cell(&cells)?);
-        }
-        for table in rows.layouts {
-            sources.push(Source { table, first_cell: first_cell(&cells)? }).ok()?;
-            cells.extend(blocks.next()?);
-        }
-        cells.extend(blocks.flatten());
-        let (sums, factors) = scales.split_at(usize::from(into.additive));
-        let products = factors.chunks_exact(2).map(|pair| pair[0].of_product(pair[1]));
-        domains = sums.iter().copied().chain(products).map(Scale::range).collect();
-        if last {
-            output_step = scales.first()?.step as f32;
+        let slacks = (0..=RELAXATIONS).map(|k| 2f64.powi(k));
+        let found = if index == 0 {
+            let (tables, edges) = slacks.into_iter().find_map(|slack| smallest_layouts(&nodes, &domains, slack))?;
+            layouts = tables;
+            edges
         } else {
-            layers.push(into).ok()?;
+            slacks.into_iter().find_map(|slack| smallest_rows(&nodes, &domains, slack))?
+        };
+        if !last {
+            let into = Nodes { additive: additive as u8, products: (kept.len() - additive) as u8 };
+            domains = node_ranges(&found, into);
+            hidden.push(into);
         }
+        edges.push(found);
     }
-    let law = Law::Network(TableNetwork { sources, layers, output_step });
-    Some(Tables { law, cells, inputs: live.to_vec() })
+    let (network, cells) = assemble(&layouts, &edges, &hidden)?;
+    Some(Tables { law: Law::Network(network), cells, inputs: live.to_vec() })
 }
 
 /// What validation allows a network to put out, in the unit of the output.
@@ -144,35 +119,22 @@ pub(super) fn output_bound(network: &TableNetwork) -> f64 {
     f64::from(i32::MAX) * f64::from(network.output_step)
 }
 
-/// The edges of a layer over the rows that were found for them.
-struct Rows {
-    /// Layouts of the inputs; none in later layers.
-    layouts: Vec<Table>,
-    /// Rows of each node in later layers.
-    count: u16,
-    /// Edges of each node.
-    edges: Vec<Vec<Edge>>,
-}
-
-/// For each input the layout of fewest rows in which its activations stay within their bounds times `slack`.
-fn smallest_layouts(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<Rows> {
+/// For each input the layout of fewest rows in which its activations stay within their bounds times `slack`, and their edges over it.
+fn smallest_layouts(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<(Vec<Table>, Edges)> {
     let found = nodes.iter().zip(domains).map(|(node, domain)| {
         layouts(*domain).into_iter().find_map(|table| Some((table, node.over(&tables::rows(table), slack)?)))
     });
-    let (layouts, edges) = found.collect::<Option<Vec<_>>>()?.into_iter().unzip();
-    Some(Rows { layouts, count: 0, edges })
+    Some(found.collect::<Option<Vec<_>>>()?.into_iter().unzip())
 }
 
-/// Fewest equal rows in which the activations of all nodes of a layer stay within their bounds times `slack`.
-fn smallest_rows(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<Rows> {
+/// The edges over the fewest equal rows in which the activations of all nodes of a layer stay within their bounds times `slack`.
+fn smallest_rows(nodes: &[Node], domains: &[[f64; 2]], slack: f64) -> Option<Edges> {
     ROWS.into_iter().find_map(|count| {
         let edges = nodes.iter().zip(domains).map(|(node, &[low, high])| {
             let end = |row: u16| low + (high - low) * f64::from(row) / f64::from(count);
-            // Positions are whole numbers of 31 bits.
-            let coordinate_error = f64::from(count) * 2f64.powi(-30);
-            node.over(&((0..count).map(|row| (end(row), end(row + 1))).collect(), coordinate_error), slack)
+            node.over(&((0..count).map(|row| (end(row), end(row + 1))).collect(), COORDINATE_ERROR), slack)
         });
-        Some(Rows { layouts: Vec::new(), count, edges: edges.collect::<Option<_>>()? })
+        edges.collect()
     })
 }
 

@@ -122,7 +122,8 @@ static float f_cos(float x) {
 }
 
 static float f_atan(float x) {
-    const float m = at_most(magnitude_of(x), 3.4028235e38f);
+    const float h = at_most(x, 3.4028235e38f);
+    const float m = magnitude_of(h);
     const int beyond = m > 1.0f;
     const float z = (beyond ? 1.0f : m) / (beyond ? m : 1.0f);
     const float s = z * z;
@@ -137,7 +138,7 @@ static float f_atan(float x) {
     p = p * s + -0.3333333f;
     const float near = p * s * z + z;
     const float angle = beyond ? 1.57079632679489661923f - near : near;
-    return float_of(bits_of(angle) | (bits_of(x) & 0x80000000u));
+    return float_of(bits_of(angle) | (bits_of(h) & 0x80000000u));
 }
 
 /* |x|^p; 0 at 0 for p above 0 */
