@@ -55,7 +55,7 @@ fn keep_to_rows(layer: Layer, sums: &Ranges) -> bool {
     let products_keep = pairs.iter().take(usize::from(layer.products)).all(|&[first, second]| {
         let (first, second) = (magnitude(first), magnitude(second));
         let fit = first.max(second) <= i64::from(i32::MAX);
-        fit && (first * second >> 32) < i64::from(layer.half_width())
+        fit && ((first * second) >> 32) < i64::from(layer.half_width())
     });
     sums_keep && products_keep
 }
