@@ -92,16 +92,18 @@ fn evaluate_one_hidden_layer<const CELLS: usize>(
 fn evaluate_any_layers<const CELLS: usize>(network: &Network, inputs: &[f32; MAX_INPUTS], pool: &Pool<CELLS>) -> f32 {
     let mut sums = [0i32; MAX_WIDTH];
     let mut any_nan = false;
+    let targets = network.targets(0);
     for (source, input) in network.sources().iter().zip(inputs) {
         any_nan |= input.is_nan();
         let place = place_input(&source.table, *input);
-        add_edges(&mut sums, network.targets(0), pool, u32::from(source.first_cell), place);
+        add_edges(&mut sums, targets, pool, u32::from(source.first_cell), place);
     }
     for (layer, next) in network.layers().iter().zip(1..) {
         let positions = positions(&sums, *layer);
+        let (rows_per_turn, targets) = (layer.rows_per_turn(), network.targets(next));
         sums = [0; MAX_WIDTH];
         for &position in positions.iter().take(layer.nodes()) {
-            add_edges(&mut sums, network.targets(next), pool, 0, place(position, layer.rows_per_turn()));
+            add_edges(&mut sums, targets, pool, 0, place(position, rows_per_turn));
         }
     }
     let [output, ..] = sums;

@@ -16,13 +16,19 @@ pub fn exhaustive() -> bool {
     std::env::var("FRIKAN_EXHAUSTIVE").is_ok_and(|value| value == "1")
 }
 
+/// The folder of other people's recordings, whether it is there or not.
+#[must_use]
+pub fn recordings_folder() -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings")
+}
+
 /// The folder of other people's recordings; `None`, said aloud, where it is absent.
 ///
 /// # Panics
 /// Where it is absent in CI.
 #[must_use]
 pub fn recordings() -> Option<std::path::PathBuf> {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    let folder = recordings_folder();
     if folder.is_dir() {
         return Some(folder);
     }

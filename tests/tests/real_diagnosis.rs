@@ -11,6 +11,7 @@ use frikan_trainer::fit::predict::trace;
 use frikan_trainer::joint::Joint;
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::recording::{self, Recording};
+use frikan_trainer::samples::relevance::correlation;
 
 fn load(name: &str, joint: &Joint) -> Option<Recording> {
     Some(recording::load(&recordings()?.join(name), joint).unwrap_or_else(|error| panic!("{error}")))
@@ -97,12 +98,4 @@ fn the_tribometer_slides_little_beyond_break_away() {
     println!("{:?}, R2 {before:.4} -> {after:.4} on the later half", named(&diagnosis));
     assert_eq!(diagnosis.findings[0].effect, EffectId::Presliding);
     assert!(after > 0.99);
-}
-
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (mean_a, mean_b) = (mean(a), mean(b));
-    let product =
-        |x: &[f64], mx: f64, y: &[f64], my: f64| -> f64 { x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum() };
-    product(a, mean_a, b, mean_b) / (product(a, mean_a, a, mean_a) * product(b, mean_b, b, mean_b)).sqrt()
 }

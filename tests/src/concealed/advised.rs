@@ -3,11 +3,9 @@
 
 use std::fmt::Write;
 
-use super::signals;
 use super::summary::share;
-use frikan_trainer::diagnose::{
-    Diagnosis, Finding, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan,
-};
+use super::{set_of, signals};
+use frikan_trainer::diagnose::{Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, Campaign, Motion, Trajectory};
 
@@ -135,8 +133,8 @@ impl Advised {
     pub fn was_open(&self, case: &Confounded) -> bool {
         let pair = case.pair();
         self.before.findings.first().is_some_and(|found| {
-            let set = |effect| found.effect == effect || found.alternatives.iter().any(|(rival, _)| *rival == effect);
-            set(pair.0) && set(pair.1)
+            let in_set = |effect| set_of(found).any(|name| name == effect);
+            in_set(pair.0) && in_set(pair.1)
         })
     }
 
@@ -145,7 +143,7 @@ impl Advised {
     pub fn holds_truth(&self, case: &Confounded) -> bool {
         let truth = case.pair().0;
         let first = self.before.findings.first();
-        first.is_some_and(|f| f.effect == truth || f.alternatives.iter().any(|(rival, _)| *rival == truth))
+        first.is_some_and(|found| set_of(found).any(|name| name == truth))
     }
 
     /// Distance in nats from the truth to its rival after the proposed motion; `None` where the truth is not found.
@@ -178,10 +176,7 @@ pub fn table(results: &[(Confounded, Advised)]) -> String {
     let said = |yes| if yes { "yes" } else { "no" };
     let (mut open, mut proposed, mut resolved) = (0, 0, 0);
     for (case, advised) in results {
-        let names = |found: &Finding| {
-            let set = std::iter::once(found.effect).chain(found.alternatives.iter().map(|(effect, _)| *effect));
-            set.map(EffectId::name).collect::<Vec<_>>().join(" or ")
-        };
+        let names = |found| set_of(found).map(EffectId::name).collect::<Vec<_>>().join(" or ");
         let answer: Vec<String> = advised.before.findings.iter().map(names).collect();
         let was_open = advised.was_open(case);
         open += usize::from(was_open);

@@ -10,7 +10,9 @@ pub mod summary;
 pub mod symbolic;
 pub mod tables;
 
-use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Settings, Signals, Strength, diagnose, strength};
+use frikan_trainer::diagnose::{
+    BaseKind, Diagnosis, Finding, Lock, Options, Settings, Signals, Strength, diagnose, strength,
+};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
 
@@ -45,12 +47,8 @@ pub struct Concealed {
     pub recording: SimulatedRecording,
     /// The joint with its effects at the amplitudes that were chosen.
     pub joint: plant::Joint,
-    /// Reached non-centrality; 0 for a control.
-    pub lambda: f64,
-    /// Effect-to-noise ratio behind the filter.
-    pub effect_to_noise: f64,
-    /// What the base leaves at every working row once the hidden torque is taken off; empty for a control.
-    pub rest_without: Vec<f64>,
+    /// Reached strength; `None` for a control, or where the recording cannot determine the base.
+    pub strength: Option<Strength>,
 }
 
 /// What came of a case.
@@ -120,7 +118,7 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
     let (names, wanted): (Vec<&'static str>, f64) = match &case.hidden {
         Hidden::Nothing => {
             let recording = plant::simulate(&joint, case.seed)?;
-            return Ok(Concealed { recording, joint, lambda: 0.0, effect_to_noise: 0.0, rest_without: Vec::new() });
+            return Ok(Concealed { recording, joint, strength: None });
         }
         Hidden::Effect(name, lambda) => (vec![name], *lambda),
         Hidden::Pair(first, second, lambda) => (vec![first, second], *lambda),
@@ -133,10 +131,8 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
         joint.effects.push(plant::Hidden { name: (*name).to_string(), amplitude: *amplitude });
     }
     let recording = plant::simulate(&joint, case.seed)?;
-    let reached = reach(&recording, &joint, case);
-    let (lambda, effect_to_noise) = reached.as_ref().map_or((0.0, 0.0), |s| (s.lambda, s.effect_to_noise));
-    let rest_without = reached.map_or(Vec::new(), |s| s.rest_without);
-    Ok(Concealed { recording, joint, lambda, effect_to_noise, rest_without })
+    let strength = reach(&recording, &joint, case);
+    Ok(Concealed { recording, joint, strength })
 }
 
 fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> Option<Strength> {
@@ -205,13 +201,9 @@ impl Outcome {
             })
             .unwrap_or_default()
     }
+}
 
-    /// The first finding with its ambiguity set.
-    pub fn first_set(&self) -> Vec<EffectId> {
-        self.diagnosis
-            .findings
-            .first()
-            .map(|f| std::iter::once(f.effect).chain(f.alternatives.iter().map(|(e, _)| *e)).collect())
-            .unwrap_or_default()
-    }
+/// The named effect of a finding, then the rivals of its ambiguity set.
+pub fn set_of(finding: &Finding) -> impl Iterator<Item = EffectId> {
+    std::iter::once(finding.effect).chain(finding.alternatives.iter().map(|(rival, _)| *rival))
 }

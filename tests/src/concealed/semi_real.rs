@@ -4,8 +4,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::set_of;
 use super::summary::share;
-use frikan_trainer::diagnose::{BaseKind, Diagnosis, Finding, Lock, Options, Signals, diagnose, strength};
+use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Signals, diagnose, strength};
 use frikan_trainer::joint::Joint;
 use frikan_trainer::physics::{EffectId, JointState};
 use frikan_trainer::recording;
@@ -82,10 +83,7 @@ pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<
 }
 
 fn sets(diagnosis: &Diagnosis) -> Vec<Vec<&'static str>> {
-    let set = |found: &Finding| {
-        let rivals = found.alternatives.iter().map(|(effect, _)| *effect);
-        std::iter::once(found.effect).chain(rivals).map(EffectId::name).collect()
-    };
+    let set = |found| set_of(found).map(EffectId::name).collect();
     let minor = diagnosis.minor.iter().map(|(effect, _)| vec![effect.name()]);
     diagnosis.findings.iter().map(set).chain(minor).collect()
 }

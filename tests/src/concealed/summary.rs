@@ -1,8 +1,8 @@
 //! What the tables need of an outcome, and rates with intervals.
 
 use super::intervals::{Held, held};
-use super::{Case, Concealed, Hidden, Outcome, signals};
-use frikan_trainer::diagnose::{BaseKind, Lock, Prepared};
+use super::{Case, Hidden, Outcome};
+use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::physics::EffectId;
 
 /// What is kept of an outcome.
@@ -28,6 +28,7 @@ impl Row {
     /// Keeps what the tables need.
     pub fn of(outcome: &Outcome) -> Self {
         let d = &outcome.diagnosis;
+        let strength = outcome.concealed.strength.as_ref();
         let findings = d
             .findings
             .iter()
@@ -35,8 +36,8 @@ impl Row {
             .collect();
         Self {
             case: outcome.case.clone(),
-            lambda: outcome.concealed.lambda,
-            effect_to_noise: outcome.concealed.effect_to_noise,
+            lambda: strength.map_or(0.0, |s| s.lambda),
+            effect_to_noise: strength.map_or(0.0, |s| s.effect_to_noise),
             findings,
             unknown_channels: outcome.unknown_channels(),
             removed_share: removed_share(outcome),
@@ -93,19 +94,17 @@ impl Row {
 /// What the baseline leaves besides the noise, less what the improved model leaves of it, over what somebody who knows the
 /// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing.
 fn removed_share(outcome: &Outcome) -> Option<f64> {
-    let Concealed { recording, joint, rest_without, .. } = &outcome.concealed;
-    let noise = Prepared::new(&signals(recording, joint), Lock::Spread).filtered(&recording.truth.noise_torque);
+    let strength = outcome.concealed.strength.as_ref()?;
     let traces = &outcome.diagnosis.traces;
     // A realigned recording has other rows, another base another rest.
-    if noise.len() != traces.len() || rest_without.len() != noise.len() || outcome.case.base != BaseKind::CoulombViscous
-    {
+    if strength.noise.len() != traces.len() || outcome.case.base != BaseKind::CoulombViscous {
         return None;
     }
     let left = |rest: &[f64]| -> f64 {
-        (0..rest.len()).filter(|&i| traces.locked[i]).map(|i| (rest[i] - noise[i]).powi(2)).sum()
+        (0..rest.len()).filter(|&i| traces.locked[i]).map(|i| (rest[i] - strength.noise[i]).powi(2)).sum()
     };
     let before = left(&traces.before);
-    Some((before - left(&traces.after)) / (before - left(rest_without)))
+    Some((before - left(&traces.after)) / (before - left(&strength.rest_without)))
 }
 
 /// A share with its Wilson 95 % interval, as text.

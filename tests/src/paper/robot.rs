@@ -19,7 +19,7 @@ const MOST_SAMPLES: usize = 4000;
 /// The folder of the robot's recordings, where it is there.
 #[must_use]
 pub fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings/kr300");
+    let folder = crate::recordings_folder().join("kr300");
     folder.is_dir().then_some(folder)
 }
 

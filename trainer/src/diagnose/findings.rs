@@ -8,7 +8,7 @@ use super::confidence::{alternatives, probability};
 use super::health::HealthNote;
 use super::localise::{Location, locate};
 use super::outcome::Finding;
-use super::run::locked_gain;
+use super::prove::locked_gain;
 use super::search::{Accepted, Search};
 use super::signals::Signals;
 use crate::parameter::Parameter;

@@ -1,8 +1,8 @@
 //! The proof: blocks locked away from all fitting and choosing are opened once.
 
-use super::conclude::{Refit, weighted};
+use super::conclude::{Refit, refit, weighted};
 use super::linear::residual;
-use super::search::Search;
+use super::search::{Accepted, Search};
 use std::ops::Range;
 
 /// Error before and after on rows that took no part in the fit.
@@ -48,6 +48,15 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
         gain_nats: 0.5 * (white(&before) - white(&after)),
         rows,
     })
+}
+
+/// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
+pub(crate) fn locked_gain(search: &Search, accepted: &[Accepted], index: usize) -> f64 {
+    let mut others = accepted.to_vec();
+    others.remove(index);
+    let with = refit(search, accepted);
+    let without = refit(search, &others);
+    with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
 }
 
 /// What a refit leaves at every working row.

@@ -7,7 +7,7 @@ use super::findings::{base_parameters, finding, measurement_finding};
 use super::health::{coarse_position, examine};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
-use super::prove::{prove, rest};
+use super::prove::{locked_gain, prove, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Accepted, Search, SearchOutcome, Settings};
@@ -199,15 +199,6 @@ fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Ref
         }
     }
     minor
-}
-
-/// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
-pub(super) fn locked_gain(search: &Search, accepted: &[Accepted], index: usize) -> f64 {
-    let mut others = accepted.to_vec();
-    others.remove(index);
-    let with = refit(search, accepted);
-    let without = refit(search, &others);
-    with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
 }
 
 fn verdict(findings: &[Finding], blocked: bool) -> Verdict {

@@ -19,6 +19,8 @@ pub struct Strength {
     pub absorbed: f64,
     /// What the base leaves at every working row once that torque is taken off: the least that a diagnosis can leave.
     pub rest_without: Vec<f64>,
+    /// The noise behind the common filter at every working row.
+    pub noise: Vec<f64>,
 }
 
 /// Strength of `torque` (one value a sample, unfiltered) against `noise` in the same recording. What the diagnosis
@@ -56,5 +58,6 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
         effect_to_noise: (kept / rows as f64).sqrt() / noise_rms.max(f64::MIN_POSITIVE),
         absorbed: 1.0 - kept / energy.max(f64::MIN_POSITIVE),
         rest_without,
+        noise,
     })
 }

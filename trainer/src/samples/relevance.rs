@@ -144,7 +144,9 @@ fn variance(values: &[f64]) -> f64 {
     (sum / values.len().max(1) as f64).max(f64::MIN_POSITIVE)
 }
 
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+/// Pearson correlation of two series of one length; 0 where one of them does not vary.
+#[must_use]
+pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
     let (mean_a, mean_b) = (mean(a), mean(b));
     let cross: f64 = a.iter().zip(b).map(|(x, y)| (x - mean_a) * (y - mean_b)).sum::<f64>() / a.len().max(1) as f64;
