@@ -9,7 +9,7 @@ use frikan_runtime::shared::units::{Quantity, Unit};
 
 mod network;
 
-pub use network::{network_1_5_1, network_three_inputs, network_two_inputs};
+pub use network::{network, network_1_5_1, network_three_inputs, network_two_inputs};
 
 /// Cells of the firmware's models.
 pub const CELLS: usize = 128;

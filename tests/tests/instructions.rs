@@ -74,11 +74,26 @@ fn the_count_sees_a_time_that_varies() {
 #[test]
 fn the_cost_worked_out_beforehand_is_the_count_on_cortex_m4f() {
     let emulator = Emulator::new("cortex-m4f").unwrap();
-    for (name, model) in models::every_law() {
-        let (_, most) = count(&emulator, &model).unwrap().instruction_range().unwrap();
-        let expected = instructions(&model);
-        println!("{name}: {expected} expected, {most} counted");
-        assert!(most.abs_diff(expected) * 50 <= most, "{name}: {expected} expected, {most} counted");
+    // Networks whose layers, nodes and edges differ in number one at a time.
+    let shapes: [(usize, &[(u8, u8)]); 6] = [
+        (1, &[(3, 0)]),
+        (2, &[(5, 0)]),
+        (2, &[(2, 0)]),
+        (3, &[(2, 0)]),
+        (2, &[(3, 0), (3, 0)]),
+        (2, &[(1, 1), (2, 0)]),
+    ];
+    let networks = shapes.map(|(inputs, layers)| ("network", models::network(inputs, layers)));
+    let counted: Vec<(&str, u32, u32)> = models::every_law()
+        .into_iter()
+        .chain(networks)
+        .map(|(name, model)| {
+            let (_, most) = count(&emulator, &model).unwrap().instruction_range().unwrap();
+            (name, instructions(&model), most)
+        })
+        .collect();
+    for (name, expected, most) in &counted {
+        assert!(most.abs_diff(*expected) * 50 <= *most, "{name}, expected and counted: {counted:?}");
     }
     let mut model = models::stribeck_expression();
     use Operation::{

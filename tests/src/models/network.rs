@@ -31,9 +31,10 @@ const NODE_ROWS: u16 = 4;
 /// Steps of a test network's output in one N m.
 const OUTPUT_STEPS: f64 = 16_777_216.0;
 
-/// A network over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have `[-1, 1]` for
+/// A network of some inputs over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have `[-1, 1]` for
 /// their range.
-fn network(inputs: usize, shapes: &[(u8, u8)]) -> TestModel {
+#[must_use]
+pub fn network(inputs: usize, shapes: &[(u8, u8)]) -> TestModel {
     let reaches = &[2.0, 30.0, 60.0][..inputs];
     let layer = |&(additive, products)| Layer { additive, products, rows: NODE_ROWS, first_row: 0 };
     let mut layers: heapless::Vec<Layer, _> = shapes.iter().map(layer).collect();

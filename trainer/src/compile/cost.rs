@@ -15,11 +15,13 @@ const INTEGER_TABLE: u32 = 77;
 /// Of a network of one input and one hidden layer of sums, and of each of its nodes.
 const ONE_HIDDEN_LAYER: u32 = 58;
 const NODE: u32 = 19;
-/// Of any other network, and of a hidden layer, of an input or node whose place is found, and of an edge in it.
-const NETWORK: u32 = 197;
-const LAYER: u32 = 73;
-const PLACE: u32 = 23;
-const EDGE: u32 = 25;
+/// Of any other network, to a hundredth, and of each hidden layer, input, node, product of two sums, and edge in it.
+const NETWORK: u32 = 163;
+const LAYER: u32 = 101;
+const SOURCE: u32 = 28;
+const INNER_NODE: u32 = 13;
+const PRODUCT: u32 = 49;
+const EDGE: u32 = 22;
 
 /// Instructions of one evaluation of the law of a model, without effects.
 #[must_use]
@@ -37,15 +39,18 @@ fn of_network(network: &Network) -> u32 {
     if let Some(layer) = &network.one_hidden_layer {
         return ONE_HIDDEN_LAYER + NODE * layer.nodes;
     }
+    let sources = network.sources().len() as u32;
     let mut width = network.sources().len();
-    let (mut places, mut edges) = (width, 0);
+    let (mut nodes, mut products, mut edges) = (0, 0, 0);
     for layer in network.layers() {
         edges += width * layer.targets();
         width = layer.nodes();
-        places += width;
+        nodes += width;
+        products += usize::from(layer.products);
     }
     edges += width;
-    NETWORK + LAYER * network.layers().len() as u32 + PLACE * places as u32 + EDGE * edges as u32
+    let of_layers = LAYER * network.layers().len() as u32 + INNER_NODE * nodes as u32 + PRODUCT * products as u32;
+    NETWORK + SOURCE * sources + of_layers + EDGE * edges as u32
 }
 
 /// Instructions of one evaluation of a program.

@@ -8,7 +8,7 @@ use super::confidence::{alternatives, probability};
 use super::health::HealthNote;
 use super::localise::{Location, locate};
 use super::outcome::Finding;
-use super::prove::locked_gain;
+use super::prove::prove_alone;
 use super::search::{Accepted, Search};
 use super::signals::Signals;
 use crate::parameter::Parameter;
@@ -32,7 +32,7 @@ pub(super) fn finding(
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
-    let locked = (!search.prepared.locked_runs().is_empty()).then(|| locked_gain(search, all, index));
+    let locked = prove_alone(search, all, index).map(|proof| proof.gain_nats);
     let evidence = format!(
         "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {}, {} rival{} within reach",
         found.score,

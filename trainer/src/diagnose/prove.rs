@@ -50,13 +50,11 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     })
 }
 
-/// Gain on locked rows of one effect given all the others; 0 where nothing is locked.
-pub(crate) fn locked_gain(search: &Search, accepted: &[Accepted], index: usize) -> f64 {
+/// The proof of one effect given all the others. `None` where nothing is locked.
+pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize) -> Option<Proof> {
     let mut others = accepted.to_vec();
     others.remove(index);
-    let with = refit(search, accepted);
-    let without = refit(search, &others);
-    with.zip(without).and_then(|(with, without)| prove(search, &without, &with)).map_or(0.0, |proof| proof.gain_nats)
+    prove(search, &refit(search, &others)?, &refit(search, accepted)?)
 }
 
 /// What a refit leaves at every working row.

@@ -13,6 +13,10 @@ use rayon::prelude::*;
 /// Share of what a free function explains at which a name is good enough.
 const NEARLY_AS_MUCH: f64 = 0.88;
 
+/// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
+const NEARLY_ALL: f64 = 0.01;
+const ALL: f64 = 1e-6;
+
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
 const PLACES_LOOKED_AT: f64 = 10.0;
 
@@ -207,6 +211,7 @@ impl Round<'_, '_> {
             (None, Some(generic)) => generic,
             (None, None) => return None,
         };
+        let best = self.plainest(best, table.iter().filter(is_named).filter(passes));
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
@@ -214,9 +219,11 @@ impl Round<'_, '_> {
             let Label::Named(effect) = rival.label else { continue };
             let distance = best.score - rival.score;
             standings.push((effect, distance));
-            if distance >= settings.ambiguity_margin && !hangs_on_few_blocks(best, rival, distance) {
+            if !within_reach(best, rival, settings.ambiguity_margin) {
                 margin = margin.min(distance);
-            } else if matches!(best.label, Label::Named(_)) && !self.merely_contains(rival, best) {
+            } else if matches!(best.label, Label::Named(_))
+                && (distance < 0.0 || !self.contains(rival, best, NEARLY_ALL))
+            {
                 rivals.push((effect, distance));
             }
         }
@@ -232,38 +239,52 @@ impl Round<'_, '_> {
         })
     }
 
-    /// Whether a rival is the best hypothesis with more coefficients: then it is no other explanation.
-    fn merely_contains(&self, rival: &Scored, best: &Scored) -> bool {
-        const SHARE_OUTSIDE: f64 = 0.01;
-        if rival.evidence.degrees <= best.evidence.degrees {
+    /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by a
+    /// recorded channel in place of an inferred state.
+    fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+        let Label::Named(effect) = best.label else { return best };
+        let measured = self.search.hypothesis(effect).and_then(Hypothesis::measured_instead).map(Label::Named);
+        let plainer = |rival: &&Scored| {
+            let is_measured = measured.as_ref() == Some(&rival.label);
+            within_reach(best, rival, self.search.settings.ambiguity_margin)
+                && (is_measured || self.contains(best, rival, ALL))
+        };
+        passing.find(plainer).unwrap_or(best)
+    }
+
+    /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.
+    fn contains(&self, wider: &Scored, narrower: &Scored, but_for: f64) -> bool {
+        if wider.evidence.degrees <= narrower.evidence.degrees {
             return false;
         }
         let runs = self.bench.runs();
         let white = |scored: &Scored| {
             self.search.whitened(&self.search.filtered_columns(&scored.label, &scored.shape), &self.noise)
         };
-        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(rival)).collect::<Vec<_>>(), &runs);
+        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
         let base = orthonormal(&self.bench.base, &runs);
-        white(best).iter().all(|column| {
+        white(narrower).iter().all(|column| {
             let outside = |basis: &[Vec<f64>]| {
                 let mut rest = column.clone();
                 project_out(&mut rest, basis, &runs);
                 dot(&rest, &rest, &runs)
             };
-            outside(&span) < SHARE_OUTSIDE * outside(&base)
+            outside(&span) < but_for * outside(&base)
         })
     }
 }
 
-/// Whether the lead over a close rival is not certain from block to block (Hansen, Lunde and Nason 2011).
-fn hangs_on_few_blocks(best: &Scored, rival: &Scored, distance: f64) -> bool {
+/// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from
+/// block to block (Hansen, Lunde and Nason 2011).
+fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
     const CLOSE_NATS: f64 = 5.0;
     const LEAST_T: f64 = 1.65;
+    let distance = best.score - rival.score;
     let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
     let count = leads.len() as f64;
     let mean = leads.iter().sum::<f64>() / count;
     let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
+    distance < reach || distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
 }
 
 /// Whitens the design and weighs every variant, held-out folds only where asked for.

@@ -7,7 +7,7 @@ use super::findings::{base_parameters, finding, measurement_finding};
 use super::health::{coarse_position, examine};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::{Lock, Prepared};
-use super::prove::{locked_gain, prove, rest};
+use super::prove::{Proof, prove, prove_alone, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Accepted, Search, SearchOutcome, Settings};
@@ -52,8 +52,6 @@ pub enum Refusal {
 
 /// Least rows of evidence.
 const LEAST_ROWS: usize = 150;
-/// Log-likelihood in nats that locked data may speak against an effect before its name is withdrawn.
-const WITHDRAWN_BELOW_NATS: f64 = -3.0;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
 /// Share of the removable error below which an effect beside others is minor, if it is also small against the torque.
@@ -158,20 +156,23 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     })
 }
 
-/// Drops effects, weakest first, against which the locked data speak. A one-off event has none to speak for or against it.
+/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for or against it.
 fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
-    while !accepted.is_empty() {
-        let gains: Vec<f64> = (0..accepted.len()).map(|index| locked_gain(search, accepted, index)).collect();
-        let weakest = (0..gains.len())
-            .filter(|&i| accepted[i].effect() != EffectId::TransientEvent)
-            .min_by(|&a, &b| gains[a].total_cmp(&gains[b]));
-        match weakest {
-            Some(index) if gains[index] < WITHDRAWN_BELOW_NATS => withdrawn.push(accepted.remove(index).effect()),
-            _ => break,
-        }
+    loop {
+        let unproven =
+            (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent).filter_map(|i| {
+                let proof = prove_alone(search, accepted, i)?;
+                is_unproven(&accepted[i], &proof, search.settings.least_score).then_some((i, proof.gain_nats))
+            });
+        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { return withdrawn };
+        withdrawn.push(accepted.remove(weakest).effect());
     }
-    withdrawn
+}
+
+/// Whether all rows together no longer carry an effect, or the error on locked rows grows by it beyond doubt.
+fn is_unproven(found: &Accepted, proof: &Proof, least_score: f64) -> bool {
+    found.score + proof.gain_nats < least_score || proof.ratio_ci95[0] > 1.0
 }
 
 /// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the

@@ -127,6 +127,11 @@ pub trait Hypothesis: Sync {
         None
     }
 
+    /// The effect of a recorded channel for which this one stands in where there is no sensor.
+    fn measured_instead(&self) -> Option<EffectId> {
+        None
+    }
+
     /// First step of a continuous refinement of shape parameter `index`.
     fn step(&self, _state: &JointState, index: usize, shape: &[f64]) -> f64 {
         0.25 * shape[index].abs().max(1e-9)

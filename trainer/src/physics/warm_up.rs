@@ -72,6 +72,10 @@ impl Hypothesis for WarmUp {
         ]
     }
 
+    fn measured_instead(&self) -> Option<EffectId> {
+        Some(EffectId::Temperature)
+    }
+
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         (index == 0).then(|| (0.02 * state.duration(), 3.0 * state.duration()))
     }
