@@ -7,6 +7,7 @@ pub mod diagnose;
 pub mod emulator;
 pub mod error;
 pub mod export;
+pub mod figures;
 pub mod files;
 pub mod fit;
 pub mod joint;

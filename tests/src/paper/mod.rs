@@ -4,6 +4,7 @@ pub mod known_form;
 pub mod network;
 pub mod page;
 pub mod robot;
+pub mod spline_peer;
 pub mod symbolic;
 
 use frikan_trainer::kan::Random;

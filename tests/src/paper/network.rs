@@ -12,6 +12,8 @@ use super::{JOINTS, NOISE, SAMPLES, Samples, r2, samples};
 pub struct Learnt {
     /// What it was trained on.
     pub samples: Samples,
+    /// Velocities of the other samples on which it is judged, rad/s.
+    pub test_velocity: Vec<f64>,
     /// The fit.
     pub fit: FitResult,
     /// Root mean square error against the clean truth on other samples, N m: after a third, two thirds and all steps.
@@ -35,20 +37,31 @@ pub fn noisy_options(seed: u64) -> FitOptions {
     FitOptions { seed, smoothing: Smoothing::Estimated, ..FitOptions::new(architecture) }
 }
 
+/// The settings of a short training: one start, a few steps.
+#[must_use]
+pub fn short_options(seed: u64) -> FitOptions {
+    FitOptions { steps: 8, ..noisy_options(seed) }
+}
+
 /// Trains on one draw of a joint; `share` is the noise as a share of the range, zero for clean data.
+#[must_use]
+pub fn learn(joint: usize, share: f64, seed: u64) -> Learnt {
+    learn_with(joint, share, seed, &if share > 0.0 { noisy_options(seed) } else { clean_options(seed) })
+}
+
+/// As [`learn`], with other settings.
 ///
 /// # Panics
 /// When the samples cannot be used, which they can.
 #[must_use]
-pub fn learn(joint: usize, share: f64, seed: u64) -> Learnt {
+pub fn learn_with(joint: usize, share: f64, seed: u64, options: &FitOptions) -> Learnt {
     let mut random = Random::new(40_000 + seed, joint as u64);
     let samples = samples(JOINTS[joint], SAMPLES, share, &mut random);
     let test = super::samples(JOINTS[joint], 2 * SAMPLES, 0.0, &mut random);
-    let options = if share > 0.0 { noisy_options(seed) } else { clean_options(seed) };
     let blocks = Blocks::default();
     let data = Dataset { inputs: from_ref(&samples.velocity), target: &samples.noisy, linear: &[], blocks: &blocks };
     let start = Instant::now();
-    let fit = fit(&data, &options, &|_| ()).expect("usable samples");
+    let fit = fit(&data, options, &|_| ()).expect("usable samples");
     let seconds = start.elapsed().as_secs_f64();
     let error = |share: f64| {
         let predicted = fit.network_at(share).evaluate_columns(from_ref(&test.velocity));
@@ -59,6 +72,7 @@ pub fn learn(joint: usize, share: f64, seed: u64) -> Learnt {
         rmse: [error(1.0 / 3.0), error(2.0 / 3.0), error(1.0)],
         r2: r2(&test.clean, &fit.network.evaluate_columns(from_ref(&test.velocity))),
         samples,
+        test_velocity: test.velocity,
         fit,
         seconds,
     }

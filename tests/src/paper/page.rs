@@ -1,5 +1,7 @@
 //! The page `docs/paper.md` with its pictures: every experiment, our figure beside the published one and pykan's.
 
+mod networks;
+
 use std::fmt::Write;
 
 use frikan_trainer::error::Result;
@@ -8,9 +10,8 @@ use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::kan::GraphSummary;
 use frikan_trainer::report::picture::{self, Ink, Mark, Series};
 
-use super::network::{Learnt, learn, noisy_r2};
 use super::symbolic::{Symbolic, symbolic};
-use super::{Effort, JOINTS, NOISE, friction, known_form, median, robot};
+use super::{Effort, JOINTS, known_form, robot};
 
 /// pykan 0.2.8 on clean data, 300 L-BFGS steps, as measured for this project: test RMSE in N m; 64 s a joint.
 pub const PYKAN_CLEAN_RMSE: [f64; 6] = [0.017, 0.067, 0.040, 0.042, 0.37, 0.18];
@@ -46,7 +47,7 @@ pub fn files(effort: Effort) -> Result<Files> {
     let mut page = String::from(HEAD);
     // Writing to a string cannot fail.
     let _ = known_forms(&mut page, effort);
-    let _ = networks(&mut page, &mut files, effort);
+    let _ = networks::networks(&mut page, &mut files, effort);
     let _ = formulas(&mut page, &mut files);
     match robot::folder() {
         Some(folder) => {
@@ -91,75 +92,6 @@ fn series(mark: Mark, ink: Ink, label: &str) -> Series {
 }
 
 const OVER_VELOCITY: [&str; 2] = ["velocity (rad/s)", "friction torque (N m)"];
-
-/// Samples with the network after parts of its training.
-fn stages(joint: usize, learnt: &Learnt) -> String {
-    let at = |i: usize| -1.0 + 2.0 * i as f64 / (POINTS - 1) as f64;
-    let curve = |share: f64| {
-        let network = learnt.fit.network_at(share);
-        Mark::Line((0..POINTS).map(|i| [at(i), network.evaluate(&[at(i)])]).collect())
-    };
-    let dots = learnt.samples.velocity.iter().zip(&learnt.samples.noisy).map(|(v, f)| [*v, *f]).collect();
-    let truth = (0..POINTS).map(|i| [at(i), friction(JOINTS[joint], at(i))]).collect();
-    picture::curves(
-        OVER_VELOCITY,
-        &[
-            series(Mark::Dots(dots), Ink::Data, "samples"),
-            series(Mark::Line(truth), Ink::Data, "truth"),
-            series(curve(1.0 / 3.0), Ink::Three, "1/3"),
-            series(curve(2.0 / 3.0), Ink::Two, "2/3"),
-            series(curve(1.0), Ink::One, "all of the training"),
-        ],
-    )
-}
-
-fn networks(page: &mut String, files: &mut Files, effort: Effort) -> std::fmt::Result {
-    writeln!(
-        page,
-        "\n## P3: unknown form, clean\n\n`[1,5,1]`, 10 cells, order 3. Test RMSE in N m after a third, two thirds and all of the \
-         training: the median over {} seeds, and\nthe worst. Published: R2 close to 1.\n\n\
-         | joint | 1/3 | 2/3 | all | worst seed | seconds, worst | pykan, 300 steps | pykan, seconds |\n|---|---|---|---|---|---|---|---|",
-        effort.seeds
-    )?;
-    for j in 0..JOINTS.len() {
-        let all: Vec<Learnt> = (0..effort.seeds).map(|seed| learn(j, 0.0, seed)).collect();
-        let of = |stage: usize| all.iter().map(|learnt| learnt.rmse[stage]).collect::<Vec<_>>();
-        let [third, two_thirds, whole] = [0, 1, 2].map(|stage| median(&of(stage)));
-        let worst = of(2).into_iter().fold(0.0, f64::max);
-        let seconds = all.iter().map(|learnt| learnt.seconds).fold(0.0, f64::max);
-        writeln!(
-            page,
-            "| {} | {third:.4} | {two_thirds:.4} | {whole:.4} | {worst:.4} | {seconds:.2} | {} | {PYKAN_SECONDS} |",
-            j + 1,
-            PYKAN_CLEAN_RMSE[j]
-        )?;
-        files.push((format!("paper/clean-joint-{}.svg", j + 1), stages(j, &all[0])));
-    }
-    writeln!(
-        page,
-        "\n![Joint 1, clean, while it was trained](paper/clean-joint-1.svg)\n\nAll joints: [1](paper/clean-joint-1.svg), [2](paper/clean-joint-2.svg), [3](paper/clean-joint-3.svg), [4](paper/clean-joint-4.svg), [5](paper/clean-joint-5.svg), [6](paper/clean-joint-6.svg)."
-    )?;
-    writeln!(
-        page,
-        "\n## P5: unknown form under noise\n\nStandard deviation λ/2 of the range. R2 against the clean truth, {} seeds. Published: \
-         close to 1.\n\n| joint | λ | median | worst | pykan, 100 steps |\n|---|---|---|---|---|",
-        effort.seeds
-    )?;
-    for (j, noise) in NOISE.into_iter().enumerate() {
-        let all = noisy_r2(j, effort.seeds);
-        let worst = all.iter().copied().fold(f64::INFINITY, f64::min);
-        writeln!(
-            page,
-            "| {} | {:.0} % | {:.5} | {worst:.5} | {} |",
-            j + 1,
-            100.0 * noise,
-            median(&all),
-            PYKAN_NOISY_R2[j]
-        )?;
-        files.push((format!("paper/noisy-joint-{}.svg", j + 1), stages(j, &learn(j, noise / 2.0, 0))));
-    }
-    writeln!(page, "\n![Joint 6 under 20 % noise](paper/noisy-joint-6.svg)")
-}
 
 fn formulas(page: &mut String, files: &mut Files) -> std::fmt::Result {
     writeln!(

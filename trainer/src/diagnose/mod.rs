@@ -5,12 +5,15 @@
 
 mod advise;
 mod base;
+mod blocks;
 mod candidates;
+mod choice;
 mod conclude;
 mod confidence;
 mod evidence;
 mod filter;
 mod findings;
+mod generic;
 mod health;
 pub mod improve;
 mod join;
@@ -37,14 +40,16 @@ mod traces;
 
 pub use advise::{Advice, Limits, Plan, Question, TOLD_APART_NATS, plan};
 pub use base::{Base, BaseKind};
-pub use candidates::{Channel, Factor, Generic, Label};
+pub use blocks::Lock;
+pub use candidates::Label;
 pub use conclude::{Fitted, Refit, unit_text};
+pub use generic::{Channel, Factor, Generic};
 pub use health::{HealthNote, examine};
 pub use join::Unjoinable;
 pub use localise::{Location, Region};
 pub use noise::Noise;
 pub use outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
-pub use prepare::{Lock, Prepared};
+pub use prepare::Prepared;
 pub use prove::Proof;
 pub use reference::Reference;
 pub use rollout::Rollout;

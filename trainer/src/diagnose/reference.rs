@@ -1,6 +1,7 @@
 //! A law from elsewhere (a simulation, a fitted model) evaluated at the recorded states, as the base of a comparison.
 
-use super::prepare::{Lock, Prepared};
+use super::blocks::Lock;
+use super::prepare::Prepared;
 use super::signals::Signals;
 use crate::physics::JointState;
 

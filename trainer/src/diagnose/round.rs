@@ -1,21 +1,14 @@
-//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, one of them chosen.
+//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, ranked.
 
 use super::candidates::{Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};
-use super::linear::{dot, orthonormal, project_out};
+use super::linear::{orthonormal, project_out};
 use super::noise::Noise;
 use super::null::{Directions, NullDraws, chi_square_surprise};
 use super::refine::refine;
 use super::search::{Accepted, Search};
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
-
-/// Share of what a free function explains at which a name is good enough.
-const NEARLY_AS_MUCH: f64 = 0.88;
-
-/// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
-const NEARLY_ALL: f64 = 0.01;
-const ALL: f64 = 1e-6;
 
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
 const PLACES_LOOKED_AT: f64 = 10.0;
@@ -54,9 +47,9 @@ pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) 
 type Tested = Vec<Vec<Option<VariantEvidence>>>;
 
 pub(crate) struct Round<'s, 'a> {
-    search: &'s Search<'a>,
+    pub(super) search: &'s Search<'a>,
     pub(crate) noise: Noise,
-    bench: Bench,
+    pub(super) bench: Bench,
     alone: Option<VariantEvidence>,
     variants: Tested,
     white: Vec<Vec<f64>>,
@@ -174,117 +167,6 @@ impl<'s, 'a> Round<'s, 'a> {
             }
         });
     }
-}
-
-impl Round<'_, '_> {
-    /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
-    pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
-        let settings = &self.search.settings;
-        let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
-        let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
-        let named = table.iter().filter(is_named).find(passes);
-        let generic = table.iter().filter(|s| !is_named(s)).find(passes);
-        let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
-        // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
-        // much, whitened or not, is kept.
-        let nearly = |generic: &Scored| {
-            table.iter().filter(is_named).filter(passes).find(|s| {
-                s.explained >= NEARLY_AS_MUCH * generic.explained
-                    || s.evidence.statistic >= NEARLY_AS_MUCH * generic.evidence.statistic
-            })
-        };
-        let best = match (named, generic) {
-            (Some(named), Some(generic))
-                if generic.score > named.score + settings.ambiguity_margin
-                    && generic.evidence.held_out > held_out + settings.ambiguity_margin =>
-            {
-                nearly(generic).unwrap_or(generic)
-            }
-            (Some(named), _) if named.label == Label::Named(EffectId::TransientEvent) => {
-                // No other block can confirm an event, so any cause that may come back goes before it on equal terms.
-                let lasting = |s: &&Scored| {
-                    s.label != named.label && s.evidence.criterion > named.score - settings.ambiguity_margin
-                };
-                table.iter().filter(is_named).filter(passes).find(lasting).unwrap_or(named)
-            }
-            (Some(named), _) => named,
-            (None, Some(generic)) => generic,
-            (None, None) => return None,
-        };
-        let best = self.plainest(best, table.iter().filter(is_named).filter(passes));
-        let mut rivals = Vec::new();
-        let mut standings = Vec::new();
-        let mut margin = f64::INFINITY;
-        for rival in table.iter().filter(|s| s.label != best.label) {
-            let Label::Named(effect) = rival.label else { continue };
-            let distance = best.score - rival.score;
-            standings.push((effect, distance));
-            if !within_reach(best, rival, settings.ambiguity_margin) {
-                margin = margin.min(distance);
-            } else if matches!(best.label, Label::Named(_))
-                && (distance < 0.0 || !self.contains(rival, best, NEARLY_ALL))
-            {
-                rivals.push((effect, distance));
-            }
-        }
-        Some(Accepted {
-            label: best.label.clone(),
-            shape: best.shape.clone(),
-            score: best.score,
-            family_wise: best.family_wise,
-            fold_gain: best.evidence.fold_gain.clone(),
-            margin,
-            rivals,
-            standings,
-        })
-    }
-
-    /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by a
-    /// recorded channel in place of an inferred state.
-    fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
-        let Label::Named(effect) = best.label else { return best };
-        let measured = self.search.hypothesis(effect).and_then(Hypothesis::measured_instead).map(Label::Named);
-        let plainer = |rival: &&Scored| {
-            let is_measured = measured.as_ref() == Some(&rival.label);
-            within_reach(best, rival, self.search.settings.ambiguity_margin)
-                && (is_measured || self.contains(best, rival, ALL))
-        };
-        passing.find(plainer).unwrap_or(best)
-    }
-
-    /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.
-    fn contains(&self, wider: &Scored, narrower: &Scored, but_for: f64) -> bool {
-        if wider.evidence.degrees <= narrower.evidence.degrees {
-            return false;
-        }
-        let runs = self.bench.runs();
-        let white = |scored: &Scored| {
-            self.search.whitened(&self.search.filtered_columns(&scored.label, &scored.shape), &self.noise)
-        };
-        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
-        let base = orthonormal(&self.bench.base, &runs);
-        white(narrower).iter().all(|column| {
-            let outside = |basis: &[Vec<f64>]| {
-                let mut rest = column.clone();
-                project_out(&mut rest, basis, &runs);
-                dot(&rest, &rest, &runs)
-            };
-            outside(&span) < but_for * outside(&base)
-        })
-    }
-}
-
-/// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from
-/// block to block (Hansen, Lunde and Nason 2011).
-fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
-    const CLOSE_NATS: f64 = 5.0;
-    const LEAST_T: f64 = 1.65;
-    let distance = best.score - rival.score;
-    let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
-    let count = leads.len() as f64;
-    let mean = leads.iter().sum::<f64>() / count;
-    let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    distance < reach || distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
 }
 
 /// Whitens the design and weighs every variant, held-out folds only where asked for.

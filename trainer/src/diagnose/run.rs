@@ -1,12 +1,13 @@
 //! One diagnosis from signals to outcome.
 
 use super::base::{Base, BaseKind};
+use super::blocks::Lock;
 use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
 use super::findings::{base_parameters, finding, measurement_finding};
 use super::health::{coarse_position, examine};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
-use super::prepare::{Lock, Prepared};
+use super::prepare::Prepared;
 use super::prove::{Proof, prove, prove_alone, rest};
 use super::rollout::roll_out;
 use super::round::Scored;

@@ -1,8 +1,9 @@
 //! Accepts one effect after the other while the evidence lasts, then cleans up backwards.
 
 use super::base::Base;
-use super::candidates::{Design, Generic, Label, generic_columns, ridge_of};
+use super::candidates::{Design, Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence};
+use super::generic::{Generic, generic_columns};
 use super::linear::residual;
 use super::noise::Noise;
 use super::prepare::Prepared;

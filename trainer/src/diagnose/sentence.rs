@@ -1,7 +1,11 @@
 //! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
 
+#[cfg(test)]
+mod tests;
+
 use super::localise::Region;
 use super::outcome::{Diagnosis, Finding, Verdict};
+use crate::figures::{digits, interval, quantity};
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
 
@@ -296,169 +300,7 @@ pub fn plain_name(effect: EffectId) -> &'static str {
     }
 }
 
-/// A value with its unit, three digits, in milli or micro where that reads better.
-#[must_use]
-pub fn quantity(value: f64, unit: &str) -> String {
-    if unit == "1" || unit.is_empty() {
-        return digits(value);
-    }
-    let (factor, prefix) = prefix(value, unit);
-    format!("{} {prefix}{unit}", digits(value * factor))
-}
-
-fn interval(from: f64, to: f64, unit: &str) -> String {
-    let (factor, prefix) = prefix(from.abs().max(to.abs()), unit);
-    format!("{} and {} {prefix}{unit}", digits(from * factor), digits(to * factor))
-}
-
-fn prefix(value: f64, unit: &str) -> (f64, &'static str) {
-    let plain = matches!(unit, "rad" | "m" | "s" | "N" | "N m" | "A" | "rad/s" | "m/s");
-    match value.abs() {
-        size if !plain || size == 0.0 => (1.0, ""),
-        size if size < 1e-4 => (1e6, "u"),
-        size if size < 0.02 => (1e3, "m"),
-        _ => (1.0, ""),
-    }
-}
-
-/// Three significant digits; powers of ten only where plain digits would be long.
-#[must_use]
-pub fn digits(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_string() } else { format!("{value}") };
-    }
-    if !(1e-4..1e6).contains(&size) {
-        return format!("{value:.2e}");
-    }
-    let decimals = (2 - size.log10().floor() as i32).clamp(0, 6) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
-}
-
 pub(crate) fn capital(sentence: &str) -> String {
     let mut characters = sentence.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::{Advice, BaseKind, Fitted, Label, Location, Proof, Refit, Score, Traces};
-
-    const ROTARY: Units = Units { actuator: "N m", rotary: true };
-
-    fn region(channel: &'static str, from: f64, to: f64) -> Region {
-        Region { channel, from, to, share_of_excess: 0.9, share_of_samples: 0.1 }
-    }
-
-    fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
-        let distance = Parameter {
-            name: "breakaway_distance".into(),
-            symbol: "delta".into(),
-            value: 1.2e-3,
-            unit: "rad".into(),
-            ci95: [1.1e-3, 1.3e-3],
-        };
-        let torque = Parameter { name: "presliding_torque".into(), value: 3.1, unit: "N m".into(), ..distance.clone() };
-        let fitted = Fitted {
-            label: Label::Named(EffectId::Presliding),
-            shape: vec![1.2e-3],
-            shape_deviation: vec![None],
-            coefficients: vec![3.1],
-            deviation: vec![0.1],
-        };
-        Finding {
-            effect: EffectId::Presliding,
-            probability: 0.97,
-            alternatives: vec![(EffectId::FrictionalLag, 0.02)],
-            action: Action::FeedForward,
-            equation: String::new(),
-            parameters: vec![torque, distance],
-            location: Location { regions: vec![region(channel, from, to)], when_s: Vec::new() },
-            evidence: String::new(),
-            separate_by: Advice { sentence: String::new() },
-            fitted,
-            score: 40.0,
-            margin: 9.0,
-            standings: Vec::new(),
-            locked_gain_nats: Some(20.0),
-        }
-    }
-
-    fn diagnosis(found: Finding) -> Diagnosis {
-        let refit = || Refit {
-            base: Vec::new(),
-            base_deviation: Vec::new(),
-            effects: Vec::new(),
-            noise: crate::diagnose::Noise::white(0),
-            plain: false,
-        };
-        let velocity: Vec<f64> = (-50..50).map(|k| 0.002 * f64::from(k) + 0.001).collect();
-        let effect: Vec<f64> = velocity.iter().map(|v| -3.1 * v.signum() * f64::from(v.abs() < 0.05)).collect();
-        let traces = Traces { time: velocity.clone(), velocity, effects: vec![effect], ..Traces::default() };
-        Diagnosis {
-            verdict: Verdict::MissingPhysics,
-            health: Vec::new(),
-            findings: vec![found],
-            minor: vec![(EffectId::Presliding, 0.042)],
-            withdrawn: vec![EffectId::Spring],
-            limits: Vec::new(),
-            base: BaseKind::CoulombViscous,
-            base_parameters: Vec::new(),
-            noise_rmse: 0.4,
-            baseline: Score { rmse: 0.92, r2: 0.9 },
-            improved: Score { rmse: 0.41, r2: 0.98 },
-            proof: Some(Proof {
-                baseline_rmse: 0.92,
-                improved_rmse: 0.41,
-                ratio_ci95: [0.4, 0.5],
-                gain_nats: 20.0,
-                rows: 300,
-            }),
-            rollout: None,
-            rivals: Vec::new(),
-            baseline_refit: refit(),
-            improved_refit: refit(),
-            cut_off_hz: 20.0,
-            rows: 1500,
-            sampling_delay_s: 0.0,
-            traces,
-        }
-    }
-
-    #[test]
-    fn a_finding_reads_as_a_sentence() {
-        let story = tell(&diagnosis(presliding("velocity", -0.05, 0.05)), ROTARY);
-        assert_eq!(
-            story.findings[0],
-            "Between -0.05 and 0.05 rad/s the real joint needs up to 3.1 N m less: presliding hysteresis, breakaway \
-             distance 1.2 mrad (\u{b1} 100 urad). Probability 97 %; this recording cannot rule out frictional lag (2 %)."
-        );
-        assert_eq!(
-            story.headline,
-            "One effect is missing from the model: it is wrong by 0.92 N m, of which 0.4 N m is noise."
-        );
-        assert_eq!(
-            story.proof.unwrap(),
-            "Held-out error 0.92 -> 0.41 N m on 300 rows that took no part in fitting or choosing (ratio 0.446, 95 % \
-             interval 0.4 to 0.5)."
-        );
-        assert!(story.withdrawn.unwrap().contains("spring"));
-        assert!(story.minor.unwrap().contains("4.2 %"));
-    }
-
-    #[test]
-    fn a_region_from_a_reversal_on_says_so() {
-        let sentence = finding(&diagnosis(presliding("distance_since_reversal", 1e-6, 0.004)), 0, ROTARY);
-        assert!(sentence.starts_with("Within 4 mrad after each reversal the real joint needs up to"), "{sentence}");
-    }
-
-    #[test]
-    fn figures_have_three_digits_and_a_fitting_prefix() {
-        let shown: Vec<String> =
-            [0.0, 1.0, -12.345, 1234.5, 2.5e-5].into_iter().map(|value| quantity(value, "rad")).collect();
-        assert_eq!(shown, ["0 rad", "1 rad", "-12.3 rad", "1234 rad", "25 urad"]);
-        assert_eq!(quantity(0.0021, "N m s/rad"), "0.0021 N m s/rad");
-    }
 }

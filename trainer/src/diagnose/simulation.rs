@@ -2,8 +2,9 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 use super::base::{nuisances, speed_hats};
+use super::blocks::Lock;
 use super::linear::{least_squares, residual};
-use super::prepare::{Lock, Prepared};
+use super::prepare::Prepared;
 use super::reference::{Reference, tabulated_velocities};
 use super::signals::Signals;
 use crate::physics::JointState;

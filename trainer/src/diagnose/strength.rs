@@ -1,10 +1,11 @@
 //! How strong a hidden torque is for a diagnosis: its non-centrality after base, filter and noise.
 
 use super::base::{Base, BaseKind};
+use super::blocks::Lock;
 use super::evidence::Bench;
 use super::linear::{dot, least_squares, residual};
 use super::noise::Noise;
-use super::prepare::{Lock, Prepared};
+use super::prepare::Prepared;
 use super::search::noise_features;
 use super::signals::Signals;
 

@@ -12,7 +12,6 @@ use super::model::Model;
 use super::network::Network;
 use super::outcome::{Convergence, Step};
 use super::pilot::pilot;
-use super::random::Random;
 use super::start::initial;
 use super::training::{Optimiser, ProgressCallback, Settings, Smoothing, Watch, minimise};
 
@@ -97,7 +96,7 @@ pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) 
     let rows = dataset.training_rows();
     let pilot = pilot(dataset, &rows)?;
     let train = |restart: usize| -> Result<Trained, KanError> {
-        let network = initial(&options.architecture, &pilot, &mut Random::new(options.seed, restart as u64))?;
+        let network = initial(&options.architecture, &pilot, options.seed, restart)?;
         let mut model = Model::scaled_to(network, dataset, &rows);
         model.linear.copy_from_slice(pilot.linear());
         Ok(Trained::run(model, pilot.noise_variance, dataset, options, restart, progress))

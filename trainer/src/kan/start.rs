@@ -12,15 +12,23 @@ use super::spline::{Grid, SplineBasis};
 const FILL: f64 = 0.9;
 
 /// A network whose first layer blends each input's effect with its knot placement, and whose last layer is zero:
-/// the first step of training solves for that one. Without hidden layers it is the pilot on other knots.
-pub(super) fn initial(architecture: &Architecture, pilot: &Pilot, random: &mut Random) -> Result<Network, KanError> {
+/// the first step of training solves for that one. Without hidden layers it is the pilot on as many cells; further starts move
+/// its knots.
+pub(super) fn initial(
+    architecture: &Architecture,
+    pilot: &Pilot,
+    seed: u64,
+    restart: usize,
+) -> Result<Network, KanError> {
+    let random = &mut Random::new(seed, restart as u64);
     let mut network = Network::zeros(architecture)?;
     let mut bases = Vec::new();
     for (index, layer) in network.layers().iter().enumerate() {
         for position in 0..layer.edges.len() {
             let resolution = architecture.resolution(index, position % layer.inputs);
             // Several splines share the work by having their knots between each other's.
-            let stretch = if architecture.hidden.is_empty() { 0.0 } else { random.uniform(-1.0, 1.0) };
+            let alone = architecture.hidden.is_empty() && restart == 0;
+            let stretch = if alone { 0.0 } else { random.uniform(-1.0, 1.0) };
             let breaks = match index {
                 0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, stretch),
                 _ => stretched(resolution.cells, stretch).map(|share| 2.0 * share - 1.0).collect(),

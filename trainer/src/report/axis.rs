@@ -1,6 +1,6 @@
 //! Scales and ticks.
 
-use crate::diagnose::sentence::digits;
+use crate::figures::digits;
 
 /// A linear scale from data to pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]

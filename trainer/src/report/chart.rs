@@ -2,7 +2,7 @@
 
 use super::axis::Scale;
 use super::page::escape;
-use crate::diagnose::sentence::digits;
+use crate::figures::digits;
 use std::fmt::Write;
 
 /// Largest number of dots; more would only be slower to draw.

@@ -5,8 +5,9 @@ use super::chart::{Chart, Ink, bars};
 use super::finding::evidence;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{Story, Units, digits, plain_name, quantity};
+use crate::diagnose::sentence::{Story, Units, plain_name};
 use crate::diagnose::{Diagnosis, Finding, Label, Plan, Traces};
+use crate::figures::{digits, quantity};
 
 /// What goes onto the page.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,9 @@ use super::chart::{Chart, Ink, bars};
 use super::diagnosis::{axis_label, sentence_case};
 use super::on_the_drive::on_the_drive;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{Units, digits, plain_name};
+use crate::diagnose::sentence::{Units, plain_name};
 use crate::diagnose::{Diagnosis, Finding, Traces};
+use crate::figures::digits;
 use crate::physics::{Action, EffectId};
 
 /// Names in the chart of one finding's rivals, its own included.

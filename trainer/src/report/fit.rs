@@ -4,7 +4,7 @@ use super::axis::Scale;
 use super::chart::{Chart, Ink};
 use super::graph;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{digits, quantity};
+use crate::figures::{digits, quantity};
 use crate::fit::outcome::{Outcome, Soundness, Trace};
 use crate::recording::Axis;
 

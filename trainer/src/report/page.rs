@@ -106,7 +106,7 @@ impl Page {
 
 /// Parameters as rows of a table: name, symbol, value, unit, interval.
 pub(super) fn parameter_rows(parameters: &[crate::parameter::Parameter]) -> Vec<Vec<String>> {
-    use crate::diagnose::sentence::digits;
+    use crate::figures::digits;
     parameters
         .iter()
         .map(|p| {

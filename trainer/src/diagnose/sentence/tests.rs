@@ -1,0 +1,110 @@
+use super::*;
+use crate::diagnose::{Advice, BaseKind, Fitted, Label, Location, Proof, Refit, Score, Traces};
+
+const ROTARY: Units = Units { actuator: "N m", rotary: true };
+
+fn region(channel: &'static str, from: f64, to: f64) -> Region {
+    Region { channel, from, to, share_of_excess: 0.9, share_of_samples: 0.1 }
+}
+
+fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
+    let distance = Parameter {
+        name: "breakaway_distance".into(),
+        symbol: "delta".into(),
+        value: 1.2e-3,
+        unit: "rad".into(),
+        ci95: [1.1e-3, 1.3e-3],
+    };
+    let torque = Parameter { name: "presliding_torque".into(), value: 3.1, unit: "N m".into(), ..distance.clone() };
+    let fitted = Fitted {
+        label: Label::Named(EffectId::Presliding),
+        shape: vec![1.2e-3],
+        shape_deviation: vec![None],
+        coefficients: vec![3.1],
+        deviation: vec![0.1],
+    };
+    Finding {
+        effect: EffectId::Presliding,
+        probability: 0.97,
+        alternatives: vec![(EffectId::FrictionalLag, 0.02)],
+        action: Action::FeedForward,
+        equation: String::new(),
+        parameters: vec![torque, distance],
+        location: Location { regions: vec![region(channel, from, to)], when_s: Vec::new() },
+        evidence: String::new(),
+        separate_by: Advice { sentence: String::new() },
+        fitted,
+        score: 40.0,
+        margin: 9.0,
+        standings: Vec::new(),
+        locked_gain_nats: Some(20.0),
+    }
+}
+
+fn diagnosis(found: Finding) -> Diagnosis {
+    let refit = || Refit {
+        base: Vec::new(),
+        base_deviation: Vec::new(),
+        effects: Vec::new(),
+        noise: crate::diagnose::Noise::white(0),
+        plain: false,
+    };
+    let velocity: Vec<f64> = (-50..50).map(|k| 0.002 * f64::from(k) + 0.001).collect();
+    let effect: Vec<f64> = velocity.iter().map(|v| -3.1 * v.signum() * f64::from(v.abs() < 0.05)).collect();
+    let traces = Traces { time: velocity.clone(), velocity, effects: vec![effect], ..Traces::default() };
+    Diagnosis {
+        verdict: Verdict::MissingPhysics,
+        health: Vec::new(),
+        findings: vec![found],
+        minor: vec![(EffectId::Presliding, 0.042)],
+        withdrawn: vec![EffectId::Spring],
+        limits: Vec::new(),
+        base: BaseKind::CoulombViscous,
+        base_parameters: Vec::new(),
+        noise_rmse: 0.4,
+        baseline: Score { rmse: 0.92, r2: 0.9 },
+        improved: Score { rmse: 0.41, r2: 0.98 },
+        proof: Some(Proof {
+            baseline_rmse: 0.92,
+            improved_rmse: 0.41,
+            ratio_ci95: [0.4, 0.5],
+            gain_nats: 20.0,
+            rows: 300,
+        }),
+        rollout: None,
+        rivals: Vec::new(),
+        baseline_refit: refit(),
+        improved_refit: refit(),
+        cut_off_hz: 20.0,
+        rows: 1500,
+        sampling_delay_s: 0.0,
+        traces,
+    }
+}
+
+#[test]
+fn a_finding_reads_as_a_sentence() {
+    let story = tell(&diagnosis(presliding("velocity", -0.05, 0.05)), ROTARY);
+    assert_eq!(
+        story.findings[0],
+        "Between -0.05 and 0.05 rad/s the real joint needs up to 3.1 N m less: presliding hysteresis, breakaway \
+         distance 1.2 mrad (\u{b1} 100 urad). Probability 97 %; this recording cannot rule out frictional lag (2 %)."
+    );
+    assert_eq!(
+        story.headline,
+        "One effect is missing from the model: it is wrong by 0.92 N m, of which 0.4 N m is noise."
+    );
+    assert_eq!(
+        story.proof.unwrap(),
+        "Held-out error 0.92 -> 0.41 N m on 300 rows that took no part in fitting or choosing (ratio 0.446, 95 % \
+         interval 0.4 to 0.5)."
+    );
+    assert!(story.withdrawn.unwrap().contains("spring"));
+    assert!(story.minor.unwrap().contains("4.2 %"));
+}
+
+#[test]
+fn a_region_from_a_reversal_on_says_so() {
+    let sentence = finding(&diagnosis(presliding("distance_since_reversal", 1e-6, 0.004)), 0, ROTARY);
+    assert!(sentence.starts_with("Within 4 mrad after each reversal the real joint needs up to"), "{sentence}");
+}
