@@ -8,6 +8,7 @@ use super::lbfgs::{End, Iterate};
 use super::model::{Model, Unknowns};
 use super::outcome::{Convergence, Status, Step};
 use super::penalty::Penalty;
+use super::sparsity::Pull;
 use super::training::{Optimiser, Settings, Smoothing, Watch};
 use super::{adam, lbfgs};
 
@@ -27,6 +28,7 @@ pub(super) fn minimise(
         Smoothing::None | Smoothing::Estimated => 0.0,
     };
     let penalties = Penalty::smoothness(model, &unknowns, strength);
+    let pull = Pull::of(model, &unknowns, settings.sparsity, 1.0);
     let mut values = unknowns.read(model);
     let mut scratch = model.clone();
     let (mut evaluations, mut steps, mut gradient_norm) = (0, 0, f64::NAN);
@@ -41,12 +43,15 @@ pub(super) fn minimise(
             loss += penalty.energy(values);
             penalty.add_gradient(values, 2.0, &mut gradient);
         }
+        loss += pull.energy(values);
+        pull.add_gradient(values, 2.0, &mut gradient);
         (loss, gradient)
     };
     let mut observe = |iterate: &Iterate| {
         unknowns.write(iterate.values, model);
         gradient_norm = iterate.gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-        let penalty: f64 = penalties.iter().map(|penalty| penalty.energy(iterate.values)).sum();
+        let smooth: f64 = penalties.iter().map(|penalty| penalty.energy(iterate.values)).sum();
+        let penalty = smooth + pull.energy(iterate.values);
         let step = Step {
             step: steps,
             loss: (iterate.loss - penalty) * model.network.output.width.powi(2),

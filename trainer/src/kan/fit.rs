@@ -12,6 +12,7 @@ use super::model::Model;
 use super::network::Network;
 use super::outcome::{Convergence, Step};
 use super::pilot::pilot;
+use super::sparsity::Sparsity;
 use super::start::initial;
 use super::training::{Optimiser, ProgressCallback, Settings, Smoothing, Watch, minimise};
 
@@ -35,6 +36,10 @@ pub struct FitOptions {
     pub base_weights: bool,
     /// Relative fall of the loss per step below which a step counts as no progress.
     pub tolerance: f64,
+    /// How often the cells of the best start are halved and trained on, at most: as long as its criterion falls.
+    pub refinements: usize,
+    /// Pull of superfluous edges towards nothing.
+    pub sparsity: Sparsity,
 }
 
 impl FitOptions {
@@ -49,6 +54,8 @@ impl FitOptions {
             smoothing: Smoothing::Estimated,
             base_weights: false,
             tolerance: 1e-2,
+            refinements: 0,
+            sparsity: Sparsity::NONE,
         }
     }
 }
@@ -109,7 +116,17 @@ pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) 
             best = (index + 1, trained);
         }
     }
-    Ok(best.1.into_result(dataset, best.0))
+    let (restart, mut trained) = best;
+    for _ in 0..options.refinements {
+        let linear = trained.model.linear_coefficients();
+        let network = trained.model.network.refined()?;
+        let finer = refit_from(network, &linear, pilot.noise_variance, dataset, options, progress);
+        if finer.criterion >= trained.criterion {
+            break;
+        }
+        trained = finer;
+    }
+    Ok(trained.into_result(dataset, restart))
 }
 
 /// Goes on training a network, for instance after edges were switched off by hand.
@@ -171,6 +188,7 @@ impl Trained {
             noise_variance,
             tolerance: options.tolerance,
             with_base: options.base_weights,
+            sparsity: options.sparsity,
         };
         let (convergence, cross_validation) =
             minimise(&mut model, dataset, &dataset.training_rows(), &settings, &mut watch);

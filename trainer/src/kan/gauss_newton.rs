@@ -11,6 +11,7 @@ use super::jacobian::NormalEquations;
 use super::model::{Model, Unknowns};
 use super::outcome::{Convergence, Status, Step};
 use super::penalty::{Penalty, reestimate};
+use super::sparsity::Pull;
 use super::training::{Settings, Smoothing, Watch};
 
 /// Pull towards zero, relative to the mean curvature, that decides between equivalent parameters.
@@ -45,6 +46,7 @@ pub(super) fn minimise(
         Smoothing::Estimated => SMOOTHING_START * settings.noise_variance,
     };
     let mut penalties = Penalty::smoothness(model, &unknowns, start);
+    let pull = Pull::of(model, &unknowns, settings.sparsity, samples as f64);
     let mut values = unknowns.read(model);
     let mut normal = NormalEquations::of(model, &unknowns, dataset, rows);
     let mut damping = 1e-3;
@@ -66,6 +68,8 @@ pub(super) fn minimise(
             degrees_of_freedom = Some(found);
             (matrix, gradient) = penalised(&normal, &penalties, ridge, &values);
         }
+        pull.add_gradient(&values, 1.0, &mut gradient);
+        pull.add_curvature(&values, normal.size, &mut matrix);
         report.gradient_norm = 2.0 * norm(&gradient) / samples as f64;
         let step = Step {
             step: report.steps,
@@ -88,7 +92,7 @@ pub(super) fn minimise(
 
         let energy = |values: &[f64]| {
             let smooth: f64 = penalties.iter().map(|penalty| penalty.energy(values)).sum();
-            smooth + ridge * values.iter().map(|v| v * v).sum::<f64>()
+            smooth + pull.energy(values) + ridge * values.iter().map(|v| v * v).sum::<f64>()
         };
         let before = normal.residual_sum + energy(&values);
         let mut accepted = None;

@@ -21,6 +21,8 @@ mod penalty;
 mod pilot;
 mod prune;
 mod random;
+mod refinement;
+mod sparsity;
 mod spline;
 mod start;
 mod trace;
@@ -37,6 +39,7 @@ pub use network::{Edge, Layer, Network, Scaling};
 pub use outcome::{Convergence, Status, Step};
 pub use prune::{PruneOptions, Pruned, Removed, prune};
 pub use random::Random;
+pub use sparsity::Sparsity;
 pub use spline::{Grid, LocalBasis, MAX_ORDER, SplineBasis};
 pub use training::{Optimiser, Progress, ProgressCallback, Smoothing};
 

@@ -8,6 +8,7 @@ use super::error::KanError;
 use super::knots::Placement;
 use super::model::Model;
 use super::network::Network;
+use super::sparsity::Sparsity;
 use super::spline::SplineBasis;
 use super::training::{Optimiser, Settings, Smoothing, Watch, minimise};
 
@@ -36,6 +37,7 @@ impl Pilot {
             noise_variance: 1e-2,
             tolerance: 1e-3,
             with_base: false,
+            sparsity: Sparsity::NONE,
         };
         let bases: Vec<SplineBasis> = placements.iter().map(|p| p.basis(cells, 3, 0.0)).collect::<Result<_, _>>()?;
         let mut model = model.clone();

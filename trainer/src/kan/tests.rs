@@ -56,6 +56,49 @@ fn learns_the_paper_s_clean_laws_to_four_millinewtonmetres() {
 }
 
 #[test]
+fn finer_cells_are_taken_as_long_as_they_pay() {
+    let mut random = Random::new(5, 0);
+    let (v, test) = (column(&mut random, 1000), column(&mut random, 2000));
+    let torque: Vec<f64> = v.iter().map(|&v| friction(AXES[0], v)).collect();
+    let truth: Vec<f64> = test.iter().map(|&v| friction(AXES[0], v)).collect();
+    let coarse: FitOptions =
+        FitOptions { architecture: Architecture::additive(1, &[]).with_resolution(8, 3), ..options("[1,1]") };
+    let error = |refinements| {
+        let result = trained(from_ref(&v), &torque, &FitOptions { refinements, ..coarse.clone() });
+        (rmse(&result.network.evaluate_columns(from_ref(&test)), &truth), result.network.coefficient_count())
+    };
+    let [(before, few), (after, many)] = [error(0), error(3)];
+    assert!(after < 0.02 * before && many > 5 * few, "{before} with {few}, {after} with {many} coefficients");
+    // Noise pays for no finer cells than it has to.
+    let noisy: Vec<f64> = torque.iter().map(|f| f + 5.0 * random.normal()).collect();
+    let result = trained(from_ref(&v), &noisy, &FitOptions { refinements: 3, ..coarse });
+    let error = rmse(&result.network.evaluate_columns(from_ref(&test)), &truth);
+    assert!(error < 1.2, "{error}");
+}
+
+#[test]
+fn a_pull_towards_few_edges_leaves_few() {
+    let mut random = Random::new(6, 0);
+    let v = column(&mut random, 800);
+    let torque: Vec<f64> = v.iter().map(|v| (3.0 * v).tanh() + 0.02 * random.normal()).collect();
+    let blocks = Blocks::default();
+    let dataset = Dataset { inputs: from_ref(&v), target: &torque, linear: &[], blocks: &blocks };
+    let busy = |optimiser, sparsity| {
+        let steps = if optimiser == Optimiser::GaussNewton { 60 } else { 600 };
+        let smoothing = Smoothing::Fixed(1e-6);
+        let options = FitOptions { optimiser, steps, smoothing, sparsity, ..options("[1,5,1]") };
+        let result = trained(from_ref(&v), &torque, &options);
+        let scores = Attribution::of(&result.network, &dataset, &dataset.training_rows()).edges;
+        (scores.iter().flatten().filter(|score| **score > 0.05).count(), result.train_rmse)
+    };
+    for (optimiser, weight) in [(Optimiser::GaussNewton, 3e-3), (Optimiser::Lbfgs, 3e-2)] {
+        let (all, _) = busy(optimiser, Sparsity::NONE);
+        let (few, error) = busy(optimiser, Sparsity { l1: weight, entropy: weight });
+        assert!(few + 4 <= all && error < 0.1, "{optimiser:?}: {few} of {all} edges, {error}");
+    }
+}
+
+#[test]
 fn does_not_follow_noise() {
     for (axis, (ratio, floor)) in [(0.03, 0.9999), (0.12, 0.9988), (0.20, 0.9957)].into_iter().enumerate() {
         let parameters = AXES[[0, 3, 5][axis]];

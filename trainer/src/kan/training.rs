@@ -8,6 +8,7 @@ use super::dataset::{Dataset, row_count};
 use super::model::Model;
 use super::network::Network;
 use super::outcome::{Convergence, Step};
+use super::sparsity::Sparsity;
 use super::{first_order, gauss_newton};
 
 /// How strongly neighbouring spline coefficients are tied.
@@ -49,6 +50,7 @@ pub(super) struct Settings {
     /// Relative fall of the penalised loss below which a step counts as no progress.
     pub(super) tolerance: f64,
     pub(super) with_base: bool,
+    pub(super) sparsity: Sparsity,
 }
 
 /// Trains the model with whichever optimiser is asked for; also returns the criterion by which fits are compared.
