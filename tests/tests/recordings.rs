@@ -4,10 +4,12 @@ use std::path::Path;
 
 use frikan_tests::fixtures::separated_recording;
 use frikan_tests::paper::JOINTS;
+use frikan_tests::paper::robot::{friction_score, known_form_scores};
 use frikan_tests::recordings;
-use frikan_trainer::fit::outcome::Outcome;
+use frikan_trainer::fit::outcome::{Outcome, Representation};
 use frikan_trainer::fit::{Options, fit};
 use frikan_trainer::joint::Joint;
+use frikan_trainer::law::KnownForm;
 use frikan_trainer::recording::{self, Recording};
 
 fn load(path: &Path) -> Recording {
@@ -44,6 +46,27 @@ fn kr300_axis_3_predicts_an_unseen_trajectory() {
     assert!(outcome.tests[0].score.rmse <= 395.0);
     assert!(outcome.parameters.iter().any(|parameter| parameter.name == "torque_scale"));
     assert!(outcome.parameters.iter().any(|parameter| parameter.name == "extra_inertia"));
+}
+
+/// On a run that neither saw, the formula found is no worse than what an engineer makes by hand: on the EMPS axis the asymmetric
+/// Coulomb and viscous law beside the same rigid body, on the KR300 axis the linear model of the test above.
+#[test]
+fn the_formulas_found_are_no_worse_than_models_made_by_hand() {
+    let Some(folder) = recordings() else { return };
+    let options = Options { seed: 1, representation: Some(Representation::Expression), ..Options::default() };
+    let formula = |train: &[&str], test: &str| {
+        let train: Vec<Recording> = train.iter().map(|name| load(&folder.join(name))).collect();
+        let outcome = fit(&train, &[load(&folder.join(test))], &Joint::default(), &options, &|_| ()).unwrap();
+        println!("{} ({} nodes): {}", outcome.law.expression, outcome.law.nodes, outcome.tests[0].score.rmse);
+        assert!(outcome.law.nodes <= 20);
+        outcome
+    };
+    let emps = formula(&["emps/train.csv"], "emps/pulses.csv");
+    let by_hand = &known_form_scores(&emps, KnownForm::AsymmetricCoulombViscous)[0];
+    let found = friction_score(&emps.tests[0]).rmse;
+    assert!(found <= by_hand.rmse, "{found}, by hand {}", by_hand.rmse);
+    let kr300 = formula(&["kr300/axis3-A.csv", "kr300/axis3-B.csv"], "kr300/axis3-C.csv");
+    assert!(kr300.tests[0].score.rmse <= 385.0);
 }
 
 /// Wang, Rabczuk and Liu, axis 1, clean: the exported image against an independent set.

@@ -8,6 +8,7 @@ use frikan_trainer::error::Result;
 use frikan_trainer::fit::Outcome;
 use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::kan::GraphSummary;
+use frikan_trainer::law::KnownForm;
 use frikan_trainer::report::picture::{self, Ink, Mark, Series};
 
 use super::symbolic::{Symbolic, symbolic};
@@ -147,7 +148,7 @@ fn robots(page: &mut String, files: &mut Files, axes: &[Outcome], formula: &Outc
     )?;
     for (axis, outcome) in axes.iter().enumerate() {
         for trace in outcome.train.iter().chain(&outcome.tests) {
-            let (friction, ceiling) = (robot::friction_r2(trace), robot::ceiling(trace));
+            let (friction, ceiling) = (robot::friction_score(trace).r2, robot::ceiling(trace));
             writeln!(
                 page,
                 "| {} | {} | {:.4} | {friction:.4} | {ceiling:.4} |",
@@ -183,14 +184,14 @@ fn robots(page: &mut String, files: &mut Files, axes: &[Outcome], formula: &Outc
         formula.tests.iter().map(|t| format!("{:.4} on {}", t.score.r2, t.label)).collect::<Vec<_>>().join(", ")
     )?;
     let axis3 = &axes[2];
-    let known = robot::stribeck_r2(axis3);
+    let known = robot::known_form_scores(axis3, KnownForm::Stribeck);
     writeln!(
         page,
         "\n## P9: one trajectory to another, and which input matters\n\nAxis 3. Published: friction correlates with velocity (.92, .93), not with the rigid-body torque (.02, -.37); \
          the symbolic network is\nas good as the known form.\n\n| trajectory | R2, friction, image | R2, friction, known Stribeck form |\n|---|---|---|"
     )?;
     for (trace, known) in axis3.tests.iter().zip(known) {
-        writeln!(page, "| {} | {:.4} | {known:.4} |", trace.label, robot::friction_r2(trace))?;
+        writeln!(page, "| {} | {:.4} | {:.4} |", trace.label, robot::friction_score(trace).r2, known.r2)?;
     }
     let rows: Vec<(String, f64, bool)> =
         axis3.relevance.iter().map(|row| (row.input.clone(), row.correlation.abs(), row.picked)).collect();

@@ -33,10 +33,10 @@ pub fn axis(folder: &Path, axis: usize, representation: Option<Representation>) 
     fit(&[load("A")?], &[load("B")?, load("C")?], &Joint::default(), &options, &|_| ())
 }
 
-/// R2 of friction alone, as predicted by the image.
+/// Score of friction alone, as predicted by the image.
 #[must_use]
-pub fn friction_r2(trace: &Trace) -> f64 {
-    Score::of(&trace.friction, &trace.predicted_friction).r2
+pub fn friction_score(trace: &Trace) -> Score {
+    Score::of(&trace.friction, &trace.predicted_friction)
 }
 
 /// R2 that no function of the velocity exceeds by much on this very trajectory: means of narrow bins, not held out.
@@ -52,20 +52,21 @@ pub fn ceiling(trace: &Trace) -> f64 {
     Score::of(&trace.friction, &predicted).r2
 }
 
-/// R2 of the known Stribeck form, fitted to the friction of the training trajectory, on each test trajectory.
+/// Scores of a known form on the friction of each test trajectory, fitted to that of the training trajectories.
 ///
 /// # Panics
-/// When the trajectory cannot be used, which it can once it was fitted.
+/// When the trajectories cannot be used, which they can once they were fitted.
 #[must_use]
-pub fn stribeck_r2(outcome: &Outcome) -> Vec<f64> {
-    let train = &outcome.train[0];
-    let step = train.velocity.len().div_ceil(MOST_SAMPLES).max(1);
-    let every = |column: &[f64]| column.iter().step_by(step).copied().collect::<Vec<_>>();
-    let samples = data(vec![velocity(every(&train.velocity))], every(&train.friction));
-    let law = fit_form(KnownForm::Stribeck, &samples, None).expect("a trajectory that was fitted").law;
-    let r2 = |trace: &Trace| {
-        let predicted: Vec<f64> = trace.velocity.iter().map(|v| law.expression.value(&[*v], &[])).collect();
-        Score::of(&trace.friction, &predicted).r2
+pub fn known_form_scores(outcome: &Outcome, form: KnownForm) -> Vec<Score> {
+    let rows: usize = outcome.train.iter().map(|trace| trace.velocity.len()).sum();
+    let every = |column: fn(&Trace) -> &Vec<f64>| -> Vec<f64> {
+        outcome.train.iter().flat_map(column).step_by(rows.div_ceil(MOST_SAMPLES).max(1)).copied().collect()
     };
-    outcome.tests.iter().map(r2).collect()
+    let samples = data(vec![velocity(every(|trace| &trace.velocity))], every(|trace| &trace.friction));
+    let law = fit_form(form, &samples, None).expect("trajectories that were fitted").law;
+    let score = |trace: &Trace| {
+        let predicted: Vec<f64> = trace.velocity.iter().map(|v| law.expression.value(&[*v], &[])).collect();
+        Score::of(&trace.friction, &predicted)
+    };
+    outcome.tests.iter().map(score).collect()
 }
