@@ -57,16 +57,14 @@ impl Pull {
 
     pub(super) fn energy(&self, values: &[f64]) -> f64 {
         let sizes = self.sizes(values);
-        let total: f64 = sizes.iter().sum();
-        let entropy: f64 = sizes.iter().map(|size| -size / total * (size / total).ln()).sum();
+        let (total, entropy) = total_and_entropy(&sizes);
         self.sparsity.l1 * total + self.sparsity.entropy * entropy
     }
 
     /// Change of the energy with the mean square of each edge.
     fn weights(&self, values: &[f64]) -> Vec<f64> {
         let sizes = self.sizes(values);
-        let total: f64 = sizes.iter().sum();
-        let entropy: f64 = sizes.iter().map(|size| -size / total * (size / total).ln()).sum();
+        let (total, entropy) = total_and_entropy(&sizes);
         let slope = |size: f64| self.sparsity.l1 - self.sparsity.entropy * ((size / total).ln() + entropy) / total;
         sizes.iter().map(|&size| 0.5 * slope(size) / size).collect()
     }
@@ -95,6 +93,12 @@ impl Pull {
             }
         }
     }
+}
+
+/// Sum of sizes, and the entropy of their shares in it.
+fn total_and_entropy(sizes: &[f64]) -> (f64, f64) {
+    let total: f64 = sizes.iter().sum();
+    (total, sizes.iter().map(|size| -size / total * (size / total).ln()).sum())
 }
 
 fn mean(values: &[f64]) -> f64 {
