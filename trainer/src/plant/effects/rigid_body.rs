@@ -29,7 +29,7 @@ pub(super) fn torque_scale(draws: &mut Draws, setting: &Setting) -> Mechanism {
 
 /// A cable or a balancer, with a little hysteresis of its own.
 pub(super) fn spring(draws: &mut Draws, setting: &Setting) -> Mechanism {
-    let stiffness = draws.signed("stiffness_Nm_rad", 0.4, 1.0).abs();
+    let stiffness = draws.uniform("stiffness_Nm_rad", 0.4, 1.0);
     let (low, high) = setting.range;
     let rest = draws.uniform("rest_position_rad", 0.6 * low, 0.6 * high);
     Mechanism::torque(move |m: &Moment, _| Resistance::smooth(stiffness * (m.position - rest)))
