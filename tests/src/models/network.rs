@@ -31,8 +31,8 @@ const NODE_ROWS: u16 = 4;
 /// Steps of a test network's output in one N m.
 const OUTPUT_STEPS: f64 = 16_777_216.0;
 
-/// A network of some inputs over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have `[-1, 1]` for
-/// their range.
+/// A network of some inputs over hidden layers of sums and products: sigmoids into them, sines out of their nodes, which have
+/// `[-1, 1]` for their range.
 #[must_use]
 pub fn network(inputs: usize, shapes: &[(u8, u8)]) -> TestModel {
     let reaches = &[2.0, 30.0, 60.0][..inputs];

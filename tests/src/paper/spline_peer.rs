@@ -1,6 +1,7 @@
 //! What a statistician would pick in place of a network: one least-squares cubic spline whose knots crowd about zero velocity.
 
-use frikan_trainer::kan::{Architecture, FitOptions};
+use frikan_trainer::fit::outcome::Score;
+use frikan_trainer::kan::{Architecture, FitOptions, Grid, SplineBasis};
 use nalgebra::{DMatrix, DVector};
 
 use super::network::{learn_with, noisy_options};
@@ -17,10 +18,9 @@ pub fn at_equal_count(joint: usize, share: f64, seed: u64) -> [f64; 2] {
     let options = FitOptions { architecture, restarts: 8, ..noisy_options(seed) };
     let learnt = learn_with(joint, share, seed, &options);
     let spline = SinhSpline::fit(&learnt.samples.velocity, &learnt.samples.noisy, COEFFICIENTS);
-    let test = &learnt.test_velocity;
-    let square = |v: &f64| (spline.value(*v) - friction(JOINTS[joint], *v)).powi(2);
-    let spline_rmse = (test.iter().map(square).sum::<f64>() / test.len() as f64).sqrt();
-    [learnt.rmse[2], spline_rmse]
+    let truth: Vec<f64> = learnt.test_velocity.iter().map(|v| friction(JOINTS[joint], *v)).collect();
+    let predicted: Vec<f64> = learnt.test_velocity.iter().map(|v| spline.value(*v)).collect();
+    [learnt.rmse[2], Score::of(&truth, &predicted).rmse]
 }
 
 /// Polynomial order.
@@ -31,7 +31,7 @@ const WARPS: [f64; 8] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 /// A cubic spline over `[-1, 1]` whose inner knots are equal steps of `asinh`.
 #[derive(Clone, Debug)]
 pub struct SinhSpline {
-    knots: Vec<f64>,
+    basis: SplineBasis,
     coefficients: DVector<f64>,
 }
 
@@ -44,12 +44,17 @@ impl SinhSpline {
     pub fn fit(velocity: &[f64], torque: &[f64], count: usize) -> Self {
         assert!(count > ORDER + 1 && velocity.len() >= count, "{count} coefficients from {} samples", velocity.len());
         let fits = WARPS.map(|warp| {
-            let knots = knots(count, warp);
-            let design = DMatrix::from_fn(velocity.len(), count, |row, i| basis(&knots, i, ORDER, velocity[row]));
+            let grid = Grid { order: ORDER, breaks: breaks(count - ORDER, warp) };
+            let basis = SplineBasis::new(grid).expect("breaks ascend");
+            let mut design = DMatrix::zeros(velocity.len(), count);
+            for (row, v) in velocity.iter().enumerate() {
+                let local = basis.at(*v);
+                (0..=ORDER).for_each(|i| design[(row, local.first + i)] = local.value[i]);
+            }
             let target = DVector::from_column_slice(torque);
             let svd = design.clone().svd(true, true);
             let coefficients = svd.solve(&target, 1e-12).expect("both factors were asked for");
-            ((design * &coefficients - target).norm(), Self { knots, coefficients })
+            ((design * &coefficients - target).norm(), Self { basis, coefficients })
         });
         fits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("several warps").1
     }
@@ -57,29 +62,15 @@ impl SinhSpline {
     /// Torque at a velocity in `[-1, 1]`.
     #[must_use]
     pub fn value(&self, velocity: f64) -> f64 {
-        self.coefficients.iter().enumerate().map(|(i, c)| c * basis(&self.knots, i, ORDER, velocity)).sum()
+        let local = self.basis.at(velocity);
+        (0..=ORDER).map(|i| self.coefficients[local.first + i] * local.value[i]).sum()
     }
 }
 
-/// Knots of `count` basis functions, the ends four times.
-fn knots(count: usize, warp: f64) -> Vec<f64> {
-    let cells = count - ORDER;
-    let inner = (1..cells).map(|i| (warp * (2.0 * i as f64 / cells as f64 - 1.0)).sinh() / warp.sinh());
-    let end = [1.0; ORDER + 1];
-    end.map(|v| -v).into_iter().chain(inner).chain(end).collect()
-}
-
-/// B-spline `i` of a degree at `x` (de Boor 1972), the last one closed on the right.
-fn basis(knots: &[f64], i: usize, degree: usize, x: f64) -> f64 {
-    if degree == 0 {
-        let last = knots[i + 1] == knots[knots.len() - 1] && x >= knots[i + 1];
-        return f64::from(u8::from(knots[i] <= x && x < knots[i + 1] || last && knots[i] < knots[i + 1]));
-    }
-    let part = |weight: f64, width: f64, i: usize| {
-        if width > 0.0 { weight / width * basis(knots, i, degree - 1, x) } else { 0.0 }
-    };
-    part(x - knots[i], knots[i + degree] - knots[i], i)
-        + part(knots[i + degree + 1] - x, knots[i + degree + 1] - knots[i + 1], i + 1)
+/// Boundaries of `cells` cells over `[-1, 1]` in equal steps of `asinh`.
+fn breaks(cells: usize, warp: f64) -> Vec<f64> {
+    let step = |i: usize| 2.0 * i as f64 / cells as f64 - 1.0;
+    (0..=cells).map(|i| (warp * step(i)).sinh() / warp.sinh()).collect()
 }
 
 #[cfg(test)]

@@ -19,13 +19,14 @@ impl Round<'_, '_> {
         let settings = &self.search.settings;
         let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
         let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
-        let named = table.iter().filter(is_named).find(passes);
+        let passing_names = || table.iter().filter(is_named).filter(passes);
+        let named = passing_names().next();
         let generic = table.iter().filter(|s| !is_named(s)).find(passes);
         let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
         // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
         // much, whitened or not, is kept.
         let nearly = |generic: &Scored| {
-            table.iter().filter(is_named).filter(passes).find(|s| {
+            passing_names().find(|s| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
                     || s.evidence.statistic >= NEARLY_AS_MUCH * generic.evidence.statistic
             })
@@ -42,13 +43,13 @@ impl Round<'_, '_> {
                 let lasting = |s: &&Scored| {
                     s.label != named.label && s.evidence.criterion > named.score - settings.ambiguity_margin
                 };
-                table.iter().filter(is_named).filter(passes).find(lasting).unwrap_or(named)
+                passing_names().find(lasting).unwrap_or(named)
             }
             (Some(named), _) => named,
             (None, Some(generic)) => generic,
             (None, None) => return None,
         };
-        let best = self.plainest(best, table.iter().filter(is_named).filter(passes));
+        let best = self.plainest(best, passing_names());
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;

@@ -32,7 +32,7 @@ pub(super) fn finding(
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
-    let locked = prove_alone(search, all, index).map(|proof| proof.gain_nats);
+    let locked = prove_alone(search, all, index, improved).map(|proof| proof.gain_nats);
     let evidence = format!(
         "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {}, {} rival{} within reach",
         found.score,

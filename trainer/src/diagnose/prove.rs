@@ -50,11 +50,11 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     })
 }
 
-/// The proof of one effect given all the others. `None` where nothing is locked.
-pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize) -> Option<Proof> {
+/// The proof of one effect given all the others; `all` is the refit of every one of them. `None` where nothing is locked.
+pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize, all: &Refit) -> Option<Proof> {
     let mut others = accepted.to_vec();
     others.remove(index);
-    prove(search, &refit(search, &others)?, &refit(search, accepted)?)
+    prove(search, &refit(search, &others)?, all)
 }
 
 /// What a refit leaves at every working row.

@@ -1,4 +1,4 @@
-//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, ranked.
+//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
 use super::candidates::{Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};

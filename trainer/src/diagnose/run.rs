@@ -160,15 +160,16 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
 /// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for or against it.
 fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
-    loop {
-        let unproven =
-            (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent).filter_map(|i| {
-                let proof = prove_alone(search, accepted, i)?;
-                is_unproven(&accepted[i], &proof, search.settings.least_score).then_some((i, proof.gain_nats))
-            });
-        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { return withdrawn };
+    while let Some(all) = refit(search, accepted) {
+        let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
+        let unproven = lasting.filter_map(|i| {
+            let proof = prove_alone(search, accepted, i, &all)?;
+            is_unproven(&accepted[i], &proof, search.settings.least_score).then_some((i, proof.gain_nats))
+        });
+        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
     }
+    withdrawn
 }
 
 /// Whether all rows together no longer carry an effect, or the error on locked rows grows by it beyond doubt.

@@ -1,5 +1,5 @@
-//! Pulls superfluous edges towards nothing: the sizes of all edges are summed (l1), and their distribution over the network is made
-//! uneven (entropy), after Liu et al. (2024).
+//! Pulls superfluous edges towards nothing: the sizes of all edges are summed (l1), and their distribution over the network
+//! is made uneven (entropy), after Liu et al. (2024).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,25 +1,15 @@
 //! Other people's recordings, read from `../shared/recordings`: every one loads, and published figures come back.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use frikan_tests::recordings;
 use frikan_trainer::joint::Joint;
 use frikan_trainer::recording::{self, Recording};
 use frikan_trainer::samples::regression::least_squares;
 use frikan_trainer::samples::relevance::relevance;
 use frikan_trainer::samples::rigid_body::{TermKind, separate};
 use frikan_trainer::samples::{Preparation, Request, Samples, prepare, prepare_every_row};
-
-/// The folder of recordings; `None`, said aloud, where it is absent. In CI its absence is a failure.
-fn recordings() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(std::env::var_os("CI").is_none(), "{} is absent", folder.display());
-    eprintln!("skipped: {} is absent", folder.display());
-    None
-}
 
 fn load(path: &Path, joint: &Joint) -> Recording {
     recording::load(path, joint).unwrap_or_else(|error| panic!("{error}"))
