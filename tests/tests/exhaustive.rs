@@ -68,13 +68,31 @@ fn agrees(name: &str, model: &TestModel) {
     assert_eq!(exception, None, "{name}");
 }
 
-#[test]
-fn one_input_models_agree_at_every_input() {
-    for (name, model) in models::every_law() {
-        if model.inputs.len() == 1 {
-            agrees(name, &model);
-        }
+fn one_input_models_agree(is_asked: impl Fn(&Law) -> bool) {
+    let asked = |model: &TestModel| model.inputs.len() == 1 && is_asked(&model.law);
+    for (name, model) in models::every_law().into_iter().filter(|(_, model)| asked(model)) {
+        agrees(name, &model);
     }
+}
+
+#[test]
+fn tables_agree_at_every_input() {
+    one_input_models_agree(|law| matches!(law, Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_)));
+}
+
+#[test]
+fn the_stribeck_expression_agrees_at_every_input() {
+    agrees("Stribeck expression", &models::stribeck_expression());
+}
+
+#[test]
+fn an_expression_of_every_operation_agrees_at_every_input() {
+    agrees("every operation", &models::every_operation());
+}
+
+#[test]
+fn networks_agree_at_every_input() {
+    one_input_models_agree(|law| matches!(law, Law::Network(_)));
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn network_value(network: &Network, cells: &[Cell], inputs: &[f32]) -> f32 {
 }
 
 fn program_value(program: &Program, inputs: &[f32]) -> f32 {
-    let mut stack: Vec<f32> = Vec::new();
+    let mut stack: Vec<f32> = Vec::with_capacity(program.operations.len());
     for operation in &program.operations {
         let mut pop = || stack.pop().expect("a validated program has its operands");
         let value = match *operation {

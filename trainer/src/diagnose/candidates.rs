@@ -1,6 +1,6 @@
 //! Every hypothesis as filtered columns: the named effects of the catalogue and the generic rivals.
 
-use super::generic::{Generic, generic_columns, generic_rivals};
+use super::generic::{Generic, generic_rivals};
 use super::prepare::Prepared;
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ pub(crate) fn ridge_of(label: &Label, shape: &[f64]) -> Vec<f64> {
 /// One shape of a group and the columns that it occupies.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// Shape parameters (for a generic rival: the order of its series).
+    /// Shape parameters.
     pub shape: Shape,
     /// Columns of the design.
     pub columns: Range<usize>,
@@ -107,20 +107,15 @@ impl Design {
         let rivals = generic_rivals(&prepared.state);
         let built: Vec<Vec<Vec<f64>>> = rivals
             .par_iter()
-            .map(|rival| {
-                generic_columns(&prepared.state, *rival, rival.longest())
-                    .iter()
-                    .map(|raw| prepared.filtered(raw))
-                    .collect()
-            })
+            .map(|rival| rival.pool(&prepared.state).iter().map(|raw| prepared.filtered(raw)).collect())
             .collect();
         for (rival, columns) in rivals.into_iter().zip(built) {
             let begin = self.columns.len();
             self.columns.extend(columns);
             let variants = rival
-                .shapes()
+                .variants(&prepared.state)
                 .into_iter()
-                .map(|shape| Variant { columns: begin..begin + rival.width(shape[0] as usize), shape })
+                .map(|(shape, place)| Variant { shape, columns: begin + place.start..begin + place.end })
                 .collect();
             self.groups.push(Group { label: Label::Generic(rival), variants });
         }

@@ -28,7 +28,7 @@ pub(super) fn finding(
     let location = locate(search, improved, index);
     let equation = match &found.label {
         Label::Named(id) => search.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
-        Label::Generic(rival) => format!("dF = {} c({})", rival.factor.text(), rival.channel.name()),
+        Label::Generic(rival) => rival.equation(&found.shape),
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");

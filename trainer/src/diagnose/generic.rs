@@ -1,6 +1,9 @@
-//! Structures without a name: a factor of velocity times a free function of a channel.
+//! Structures without a name: a factor of velocity times a function of a channel.
 
+use super::channel::Channel;
+use crate::figures::digits;
 use crate::physics::{JointState, Shape};
+use std::ops::Range;
 
 /// A generic rival: `factor(v) * c(channel)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,38 +12,110 @@ pub struct Generic {
     pub factor: Factor,
     /// Channel on which it depends.
     pub channel: Channel,
+    /// What is known of the function of the channel.
+    pub form: Form,
+}
+
+/// The function of the channel in a generic rival.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Any: a cosine series of the channel's rank.
+    Free,
+    /// Linear and quadratic in the channel: it goes beyond the values that it was fitted on.
+    Quadratic,
+    /// A bump at one narrow place of the channel.
+    Place,
 }
 
 impl Generic {
-    /// Shapes of its cosine series: order, and strength of the prior (0 for none).
-    pub(super) fn shapes(self) -> Vec<Shape> {
-        let most = match (self.factor, self.channel) {
-            (Factor::Sign, Channel::Position) => NARROW_ORDER,
-            _ => GENERIC_ORDERS[1],
+    /// Its shapes, each with the place of its columns in [`Self::pool`]. A free function: order of the cosine series and
+    /// strength of the prior (0 for none); a place: where and how wide, in units of the channel.
+    pub(super) fn variants(self, state: &JointState) -> Vec<(Shape, Range<usize>)> {
+        match self.form {
+            Form::Free => {
+                let width = |order: f64| order as usize + 1 - self.factor.first_order();
+                self.free_shapes().into_iter().map(|shape| (shape.clone(), 0..width(shape[0]))).collect()
+            }
+            Form::Quadratic => vec![(Vec::new(), 0..2)],
+            Form::Place => self.places(state).into_iter().enumerate().map(|(i, shape)| (shape, i..i + 1)).collect(),
+        }
+    }
+
+    /// The columns of all its shapes, at the recording's rate.
+    pub(super) fn pool(self, state: &JointState) -> Vec<Vec<f64>> {
+        match self.form {
+            Form::Free => self.columns(state, &[self.longest() as f64, 0.0]),
+            Form::Quadratic => self.columns(state, &[]),
+            Form::Place => self.places(state).iter().flat_map(|shape| self.columns(state, shape)).collect(),
+        }
+    }
+
+    /// The columns of one shape, at the recording's rate; none where the recording lacks a channel.
+    pub(super) fn columns(self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let Some((series, factor)) = self.channel.series(state).zip(self.factor.series(state)) else {
+            return Vec::new();
         };
-        let free = [GENERIC_ORDERS[0], most].map(|order| vec![order as f64, 0.0]);
-        let smooth = PRIOR_STRENGTHS.map(|strength| vec![most as f64, strength]);
-        free.into_iter().chain(smooth).filter(|shape| !self.has_a_name(shape)).collect()
+        let times_factor = |function: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            series.iter().zip(&factor).map(|(x, f)| f * function(*x)).collect()
+        };
+        match self.form {
+            Form::Free => {
+                let mut columns = cosines(&series, &state.memory.at_rest, &factor, shape[0] as usize);
+                columns.split_off(self.factor.first_order())
+            }
+            Form::Quadratic => vec![times_factor(&|x| x), times_factor(&|x| x * x)],
+            Form::Place => vec![times_factor(&|x| (-((x - shape[0]) / shape[1]).powi(2)).exp())],
+        }
     }
 
     /// Prior precision of each coefficient over what all rows tell of it: that of a smooth function for a series with a prior,
-    /// none for another one.
+    /// none for anything else.
     pub(super) fn ridge(self, shape: &[f64]) -> Vec<f64> {
-        if shape[1] == 0.0 {
+        if self.form != Form::Free || shape[1] == 0.0 {
             return Vec::new();
         }
         let orders = self.factor.first_order()..=shape[0] as usize;
         orders.map(|j| if j == 0 { UNIT_INFORMATION } else { (j * j) as f64 / shape[1] }).collect()
     }
 
-    /// Largest order of its series.
-    pub(super) fn longest(self) -> usize {
-        self.shapes().iter().map(|shape| shape[0] as usize).max().unwrap_or(0)
+    /// How it reads as an equation.
+    pub(super) fn equation(self, shape: &[f64]) -> String {
+        let (factor, channel) = (self.factor.text(), self.channel.name());
+        match self.form {
+            Form::Free => format!("dF = {factor} c({channel})"),
+            Form::Quadratic => format!("dF = {factor} (c1 {channel} + c2 {channel}^2)"),
+            Form::Place => {
+                format!("dF = {factor} c exp(-(({channel} - {}) / {})^2)", digits(shape[0]), digits(shape[1]))
+            }
+        }
     }
 
-    /// Columns of a series up to an order.
-    pub(super) fn width(self, order: usize) -> usize {
-        order + 1 - self.factor.first_order()
+    /// Orders and strengths of the prior of a free function.
+    fn free_shapes(self) -> Vec<Shape> {
+        let longest = self.longest();
+        let free = [GENERIC_ORDERS[0], longest].map(|order| vec![order as f64, 0.0]);
+        let smooth = PRIOR_STRENGTHS.map(|strength| vec![longest as f64, strength]);
+        free.into_iter().chain(smooth).filter(|shape| !self.has_a_name(shape)).collect()
+    }
+
+    /// Largest order of its series.
+    fn longest(self) -> usize {
+        match (self.factor, self.channel) {
+            (Factor::Sign, Channel::Position) => NARROW_ORDER,
+            _ => GENERIC_ORDERS[1],
+        }
+    }
+
+    /// Places a width apart over the whole range of the channel, of every width.
+    fn places(self, state: &JointState) -> Vec<Shape> {
+        let Some(series) = self.channel.series(state) else { return Vec::new() };
+        let (low, high) = range(&series);
+        let of_width = |parts: usize| {
+            let width = (high - low) / parts as f64;
+            (0..parts).map(move |k| vec![low + (k as f64 + 0.5) * width, width])
+        };
+        let widths = if self.channel == Channel::Position { PLACES_IN_POSITION } else { PLACES_IN_RANGE };
+        widths.into_iter().flat_map(of_width).collect()
     }
 
     /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
@@ -79,6 +154,17 @@ impl Factor {
         }
     }
 
+    /// The factor at the recording's rate, where the recording has it.
+    fn series(self, state: &JointState) -> Option<Vec<f64>> {
+        match self {
+            Factor::Sign => Some(state.sign.clone()),
+            Factor::Velocity => Some(state.velocity.clone()),
+            Factor::One => Some(vec![1.0; state.len()]),
+            Factor::VelocitySquared => Some(state.velocity.iter().map(|v| v * v).collect()),
+            Factor::LoadSign => state.load.as_ref().map(|load| state.map(|i| load[i].abs() * state.sign[i])),
+        }
+    }
+
     /// How the factor reads in an equation.
     pub fn text(self) -> &'static str {
         match self {
@@ -91,85 +177,6 @@ impl Factor {
     }
 }
 
-/// Channel or derived axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
-    /// Position.
-    Position,
-    /// Speed |v|.
-    Speed,
-    /// Transmitted load.
-    Load,
-    /// Temperature.
-    Temperature,
-    /// Time.
-    Time,
-    /// Acceleration.
-    Acceleration,
-    /// Distance since the last reversal.
-    DistanceSinceReversal,
-    /// Time since the last reversal.
-    TimeSinceReversal,
-    /// Length of the stop before the present motion.
-    Dwell,
-    /// Velocity of another joint.
-    OtherJoint(usize),
-    /// Position of another joint.
-    OtherPosition(usize),
-}
-
-impl Channel {
-    /// The name that reports and scripts see.
-    pub fn name(self) -> &'static str {
-        match self {
-            Channel::Position => "position",
-            Channel::Speed => "velocity",
-            Channel::Load => "load",
-            Channel::Temperature => "temperature",
-            Channel::Time => "time",
-            Channel::Acceleration => "acceleration",
-            Channel::DistanceSinceReversal => "distance_since_reversal",
-            Channel::TimeSinceReversal => "time_since_reversal",
-            Channel::Dwell => "dwell",
-            Channel::OtherJoint(_) => "other_velocity",
-            Channel::OtherPosition(_) => "other_position",
-        }
-    }
-
-    /// The axes along which a finding is located, velocity apart: it keeps its sign there.
-    pub fn axes(state: &JointState) -> Vec<Channel> {
-        let mut axes = vec![
-            Channel::Position,
-            Channel::Load,
-            Channel::Temperature,
-            Channel::Acceleration,
-            Channel::DistanceSinceReversal,
-            Channel::TimeSinceReversal,
-            Channel::Dwell,
-            Channel::Time,
-        ];
-        axes.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
-        axes
-    }
-
-    /// The series of this channel, where the recording has it.
-    pub fn series(self, state: &JointState) -> Option<Vec<f64>> {
-        match self {
-            Channel::Position => Some(state.position.clone()),
-            Channel::Speed => Some(state.velocity.iter().map(|v| v.abs()).collect()),
-            Channel::Load => state.load.clone(),
-            Channel::Temperature => state.temperature.clone(),
-            Channel::Time => Some(state.time.clone()),
-            Channel::Acceleration => Some(state.acceleration.clone()),
-            Channel::DistanceSinceReversal => Some(state.memory.distance.clone()),
-            Channel::TimeSinceReversal => Some(state.memory.elapsed.clone()),
-            Channel::Dwell => Some(state.memory.dwell.clone()),
-            Channel::OtherJoint(joint) => state.other_joints.get(joint).map(|other| other.velocity.clone()),
-            Channel::OtherPosition(joint) => state.other_joints.get(joint).map(|other| other.position.clone()),
-        }
-    }
-}
-
 /// Orders of the cosine series of a generic rival.
 const GENERIC_ORDERS: [usize; 2] = [3, 12];
 /// Non-centralities that the prior of a series expects of its first coefficient; the others fall with the square of their order.
@@ -178,58 +185,59 @@ const PRIOR_STRENGTHS: [f64; 3] = [20.0, 200.0, 2000.0];
 const UNIT_INFORMATION: f64 = 1e-4;
 /// Order for position, where a narrow place matters.
 const NARROW_ORDER: usize = 20;
+/// Widths of a place, as parts of the channel's range: of position, where a damaged tooth is narrow, and of other channels.
+const PLACES_IN_POSITION: [usize; 2] = [32, 64];
+const PLACES_IN_RANGE: [usize; 2] = [8, 16];
 
 /// The generic rivals that the channels allow.
 pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
     let mut rivals = Vec::new();
-    let mut add = |factors: &[Factor], channel: Channel| {
+    let mut add = |factors: &[Factor], channel: Channel, form: Form| {
         let Some(series) = channel.series(state) else { return };
-        let (low, high) = series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let (low, high) = range(&series);
         if high > low {
-            rivals.extend(factors.iter().map(|&factor| Generic { factor, channel }));
+            rivals.extend(factors.iter().map(|&factor| Generic { factor, channel, form }));
         }
     };
     let all = [Factor::Sign, Factor::Velocity, Factor::One];
     for channel in [Channel::Position, Channel::Load, Channel::Temperature, Channel::Time, Channel::Acceleration] {
-        add(&all, channel);
+        add(&all, channel, Form::Free);
     }
-    add(&[Factor::VelocitySquared], Channel::Position);
+    add(&[Factor::VelocitySquared], Channel::Position, Form::Free);
     if state.load.is_some() {
-        add(&[Factor::LoadSign], Channel::Position);
-        add(&[Factor::LoadSign], Channel::Temperature);
+        add(&[Factor::LoadSign], Channel::Position, Form::Free);
+        add(&[Factor::LoadSign], Channel::Temperature, Form::Free);
     }
-    add(&[Factor::Sign, Factor::One], Channel::Speed);
-    add(&[Factor::Sign], Channel::DistanceSinceReversal);
-    add(&[Factor::Sign], Channel::TimeSinceReversal);
+    add(&[Factor::Sign, Factor::One], Channel::Speed, Form::Free);
+    add(&[Factor::Sign], Channel::DistanceSinceReversal, Form::Free);
+    add(&[Factor::Sign], Channel::TimeSinceReversal, Form::Free);
     for joint in 0..state.other_joints.len() {
-        add(&all, Channel::OtherJoint(joint));
-        add(&all, Channel::OtherPosition(joint));
+        add(&all, Channel::OtherJoint(joint), Form::Free);
+        add(&all, Channel::OtherPosition(joint), Form::Free);
+    }
+    add(&[Factor::Sign, Factor::Velocity], Channel::Load, Form::Quadratic);
+    for channel in [Channel::Position, Channel::Speed, Channel::Temperature] {
+        add(&[Factor::Sign], channel, Form::Place);
     }
     rivals
 }
 
-/// Cosine series of the rank-transformed channel times the factor, at the recording's rate.
-pub(crate) fn generic_columns(state: &JointState, rival: Generic, order: usize) -> Vec<Vec<f64>> {
-    let Some(series) = rival.channel.series(state) else { return Vec::new() };
-    let rank = rank_transform(&series, &state.memory.at_rest);
-    let factor: Vec<f64> = match rival.factor {
-        Factor::Sign => state.sign.clone(),
-        Factor::Velocity => state.velocity.clone(),
-        Factor::One => vec![1.0; state.len()],
-        Factor::VelocitySquared => state.velocity.iter().map(|v| v * v).collect(),
-        Factor::LoadSign => match &state.load {
-            Some(load) => state.map(|i| load[i].abs() * state.sign[i]),
-            None => return Vec::new(),
-        },
-    };
+/// Smallest and largest value.
+fn range(series: &[f64]) -> (f64, f64) {
+    series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
+/// Cosine series of the rank-transformed channel times the factor, up to an order.
+fn cosines(series: &[f64], at_rest: &[bool], factor: &[f64], order: usize) -> Vec<Vec<f64>> {
+    let rank = rank_transform(series, at_rest);
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();
-    let mut columns: Vec<Vec<f64>> = vec![factor.clone(), base.iter().zip(&factor).map(|(c, f)| c * f).collect()];
+    let mut columns = vec![factor.to_vec(), base.iter().zip(factor).map(|(c, f)| c * f).collect()];
     for j in 2..=order {
-        let next = (0..state.len()).map(|i| 2.0 * base[i] * columns[j - 1][i] - columns[j - 2][i]).collect();
+        let next = (0..series.len()).map(|i| 2.0 * base[i] * columns[j - 1][i] - columns[j - 2][i]).collect();
         columns.push(next);
     }
-    columns.split_off(rival.factor.first_order())
+    columns
 }
 
 /// Rank of each value among 512 quantiles of what the series takes in motion, interpolated, in [0, 1].

@@ -1,7 +1,7 @@
 //! Where a finding sits: evidence density along time and every channel, and the interval that holds most of it.
 
+use super::channel::Channel;
 use super::conclude::{Refit, weighted};
-use super::generic::Channel;
 use super::prove::rest;
 use super::search::Search;
 use std::ops::Range;

@@ -3,7 +3,7 @@
 use super::base::Base;
 use super::candidates::{Design, Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence};
-use super::generic::{Generic, generic_columns};
+use super::generic::Generic;
 use super::linear::residual;
 use super::noise::Noise;
 use super::prepare::Prepared;
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
             Label::Named(effect) => {
                 self.hypothesis(*effect).map(|h| h.columns(&self.prepared.state, shape)).unwrap_or_default()
             }
-            Label::Generic(rival) => generic_columns(&self.prepared.state, *rival, shape[0] as usize),
+            Label::Generic(rival) => rival.columns(&self.prepared.state, shape),
         }
     }
 

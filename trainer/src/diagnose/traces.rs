@@ -1,7 +1,7 @@
 //! What a report draws: torque, residuals before and after, the torque of each effect and every channel, at working rows.
 
+use super::channel::Channel;
 use super::conclude::{Refit, weighted};
-use super::generic::Channel;
 use super::localise::{Region, locate_density};
 use super::prove::rest;
 use super::search::Search;
