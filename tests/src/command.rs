@@ -13,8 +13,9 @@ pub fn trainer() -> &'static Path {
     PROGRAM.get_or_init(|| {
         let mut build = Command::new(env!("CARGO"));
         build.args(["build", "--quiet", "--package", "frikan-trainer", "--bin", "trainer"]);
-        let test = std::env::current_exe().expect("a test has a path");
-        let profile = test.ancestors().nth(2).expect("a test lies in target/PROFILE/deps").to_owned();
+        let this = std::env::current_exe().expect("a program has a path");
+        let below_target = |folder: &&Path| !folder.ends_with("deps");
+        let profile = this.ancestors().skip(1).find(below_target).expect("it lies in target/PROFILE[/deps]").to_owned();
         if profile.ends_with("release") {
             build.arg("--release");
         }

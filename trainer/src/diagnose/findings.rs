@@ -5,6 +5,8 @@ use super::base::Base;
 use super::candidates::Label;
 use super::conclude::{Fitted, Refit, unit_text};
 use super::confidence::{alternatives, probability};
+
+use super::formula;
 use super::health::HealthNote;
 use super::localise::{Location, locate};
 use super::outcome::Finding;
@@ -28,7 +30,7 @@ pub(super) fn finding(
     let location = locate(search, improved, index);
     let equation = match &found.label {
         Label::Named(id) => search.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
-        Label::Generic(rival) => rival.equation(&found.shape),
+        Label::Generic(rival) => formula::equation(search, all, index, *rival, &improved.noise),
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");

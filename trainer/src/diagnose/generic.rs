@@ -1,7 +1,7 @@
 //! Structures without a name: a factor of velocity times a function of a channel.
 
 use super::channel::Channel;
-use crate::figures::digits;
+use super::form::Form;
 use crate::physics::{JointState, Shape};
 use std::ops::Range;
 
@@ -16,37 +16,28 @@ pub struct Generic {
     pub form: Form,
 }
 
-/// The function of the channel in a generic rival.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Any: a cosine series of the channel's rank.
-    Free,
-    /// Linear and quadratic in the channel: it goes beyond the values that it was fitted on.
-    Quadratic,
-    /// A bump at one narrow place of the channel.
-    Place,
-}
-
 impl Generic {
-    /// Its shapes, each with the place of its columns in [`Self::pool`]. A free function: order of the cosine series and
-    /// strength of the prior (0 for none); a place: where and how wide, in units of the channel.
+    /// Its shapes, each with the place of its columns in [`Self::pool`]. Of a free function: order of the cosine series and
+    /// strength of the prior (0 for none); of a form, see there.
     pub(super) fn variants(self, state: &JointState) -> Vec<(Shape, Range<usize>)> {
-        match self.form {
-            Form::Free => {
-                let width = |order: f64| order as usize + 1 - self.factor.first_order();
-                self.free_shapes().into_iter().map(|shape| (shape.clone(), 0..width(shape[0]))).collect()
-            }
-            Form::Quadratic => vec![(Vec::new(), 0..2)],
-            Form::Place => self.places(state).into_iter().enumerate().map(|(i, shape)| (shape, i..i + 1)).collect(),
+        if self.form == Form::Free {
+            let width = |order: f64| order as usize + 1 - self.factor.first_order();
+            return self.free_shapes().into_iter().map(|shape| (shape.clone(), 0..width(shape[0]))).collect();
         }
+        let mut end = 0;
+        let place = |shape: Shape| {
+            let begin = end;
+            end += self.texts(&shape).len();
+            (shape, begin..end)
+        };
+        self.grid(state).into_iter().map(place).collect()
     }
 
     /// The columns of all its shapes, at the recording's rate.
     pub(super) fn pool(self, state: &JointState) -> Vec<Vec<f64>> {
         match self.form {
             Form::Free => self.columns(state, &[self.longest() as f64, 0.0]),
-            Form::Quadratic => self.columns(state, &[]),
-            Form::Place => self.places(state).iter().flat_map(|shape| self.columns(state, shape)).collect(),
+            _ => self.grid(state).iter().flat_map(|shape| self.columns(state, shape)).collect(),
         }
     }
 
@@ -55,17 +46,42 @@ impl Generic {
         let Some((series, factor)) = self.channel.series(state).zip(self.factor.series(state)) else {
             return Vec::new();
         };
-        let times_factor = |function: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            series.iter().zip(&factor).map(|(x, f)| f * function(*x)).collect()
-        };
-        match self.form {
-            Form::Free => {
-                let mut columns = cosines(&series, &state.memory.at_rest, &factor, shape[0] as usize);
-                columns.split_off(self.factor.first_order())
-            }
-            Form::Quadratic => vec![times_factor(&|x| x), times_factor(&|x| x * x)],
-            Form::Place => vec![times_factor(&|x| (-((x - shape[0]) / shape[1]).powi(2)).exp())],
+        if self.form == Form::Free {
+            let mut columns = cosines(&series, &state.memory.at_rest, &factor, shape[0] as usize);
+            return columns.split_off(self.factor.first_order());
         }
+        let mut columns = vec![Vec::with_capacity(series.len()); self.form.texts(shape, "").len()];
+        for (x, f) in series.iter().zip(&factor) {
+            columns.iter_mut().zip(self.form.values(shape, *x)).for_each(|(column, value)| column.push(f * value));
+        }
+        if self.has_constant() {
+            columns.push(factor);
+        }
+        columns
+    }
+
+    /// Shapes of its form over the range of the channel.
+    pub(super) fn grid(self, state: &JointState) -> Vec<Shape> {
+        let widths = if self.channel == Channel::Position { PLACES_IN_POSITION } else { PLACES_IN_RANGE };
+        self.range(state).map(|range| self.form.grid(range, widths)).unwrap_or_default()
+    }
+
+    /// Range of the channel, where the recording has it and it moves.
+    pub(super) fn range(self, state: &JointState) -> Option<(f64, f64)> {
+        let series = self.channel.series(state)?;
+        let wider = |(low, high): (f64, f64), value: &f64| (low.min(*value), high.max(*value));
+        Some(series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), wider)).filter(|(low, high)| high > low)
+    }
+
+    /// How the functions read that its coefficients of one shape belong to; nothing stands for a constant.
+    pub(super) fn texts(self, shape: &[f64]) -> Vec<String> {
+        let constant = self.has_constant().then(String::new);
+        self.form.texts(shape, self.channel.name()).into_iter().chain(constant).collect()
+    }
+
+    /// Whether a constant belongs to its form: where the base does not hold the factor, and it is no bump upon nothing.
+    fn has_constant(self) -> bool {
+        self.factor.first_order() == 0 && matches!(self.form, Form::Quadratic | Form::Wave | Form::Step)
     }
 
     /// Prior precision of each coefficient over what all rows tell of it: that of a smooth function for a series with a prior,
@@ -76,18 +92,6 @@ impl Generic {
         }
         let orders = self.factor.first_order()..=shape[0] as usize;
         orders.map(|j| if j == 0 { UNIT_INFORMATION } else { (j * j) as f64 / shape[1] }).collect()
-    }
-
-    /// How it reads as an equation.
-    pub(super) fn equation(self, shape: &[f64]) -> String {
-        let (factor, channel) = (self.factor.text(), self.channel.name());
-        match self.form {
-            Form::Free => format!("dF = {factor} c({channel})"),
-            Form::Quadratic => format!("dF = {factor} (c1 {channel} + c2 {channel}^2)"),
-            Form::Place => {
-                format!("dF = {factor} c exp(-(({channel} - {}) / {})^2)", digits(shape[0]), digits(shape[1]))
-            }
-        }
     }
 
     /// Orders and strengths of the prior of a free function.
@@ -104,18 +108,6 @@ impl Generic {
             (Factor::Sign, Channel::Position) => NARROW_ORDER,
             _ => GENERIC_ORDERS[1],
         }
-    }
-
-    /// Places a width apart over the whole range of the channel, of every width.
-    fn places(self, state: &JointState) -> Vec<Shape> {
-        let Some(series) = self.channel.series(state) else { return Vec::new() };
-        let (low, high) = range(&series);
-        let of_width = |parts: usize| {
-            let width = (high - low) / parts as f64;
-            (0..parts).map(move |k| vec![low + (k as f64 + 0.5) * width, width])
-        };
-        let widths = if self.channel == Channel::Position { PLACES_IN_POSITION } else { PLACES_IN_RANGE };
-        widths.into_iter().flat_map(of_width).collect()
     }
 
     /// Whether the catalogue has a name for it: broad functions of position that turn with the direction are
@@ -193,11 +185,8 @@ const PLACES_IN_RANGE: [usize; 2] = [8, 16];
 pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
     let mut rivals = Vec::new();
     let mut add = |factors: &[Factor], channel: Channel, form: Form| {
-        let Some(series) = channel.series(state) else { return };
-        let (low, high) = range(&series);
-        if high > low {
-            rivals.extend(factors.iter().map(|&factor| Generic { factor, channel, form }));
-        }
+        let of_factor = |&factor| Generic { factor, channel, form };
+        rivals.extend(factors.iter().map(of_factor).filter(|rival| rival.range(state).is_some()));
     };
     let all = [Factor::Sign, Factor::Velocity, Factor::One];
     for channel in [Channel::Position, Channel::Load, Channel::Temperature, Channel::Time, Channel::Acceleration] {
@@ -220,11 +209,6 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
         add(&[Factor::Sign], channel, Form::Place);
     }
     rivals
-}
-
-/// Smallest and largest value.
-fn range(series: &[f64]) -> (f64, f64) {
-    series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
 /// Cosine series of the rank-transformed channel times the factor, up to an order.

@@ -34,6 +34,9 @@ const UNIT_FACTORS: [(f64, &str); 6] = [
     (0.001, "units taken for milli-units"),
 ];
 
+/// How near a factor has to be to that of a unit: a body of the wrong mass may come close to it by chance.
+const AS_A_UNIT_LEAVES: std::ops::Range<f64> = 0.9..1.11;
+
 /// Looks at the signals alone.
 pub fn examine(signals: &Signals) -> Vec<HealthNote> {
     let mut notes = Vec::new();
@@ -149,7 +152,7 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
                 "the {name} enters with factor {factor:.3}: its sign is opposite to the recording's"
             ));
         }
-        let story = UNIT_FACTORS.iter().find(|(wanted, _)| given && (0.8..1.25).contains(&(factor / wanted)));
+        let story = UNIT_FACTORS.iter().find(|(wanted, _)| given && AS_A_UNIT_LEAVES.contains(&(factor / wanted)));
         if let Some((_, story)) = story {
             return wrong(format!("the {name} enters with factor {factor:.4}, as with {story}"));
         }

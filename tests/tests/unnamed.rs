@@ -1,0 +1,46 @@
+//! What the diagnosis says of structures without a name: where they sit, and the formula that generated them.
+
+use frikan_tests::concealed::{Case, Hidden, run};
+use frikan_trainer::diagnose::BaseKind;
+use frikan_trainer::physics::EffectId;
+use frikan_trainer::plant::NoiseKind;
+
+/// Checks the numbers of the equation of an effect found at lambda 300 against what was drawn, up to their signs: an
+/// amplitude, then the shape. Each drawn parameter comes with the relative deviation that it may have.
+fn formula_holds(effect: &'static str, channels: [&str; 2], drawn: [(&str, f64); 3]) {
+    let case = Case {
+        hidden: Hidden::Effect(effect, 300.0),
+        noise: NoiseKind::Coloured,
+        base: BaseKind::CoulombViscous,
+        seed: 70,
+    };
+    let outcome = run(&case).unwrap();
+    assert_eq!(outcome.named(), [EffectId::Unknown]);
+    assert_eq!(outcome.unknown_channels(), channels);
+    let equation = &outcome.diagnosis.findings[0].equation;
+    let Some((_, formula)) = equation.split_once(&format!("{} (", channels[0])) else {
+        panic!("{equation} is no formula");
+    };
+    let words = formula.split([' ', '(', ')', '/', '^']);
+    let numbers: Vec<f64> = words.filter_map(|word| word.parse::<f64>().ok()).map(f64::abs).collect();
+    let amplitude = outcome.concealed.joint.effects[0].amplitude;
+    for (index, (name, may_deviate)) in drawn.into_iter().enumerate() {
+        let parameters = &outcome.concealed.recording.truth.parameters;
+        let (_, value) = parameters.iter().find(|(full, _)| *full == format!("{effect}.{name}")).unwrap();
+        let truth = value.abs() * if index == 0 { amplitude } else { 1.0 };
+        let deviation = (numbers[index] / truth - 1.0).abs();
+        assert!(deviation < may_deviate, "{name} is {truth}, in the equation {equation}");
+    }
+}
+
+#[test]
+fn a_tight_place_is_found_with_its_width() {
+    let drawn = [("level_Nm", 0.2), ("place_rad", 0.02), ("width_rad", 0.2)];
+    formula_holds("unknown_local_bump", ["tanh(v/v_eps)", "position"], drawn);
+}
+
+#[test]
+fn a_step_of_viscosity_is_found_with_its_place() {
+    let drawn = [("viscous_Nm_s_rad", 0.2), ("place_rad", 0.1), ("width_rad", 1.0)];
+    formula_holds("unknown_position_step_viscous", ["v", "position"], drawn);
+}
