@@ -136,8 +136,9 @@ fn tell(page: &mut String, case: &Case, answer: &str) -> std::fmt::Result {
     if let Some(description) = case.joint {
         writeln!(page, "with `{}` in `joint.toml`:\n", description.trim_end().replace('\n', " "))?;
     }
-    answer.lines().try_for_each(|line| match line.trim_start().strip_prefix("* ") {
+    answer.lines().enumerate().try_for_each(|(index, line)| match line.trim_start().strip_prefix("* ") {
         Some(finding) => writeln!(page, "> * {finding}"),
-        None => writeln!(page, "> {line}\n>"),
+        None if index == 0 => writeln!(page, "> {line}\n>"),
+        None => writeln!(page, ">\n> {line}"),
     })
 }
