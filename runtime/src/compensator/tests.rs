@@ -128,16 +128,15 @@ fn only_what_the_model_reads_must_be_finite() {
 /// A reset forgets the slew and the memory of the effects: the same samples give the same bits again.
 #[test]
 fn a_reset_starts_over() {
+    let motion: Vec<Measurement> = (0..50).map(|index| moving((0.3 * index as f32).sin())).collect();
     for (remembers, mut compensator) in [true, false].into_iter().zip(every_effect()) {
-        let mut run = || -> Vec<u32> {
-            (0..50).map(|index| compensator.step(&moving((0.3 * index as f32).sin()), DT).torque.to_bits()).collect()
+        let run = |compensator: &mut Compensator<16>| -> Vec<u32> {
+            motion.iter().map(|measurement| compensator.step(measurement, DT).torque.to_bits()).collect()
         };
-        let first = run();
-        assert_eq!(run() != first, remembers);
+        let first = run(&mut compensator);
+        assert_eq!(run(&mut compensator) != first, remembers);
         compensator.reset();
-        let again: Vec<u32> =
-            (0..50).map(|index| compensator.step(&moving((0.3 * index as f32).sin()), DT).torque.to_bits()).collect();
-        assert_eq!(again, first);
+        assert_eq!(run(&mut compensator), first);
     }
 }
 
