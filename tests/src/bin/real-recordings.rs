@@ -110,13 +110,14 @@ const CASES: [Case; 10] = [
 
 fn main() -> Result<()> {
     let mut page = String::from(HEAD);
-    let joint = std::env::temp_dir().join("joint.toml");
+    let joint_file = tempfile::NamedTempFile::new().map_err(|error| Error::from_io(&std::env::temp_dir(), &error))?;
+    let joint = joint_file.path();
+    let joint_path = joint.display().to_string();
     for case in CASES {
         let mut arguments = vec!["diagnose", "--quiet"];
         arguments.extend(case.arguments);
-        let joint_path = joint.display().to_string();
         if let Some(description) = case.joint {
-            std::fs::write(&joint, description).map_err(|error| Error::from_io(&joint, &error))?;
+            std::fs::write(joint, description).map_err(|error| Error::from_io(joint, &error))?;
             arguments.extend(["--joint", &joint_path]);
         }
         let answer = run(&recordings_folder(), &arguments);

@@ -5,7 +5,6 @@ use super::base::Base;
 use super::candidates::Label;
 use super::conclude::{Fitted, Refit, unit_text};
 use super::confidence::{alternatives, probability};
-
 use super::formula;
 use super::health::HealthNote;
 use super::localise::{Location, locate};

@@ -19,6 +19,9 @@ pub enum Form {
     Step,
 }
 
+/// A function of the channel.
+pub(super) type Function<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+
 /// The forms that are written as a formula.
 pub(super) const FORMULAS: [Form; 4] = [Form::Quadratic, Form::Place, Form::Wave, Form::Step];
 
@@ -70,25 +73,25 @@ impl Form {
         }
     }
 
-    /// Values of its functions at one value of the channel; none of a free one.
-    pub(super) fn values(self, shape: &[f64], x: f64) -> Vec<f64> {
+    /// Its functions of the channel; none of a free one.
+    pub(super) fn functions(self, shape: &[f64]) -> Vec<Function<'_>> {
         match self {
             Form::Free => Vec::new(),
-            Form::Quadratic => vec![x, x * x],
-            Form::Place => vec![(-((x - shape[0]) / shape[1]).powi(2)).exp()],
-            Form::Wave => vec![(shape[0] * x).cos(), (shape[0] * x).sin()],
-            Form::Step => vec![((x - shape[0]) / shape[1]).tanh()],
+            Form::Quadratic => vec![Box::new(|x| x), Box::new(|x| x * x)],
+            Form::Place => vec![Box::new(|x| (-((x - shape[0]) / shape[1]).powi(2)).exp())],
+            Form::Wave => vec![Box::new(|x| (shape[0] * x).cos()), Box::new(|x| (shape[0] * x).sin())],
+            Form::Step => vec![Box::new(|x| ((x - shape[0]) / shape[1]).tanh())],
         }
     }
 
-    /// How its functions read.
+    /// How its functions read; none of a free one.
     pub(super) fn texts(self, shape: &[f64], channel: &str) -> Vec<String> {
         let from = |place: f64| {
             let sign = if place < 0.0 { '+' } else { '-' };
             format!("({channel} {sign} {})", digits(place.abs()))
         };
         match self {
-            Form::Free => vec![format!("c({channel})")],
+            Form::Free => Vec::new(),
             Form::Quadratic => vec![channel.to_string(), format!("{channel}^2")],
             Form::Place => vec![format!("exp(-({} / {})^2)", from(shape[0]), digits(shape[1]))],
             Form::Wave => ["cos", "sin"].map(|wave| format!("{wave}({} {channel})", digits(shape[0]))).to_vec(),

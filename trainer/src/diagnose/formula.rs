@@ -14,9 +14,7 @@ use rayon::prelude::*;
 /// coefficient and each parameter of the shape is paid for (Schwarz 1978), and the formula has to be worth what the
 /// structure is as it was accepted.
 pub(super) fn equation(search: &Search, accepted: &[Accepted], index: usize, rival: Generic, noise: &Noise) -> String {
-    let found = &accepted[index];
-    let unwritten =
-        || format!("dF = {} {}", rival.factor.text(), rival.form.texts(&found.shape, rival.channel.name())[0]);
+    let unwritten = || format!("dF = {} c({})", rival.factor.text(), rival.channel.name());
     formula(search, accepted, index, rival, noise).unwrap_or_else(unwritten)
 }
 

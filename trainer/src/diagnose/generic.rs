@@ -1,7 +1,7 @@
 //! Structures without a name: a factor of velocity times a function of a channel.
 
 use super::channel::Channel;
-use super::form::Form;
+use super::form::{Form, Function};
 use crate::physics::{JointState, Shape};
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ impl Generic {
         let mut end = 0;
         let place = |shape: Shape| {
             let begin = end;
-            end += self.texts(&shape).len();
+            end += self.form.functions(&shape).len() + usize::from(self.has_constant());
             (shape, begin..end)
         };
         self.grid(state).into_iter().map(place).collect()
@@ -50,10 +50,8 @@ impl Generic {
             let mut columns = cosines(&series, &state.memory.at_rest, &factor, shape[0] as usize);
             return columns.split_off(self.factor.first_order());
         }
-        let mut columns = vec![Vec::with_capacity(series.len()); self.form.texts(shape, "").len()];
-        for (x, f) in series.iter().zip(&factor) {
-            columns.iter_mut().zip(self.form.values(shape, *x)).for_each(|(column, value)| column.push(f * value));
-        }
+        let column = |function: Function| series.iter().zip(&factor).map(|(x, f)| f * function(*x)).collect();
+        let mut columns: Vec<Vec<f64>> = self.form.functions(shape).into_iter().map(column).collect();
         if self.has_constant() {
             columns.push(factor);
         }
