@@ -8,6 +8,8 @@ use std::vec::Vec;
 
 const SLOT_BYTES: usize = 512;
 const CELLS: usize = 16;
+/// An interpreter sees a part of the cuts and bits.
+const EVERY: usize = if cfg!(miri) { 397 } else { 1 };
 
 /// An image of some length: every spring takes nine bytes.
 fn image(coulomb: f32, springs: usize) -> Vec<u8> {
@@ -111,7 +113,7 @@ fn survives_every_cut(reader: impl Fn(&[u8], &[u8]) -> Option<Vec<u8>>) -> bool 
         let next_image = image(2.0, springs);
         let written = slot(9, &next_image);
         for previous in [vec![0xFF; SLOT_BYTES], slot(7, &image(3.0, 3)), vec![0; SLOT_BYTES]] {
-            for state in cut_writes(&previous, &written) {
+            for state in cut_writes(&previous, &written).into_iter().step_by(EVERY) {
                 let whole =
                     state[..SLOT_HEADER_BYTES + next_image.len()] == written[..SLOT_HEADER_BYTES + next_image.len()];
                 let expected = Some(if whole { &next_image } else { &current_image });
@@ -151,7 +153,7 @@ fn a_cut_first_write_leaves_compensation_off() {
     let erased = vec![0xFF; SLOT_BYTES];
     let first_image = image(2.0, 1);
     let written = slot(1, &first_image);
-    for state in cut_writes(&erased, &written) {
+    for state in cut_writes(&erased, &written).into_iter().step_by(EVERY) {
         let whole = state[..SLOT_HEADER_BYTES + first_image.len()] == written[..SLOT_HEADER_BYTES + first_image.len()];
         assert_eq!(loaded(&state, &erased), if whole { Ok(Which::First) } else { Err(ImageError::NoImage) });
     }
@@ -162,7 +164,7 @@ fn a_flipped_bit_anywhere_leaves_the_other_slot_or_nothing() {
     let erased = vec![0xFF; SLOT_BYTES];
     for springs in [0, 8] {
         let (old, new) = (slot(4, &image(1.0, 0)), slot(5, &image(2.0, springs)));
-        for bit in 0..8 * (SLOT_HEADER_BYTES + image(2.0, springs).len()) {
+        for bit in (0..8 * (SLOT_HEADER_BYTES + image(2.0, springs).len())).step_by(EVERY) {
             let mut damaged = new.clone();
             damaged[bit / 8] ^= 1 << (bit % 8);
             assert_eq!(loaded(&old, &damaged), Ok(Which::First), "bit {bit}");

@@ -9,6 +9,9 @@ use std::vec::Vec;
 const KEY: Key = Key::new([0x5A; KEY_BYTES]);
 const OTHER: Key = Key::new([0x5B; KEY_BYTES]);
 
+/// An interpreter sees a part of the bits.
+const EVERY: usize = if cfg!(miri) { 97 } else { 1 };
+
 /// The image of a viscous law.
 fn plain() -> Vec<u8> {
     let operations = [Operation::ScaledInput(0, 2.0)];
@@ -60,7 +63,7 @@ fn only_the_holder_of_the_key_is_trusted() {
 #[test]
 fn every_flipped_bit_of_image_and_tag_is_refused() {
     let sound = tagged(&KEY);
-    for bit in 0..8 * sound.len() {
+    for bit in (0..8 * sound.len()).step_by(EVERY) {
         let mut forged = sound.clone();
         forged[bit / 8] ^= 1 << (bit % 8);
         assert_eq!(refusal(Trust::Key(&KEY), &forged), Some(ImageError::NotAuthentic), "bit {bit}");

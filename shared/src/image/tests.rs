@@ -9,6 +9,9 @@ use std::vec::Vec;
 
 type Pool = Model<64>;
 
+/// An interpreter sees a part of the bits.
+const EVERY: usize = if cfg!(miri) { 97 } else { 1 };
+
 fn input(quantity: Quantity) -> Input {
     Input { quantity, unit: Unit::RadianPerSecond, low: -2.0, high: 2.0 }
 }
@@ -82,7 +85,7 @@ fn images_are_small() {
 #[test]
 fn every_flipped_bit_is_found() {
     let bytes = encoded(&table_image(Symmetry::Sided));
-    for bit in 0..8 * bytes.len() {
+    for bit in (0..8 * bytes.len()).step_by(EVERY) {
         let mut damaged = bytes.clone();
         damaged[bit / 8] ^= 1 << (bit % 8);
         assert!(decode::<64>(&damaged).is_err(), "bit {bit}");
@@ -98,7 +101,7 @@ fn every_failure_has_its_error() {
         changed[at] = value;
         decode::<64>(&changed).unwrap_err()
     };
-    for length in 0..bytes.len() {
+    for length in (0..bytes.len()).step_by(EVERY) {
         assert_eq!(decode::<64>(&bytes[..length]), Err(ImageError::Truncated), "{length}");
     }
     assert_eq!(changed(0, 0), ImageError::BadMagic);
