@@ -8,6 +8,7 @@ pub mod fixtures;
 pub mod laws;
 pub mod models;
 pub mod paper;
+pub mod training_cost;
 pub mod vectors;
 
 /// Whether `FRIKAN_EXHAUSTIVE=1` asks for every draw, input or row instead of a few.

@@ -99,6 +99,10 @@ fn wrong_usage_is_2() {
         &["fit", "arm.csv"][..],
         &["fit", "arm.csv", "-o", "m.frk", "--inputs", "velocity,magnetism"],
         &["fit", "arm.csv", "-o", "m.frk", "--rate", "-1"],
+        &["fit", "arm.csv", "-o", "m.frk", "--l1", "-1"],
+        &["fit", "arm.csv", "-o", "m.frk", "--restarts", "0"],
+        &["fit", "arm.csv", "-o", "m.frk", "--network", "[1,five,1]"],
+        &["fit", "arm.csv", "-o", "m.frk", "--network", "[2,5,1]"],
         &["verify", "arm.csv", "--target", "host", "--nonsense"],
         &["nonsense"],
     ] {

@@ -12,8 +12,9 @@ use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::{Representation, Soundness};
-use crate::fit::{Budget, Options, Outcome, Progress, fit};
+use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
 use crate::joint::Joint;
+use crate::kan::{Architecture, Sparsity};
 use crate::recording::{self, Recording};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
@@ -61,6 +62,50 @@ pub struct Fit {
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
+    /// How the network is trained
+    #[command(flatten)]
+    pub training: TrainingArguments,
+}
+
+/// How the network is trained; rarely needed.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Training")]
+pub struct TrainingArguments {
+    /// Shape of the network, such as [1,5,1] or [2,[5,2],1] (five sums and two products)
+    #[arg(long, value_name = "SHAPE")]
+    pub network: Option<Architecture>,
+    /// Independent starts; the best on held-out blocks is kept
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub restarts: Option<u16>,
+    /// Most steps of one start
+    #[arg(long, value_name = "N")]
+    pub steps: Option<usize>,
+    /// How often the cells of the grids are halved, as long as held-out blocks gain
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(..=6))]
+    pub refinements: Option<u16>,
+    /// Pull of superfluous edges towards nothing: weight of the sum of their sizes
+    #[arg(long, value_name = "WEIGHT", default_value_t = 0.0)]
+    pub l1: f64,
+    /// The same: weight of the entropy of their sizes
+    #[arg(long, value_name = "WEIGHT", default_value_t = 0.0)]
+    pub entropy: f64,
+}
+
+impl TrainingArguments {
+    fn training(&self) -> Result<Training> {
+        let weight = |option: &str, weight: f64| {
+            let message = format!("`{option}` has to be a finite number, zero or above");
+            let sound = weight.is_finite() && weight >= 0.0;
+            if sound { Ok(weight) } else { Err(Error::new(&codes::USAGE, message).with_value(weight.to_string())) }
+        };
+        Ok(Training {
+            network: self.network.clone(),
+            restarts: self.restarts.map(usize::from),
+            steps: self.steps,
+            refinements: self.refinements.map(usize::from),
+            sparsity: Some(Sparsity { l1: weight("--l1", self.l1)?, entropy: weight("--entropy", self.entropy)? }),
+        })
+    }
 }
 
 /// Form of a law, as the command line spells it.
@@ -94,6 +139,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         }),
         rate_hz: arguments.rate,
         budget: Budget { bytes: arguments.max_bytes, instructions: arguments.max_instructions },
+        training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);
     let outcome = in_pool(arguments.threads, || {

@@ -13,6 +13,9 @@ use crate::samples::{Preparation, Request, Samples, prepare};
 /// Below this share of the top speed friction is no function of velocity.
 const REST_SHARE: f64 = 0.001;
 
+/// A law of a few tens of parameters learns nothing from more samples than this; only time would grow with them.
+const MOST_ROWS: usize = 200_000;
+
 /// Fewest blocks: three to learn from, one to choose by, one to compare on.
 const LEAST_BLOCKS: usize = 5;
 
@@ -34,8 +37,9 @@ pub(super) struct Material {
     pub(super) columns: Vec<RigidColumn>,
     /// `None` where friction is recorded separated.
     pub(super) separation: Option<Separation>,
-    /// Samples that are learnt from: those in motion.
+    /// Samples that are learnt from: those in motion, of a very long recording every `stride`-th.
     pub(super) rows: Vec<usize>,
+    pub(super) stride: usize,
     /// Blocks of those rows by role, as positions in `rows`.
     pub(super) split: Split,
     /// Block of each row.
@@ -75,7 +79,9 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
     };
     let columns = separation.iter().flat_map(|s| &s.terms);
     let columns = columns.map(|term| RigidColumn { kind: term.kind, values: term.column.clone() }).collect();
-    let rows = if separation.is_some() { moving(&velocity) } else { (0..velocity.len()).collect() };
+    let moving = if separation.is_some() { moving(&velocity) } else { (0..velocity.len()).collect() };
+    let stride = moving.len().div_ceil(MOST_ROWS).max(1);
+    let rows: Vec<usize> = moving.into_iter().step_by(stride).collect();
     let (correlation, cut) = cut(&samples, correlation_time(&friction, &samples.segments));
     let pieces = rows_of(&cut, &rows);
     let mut labels = vec![0; rows.len()];
@@ -83,7 +89,7 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
         labels[piece.clone()].fill(label);
     }
     let split = split(&pieces, correlation, options.seed);
-    Ok(Material { samples, target, friction, columns, separation, rows, split, labels })
+    Ok(Material { samples, target, friction, columns, separation, rows, stride, split, labels })
 }
 
 /// Blocks that can be shared out, with the correlation time that they were cut by: a recording of few correlation times is

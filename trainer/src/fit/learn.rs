@@ -3,13 +3,10 @@
 use super::activations::label_activations;
 use super::gather::Material;
 use super::inputs::ChosenInput;
-use super::options::{Progress, ProgressCallback, Stage};
+use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::NetworkStory;
 use crate::error::{Error, Result, codes};
-use crate::kan::{
-    self, Architecture, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, Smoothing,
-    prune,
-};
+use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
 use crate::samples::rigid_body::TermKind;
 
 /// Points of a drawn curve.
@@ -38,23 +35,28 @@ pub(super) struct Learnt {
 }
 
 impl Lesson {
-    pub(super) fn new(material: &Material, inputs: &[ChosenInput], seed: u64) -> Self {
+    /// # Errors
+    /// `FRK-U001` where the network that is asked for has another number of inputs.
+    pub(super) fn new(material: &Material, inputs: &[ChosenInput], options: &Options) -> Result<Self> {
         let is_offset = |kind: TermKind| kind == TermKind::TorqueOffset;
         let parameters = material.separation.iter().flat_map(|separation| &separation.parameters);
         // A network has a constant of its own, so the offset cannot be identified beside it.
         let offset = parameters.clone().find(|p| is_offset(p.kind)).map(|p| p.value);
         let own = material.columns.iter().filter(|column| !is_offset(column.kind));
-        let columns = inputs.len();
-        let text = if columns == 1 { "[1,5,1]".to_owned() } else { format!("[{columns},[5,2],1]") };
-        // The text is one of those above, which all parse.
-        let architecture = text.parse().unwrap_or_else(|_| Architecture::additive(columns, &[5]));
-        Self {
+        let training = options.training.options(inputs.len(), options.seed);
+        let wanted = training.architecture.inputs;
+        if wanted != inputs.len() {
+            let names: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
+            let message = format!("the network has {wanted} inputs, the law reads {}", inputs.len());
+            return Err(Error::new(&codes::USAGE, message).with_value(names.join(",")));
+        }
+        Ok(Self {
             inputs: inputs.iter().map(|input| input.values.clone()).collect(),
             target: material.pick(&material.target).iter().map(|total| total - offset.unwrap_or(0.0)).collect(),
             linear: own.map(|column| material.pick(&column.values)).collect(),
             offset,
-            options: FitOptions { seed, smoothing: Smoothing::Estimated, ..FitOptions::new(architecture) },
-        }
+            options: training,
+        })
     }
 
     fn dataset<'a>(&'a self, blocks: &'a Blocks) -> Dataset<'a> {

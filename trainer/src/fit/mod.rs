@@ -22,6 +22,6 @@ mod tables;
 pub use activations::label_activations;
 pub use formula::formula_of;
 pub use model::{CELLS, HostModel};
-pub use options::{Budget, Options, Progress, ProgressCallback, Stage};
+pub use options::{Budget, Options, Progress, ProgressCallback, Stage, Training};
 pub use outcome::Outcome;
 pub use run::fit;

@@ -1,6 +1,7 @@
 //! What a caller may ask of a fit, and what a fit tells while it works.
 
 use super::outcome::Representation;
+use crate::kan::{Architecture, FitOptions, Smoothing, Sparsity};
 
 /// Settings of a fit.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +16,43 @@ pub struct Options {
     pub rate_hz: Option<f64>,
     /// What the law may cost on the drive.
     pub budget: Budget,
+    /// How the network is trained.
+    pub training: Training,
+}
+
+/// How the network is trained; what is absent is as [`FitOptions::new`] has it.
+#[derive(Clone, Debug, Default)]
+pub struct Training {
+    /// Shape of the network, with as many inputs as are used; five nodes, beside two products where there are several inputs,
+    /// when absent.
+    pub network: Option<Architecture>,
+    /// Independent starts, of which the best on held-out blocks is kept.
+    pub restarts: Option<usize>,
+    /// Most steps of one start.
+    pub steps: Option<usize>,
+    /// How often the cells of the network are halved at most.
+    pub refinements: Option<usize>,
+    /// Pull of superfluous edges towards nothing.
+    pub sparsity: Option<Sparsity>,
+}
+
+impl Training {
+    /// The settings of a network of so many inputs.
+    pub(super) fn options(&self, inputs: usize, seed: u64) -> FitOptions {
+        let text = if inputs == 1 { "[1,5,1]".to_owned() } else { format!("[{inputs},[5,2],1]") };
+        // The text is one of those above, which all parse.
+        let usual = || text.parse().unwrap_or_else(|_| Architecture::additive(inputs, &[5]));
+        let plain = FitOptions::new(self.network.clone().unwrap_or_else(usual));
+        FitOptions {
+            seed,
+            smoothing: Smoothing::Estimated,
+            restarts: self.restarts.unwrap_or(plain.restarts),
+            steps: self.steps.unwrap_or(plain.steps),
+            refinements: self.refinements.unwrap_or(plain.refinements),
+            sparsity: self.sparsity.unwrap_or(plain.sparsity),
+            ..plain
+        }
+    }
 }
 
 /// Cells for which the smallest drive has room.

@@ -79,7 +79,7 @@ fn fit_once(
     let builder = Builder { material: &material, inputs: &inputs, joint, cells: options.budget.cells() };
 
     tell(Stage::Training);
-    let lesson = Lesson::new(&material, &inputs, options.seed);
+    let lesson = Lesson::new(&material, &inputs, options)?;
     let (fitted, pruned) = lesson.train(&material, progress)?;
     tell(Stage::Searching);
     let data = law_data(&material, &inputs);
@@ -126,7 +126,7 @@ fn fit_once(
         candidates: verdict.candidates,
         representation: verdict.representation,
         choice: verdict.reason,
-        remarks: remarks(&found, recordings),
+        remarks: remarks(&material, &found, recordings),
         sound: soundness(&material, &found, &learnt, by_expression),
         train_score: Score::over(&train),
         train,
@@ -267,8 +267,14 @@ fn parameters(material: &Material, found: &Found, learnt: &Learnt, by_expression
     parameters
 }
 
-fn remarks(found: &Found, recordings: &[Recording]) -> Vec<String> {
+fn remarks(material: &Material, found: &Found, recordings: &[Recording]) -> Vec<String> {
     let mut remarks = found.discovery.remarks.clone();
+    if material.stride > 1 {
+        let (stride, learnt) = (material.stride, material.rows.len());
+        remarks.push(format!(
+            "Learnt from one in {stride} of the samples in motion, {learnt} in all; scored on every row."
+        ));
+    }
     for recording in recordings {
         let notes = recording.health.notes.iter();
         remarks.extend(notes.map(|note| format!("{}: {note}", recording.label)));
