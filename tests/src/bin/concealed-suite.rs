@@ -17,25 +17,25 @@ struct Arguments {
     /// Controls of each of the five kinds.
     #[arg(long, default_value_t = 4)]
     controls: u64,
-    /// Seeds of each effect and strength.
+    /// Runs of each effect and strength.
     #[arg(long, default_value_t = 1)]
     seeds: u64,
-    /// Seeds of each structure outside the catalogue.
+    /// Runs of each structure outside the catalogue.
     #[arg(long, default_value_t = 1)]
     outside: u64,
-    /// Seeds of each pair of effects.
+    /// Runs of each pair of effects.
     #[arg(long, default_value_t = 1)]
     pairs: u64,
     /// Non-centralities.
     #[arg(long, value_delimiter = ',', default_value = "80")]
     strengths: Vec<f64>,
-    /// First seed: thresholds were fixed on seeds below 1000.
+    /// Every case has a seed of its own, from ten thousand times this on: thresholds were fixed on seeds below a million.
     #[arg(long, default_value_t = 1000)]
     first_seed: u64,
     /// Only effects of these names.
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Seeds of each effect when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law; at the last
+    /// Runs of each effect when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law; at the last
     /// strength.
     #[arg(long, default_value_t = 0)]
     bases: u64,
@@ -46,6 +46,9 @@ struct Arguments {
     #[arg(short, long)]
     output: Option<std::path::PathBuf>,
 }
+
+/// Seeds that one run may take.
+const SEEDS_OF_A_RUN: u64 = 10_000;
 
 /// Pairs whose members are far apart in the catalogue.
 const PAIRS: [(&str, &str); 6] = [
@@ -116,36 +119,31 @@ fn said<T>(result: Result<T, String>) -> Option<T> {
 
 fn cases(arguments: &Arguments) -> Vec<Case> {
     let mut cases = Vec::new();
-    let seeds = |count: u64| arguments.first_seed..arguments.first_seed + count;
     let wanted = |name: &str| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name);
-    let case = |hidden, noise, base, seed| Case { hidden, noise, base, seed };
-    let effects = || CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
-    let mut conceal = |base, strength, count| {
-        // A base that holds the effect misses nothing.
-        for entry in effects().filter(|entry| base == BaseKind::CoulombViscous || entry.name != "stribeck") {
-            let hidden = || Hidden::Effect(entry.name, strength);
-            cases.extend(seeds(count).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
-        }
+    let mut add = |hidden: Hidden, noise, base, count| {
+        cases.extend((0..count).map(|_| Case { hidden: hidden.clone(), noise, base, seed: 0 }));
     };
-    for strength in &arguments.strengths {
-        conceal(BaseKind::CoulombViscous, *strength, arguments.seeds);
+    let plain = BaseKind::CoulombViscous;
+    let last = *arguments.strengths.last().unwrap_or(&80.0);
+    let to_conceal = arguments.strengths.iter().map(|strength| (plain, *strength, arguments.seeds));
+    let other_bases = [BaseKind::Spline, BaseKind::Reference].map(|base| (base, last, arguments.bases));
+    for (base, strength, count) in to_conceal.chain(other_bases) {
+        let effects = CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
+        // A base that holds the effect misses nothing.
+        for entry in effects.filter(|entry| base == plain || entry.name != "stribeck") {
+            add(Hidden::Effect(entry.name, strength), NoiseKind::Coloured, base, count);
+        }
     }
-    for base in [BaseKind::Spline, BaseKind::Reference] {
-        conceal(base, *arguments.strengths.last().unwrap_or(&80.0), arguments.bases);
-    }
-    let base = BaseKind::CoulombViscous;
-    for seed in seeds(arguments.controls) {
-        // Every control has a seed of its own.
-        let own = |kind: usize| seed * NoiseKind::ALL.len() as u64 + kind as u64;
-        cases.extend((0..).zip(NoiseKind::ALL).map(|(kind, noise)| case(Hidden::Nothing, noise, base, own(kind))));
+    for noise in NoiseKind::ALL {
+        add(Hidden::Nothing, noise, plain, arguments.controls);
     }
     for entry in OUTSIDE.iter().filter(|entry| wanted(entry.name)) {
-        let hidden = || Hidden::Effect(entry.name, 80.0);
-        cases.extend(seeds(arguments.outside).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
+        add(Hidden::Effect(entry.name, 80.0), NoiseKind::Coloured, plain, arguments.outside);
     }
     for (first, second) in PAIRS {
-        let hidden = || Hidden::Pair(first, second, 150.0);
-        cases.extend(seeds(arguments.pairs).map(|seed| case(hidden(), NoiseKind::Coloured, base, seed)));
+        add(Hidden::Pair(first, second, 150.0), NoiseKind::Coloured, plain, arguments.pairs);
     }
+    // Cases that share a seed would share their noise, and with it their luck.
+    (arguments.first_seed * SEEDS_OF_A_RUN..).zip(&mut cases).for_each(|(seed, case)| case.seed = seed);
     cases
 }

@@ -123,38 +123,37 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
         Hidden::Effect(name, lambda) => (vec![name], *lambda),
         Hidden::Pair(first, second, lambda) => (vec![first, second], *lambda),
     };
-    let mut amplitudes = Vec::new();
-    for name in &names {
-        amplitudes.push(amplitude_for(&joint, name, wanted, case)?);
-    }
-    for (name, amplitude) in names.iter().zip(&amplitudes) {
-        joint.effects.push(plant::Hidden { name: (*name).to_string(), amplitude: *amplitude });
+    for name in names {
+        let amplitude = amplitude_for(&joint, name, wanted, case)?;
+        joint.effects.push(plant::Hidden { name: name.to_string(), amplitude });
     }
     let recording = plant::simulate(&joint, case.seed)?;
-    let strength = reach(&recording, &joint, case);
+    let strength = reach(&recording, &recording.truth.effect_torque, &joint, case);
     Ok(Concealed { recording, joint, strength })
 }
 
-fn reach(recording: &SimulatedRecording, joint: &plant::Joint, case: &Case) -> Option<Strength> {
+fn reach(recording: &SimulatedRecording, torque: &[f64], joint: &plant::Joint, case: &Case) -> Option<Strength> {
     let base = if case.base == BaseKind::Spline { BaseKind::Spline } else { BaseKind::CoulombViscous };
-    let truth = &recording.truth;
-    strength(&signals(recording, joint), &truth.effect_torque, &truth.noise_torque, base, Lock::Spread)
+    strength(&signals(recording, joint), torque, &recording.truth.noise_torque, base, Lock::Spread)
 }
 
 /// Faults of the measurement that have no torque of their own, or none below a threshold: their amplitude is taken as it is.
 const WITHOUT_TORQUE: [&str; 4] = ["quantisation", "unit_or_sign", "clock_gaps", "time_misalignment"];
 
+/// Amplitude at which an effect adds a torque of the wanted strength to what the joint already hides.
 fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {
     if WITHOUT_TORQUE.contains(&name) {
         return Ok(1.0);
     }
+    let without = plant::simulate(joint, case.seed)?.truth.effect_torque;
     let mut amplitude = 0.3f64;
     // Non-centrality goes with the square of a torque; of a compliance or a play with another power, which two passes show.
     let mut power = 2.0;
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..PASSES {
         let recording = plant::conceal(joint, name, amplitude, case.seed)?;
-        let lambda = reach(&recording, joint, case).map_or(0.0, |s| s.lambda).max(1e-3);
+        let torque: Vec<f64> = recording.truth.effect_torque.iter().zip(&without).map(|(both, one)| both - one).collect();
+        let lambda = reach(&recording, &torque, joint, case).map_or(0.0, |s| s.lambda).max(1e-3);
         if (wanted / lambda - 1.0).abs() < 0.1 {
             break;
         }
