@@ -10,6 +10,8 @@ const SLOT_BYTES: usize = 512;
 const CELLS: usize = 16;
 /// An interpreter sees a part of the cuts and bits.
 const EVERY: usize = if cfg!(miri) { 397 } else { 1 };
+/// And of the lengths and the contents before.
+const MOST: usize = if cfg!(miri) { 1 } else { usize::MAX };
 
 /// An image of some length: every spring takes nine bytes.
 fn image(coulomb: f32, springs: usize) -> Vec<u8> {
@@ -109,10 +111,11 @@ fn survives_every_cut(reader: impl Fn(&[u8], &[u8]) -> Option<Vec<u8>>) -> bool 
     let current_image = image(1.0, 2);
     let current = slot(8, &current_image);
     let mut survives = true;
-    for springs in [0, 1, 4, 8] {
+    for springs in [0, 1, 4, 8].into_iter().take(MOST) {
         let next_image = image(2.0, springs);
         let written = slot(9, &next_image);
-        for previous in [vec![0xFF; SLOT_BYTES], slot(7, &image(3.0, 3)), vec![0; SLOT_BYTES]] {
+        let before = [vec![0xFF; SLOT_BYTES], slot(7, &image(3.0, 3)), vec![0; SLOT_BYTES]];
+        for previous in before.into_iter().take(MOST) {
             for state in cut_writes(&previous, &written).into_iter().step_by(EVERY) {
                 let whole =
                     state[..SLOT_HEADER_BYTES + next_image.len()] == written[..SLOT_HEADER_BYTES + next_image.len()];

@@ -152,7 +152,8 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..PASSES {
         let recording = plant::conceal(joint, name, amplitude, case.seed)?;
-        let torque: Vec<f64> = recording.truth.effect_torque.iter().zip(&without).map(|(both, one)| both - one).collect();
+        let torque: Vec<f64> =
+            recording.truth.effect_torque.iter().zip(&without).map(|(both, one)| both - one).collect();
         let lambda = reach(&recording, &torque, joint, case).map_or(0.0, |s| s.lambda).max(1e-3);
         if (wanted / lambda - 1.0).abs() < 0.1 {
             break;

@@ -17,7 +17,16 @@ impl Round<'_, '_> {
     /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
     pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
         let settings = &self.search.settings;
-        let passes = |s: &&Scored| s.family_wise < settings.family_wise_level && s.score > settings.least_score;
+        // Locked rows have nothing to say of a one-off event.
+        let confirmable = self.search.prepared.blocks.iter().any(|block| block.locked);
+        let passes = |s: &&Scored| {
+            let candidate = confirmable && s.label != Label::Named(EffectId::TransientEvent);
+            let (level, score) = match candidate {
+                true => (settings.candidate_level, settings.candidate_score),
+                false => (settings.family_wise_level, settings.least_score),
+            };
+            s.family_wise < level && s.score > score
+        };
         let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
         let passing_names = || table.iter().filter(is_named).filter(passes);
         let named = passing_names().next();

@@ -34,8 +34,9 @@ pub(super) fn finding(
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
     let locked = prove_alone(search, all, index, improved).map(|proof| proof.gain_nats);
+    let of_locked = locked.map(|gain| format!("; locked rows {gain:+.1} more")).unwrap_or_default();
     let evidence = format!(
-        "{:.1} nats in favour (held-out folds {:+.1}), family-wise p {}, {} rival{} within reach",
+        "{:.1} nats in favour (held-out folds {:+.1}{of_locked}), family-wise p {}, {} rival{} within reach",
         found.score,
         found.fold_gain.iter().sum::<f64>(),
         probability_text(found.family_wise),

@@ -17,8 +17,30 @@ const BLOCK_ROWS: usize = 64;
 pub struct NullDraws {
     /// For each group, location and scale of the Gumbel tail of its statistic in -log p.
     tails: Vec<(f64, f64)>,
-    /// Effective number of independent hypotheses.
-    effective: f64,
+    /// Family of each group.
+    families: Vec<Family>,
+    /// Effective number of independent hypotheses of each family.
+    effective: [f64; 2],
+}
+
+/// The two families of hypotheses. Each has a share of the false alarms to itself, so that the many structures without a name,
+/// which are rarely what is missing, do not cost the effects that have one their power (weighted Bonferroni; Holm 1979).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// Effects of the catalogue.
+    Named,
+    /// Structures without a name.
+    Generic,
+}
+
+impl Family {
+    /// Share of the false alarms.
+    fn share(self) -> f64 {
+        match self {
+            Family::Named => 0.8,
+            Family::Generic => 0.2,
+        }
+    }
 }
 
 /// Orthonormal directions of each variant of each group, with the base projected out.
@@ -40,9 +62,10 @@ pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
 }
 
 impl NullDraws {
-    /// Draws the null `count` times. `residual` is whitened, what the base and the best candidates leave.
+    /// Draws the null `count` times; `families` and `directions` have one entry a group. `residual` is whitened, what the base and the best candidates leave.
     pub fn draw(
         directions: &Directions,
+        families: Vec<Family>,
         base: &[Vec<f64>],
         residual: &[f64],
         runs: &[Range<usize>],
@@ -105,21 +128,26 @@ impl NullDraws {
             })
             .collect();
         let tails: Vec<(f64, f64)> = surprises.iter().map(|values| gumbel(values)).collect();
-        // min-p over the family: 1 - (1 - p)^K with K fitted to the draws.
-        let log_survivals: f64 = (0..count)
-            .map(|draw| {
-                let least =
-                    surprises.iter().zip(&tails).map(|(v, tail)| tail_probability(v[draw], *tail)).fold(1.0, f64::min);
-                (1.0 - least).max(1e-300).ln()
-            })
-            .sum();
-        Self { tails, effective: (count as f64 / -log_survivals).clamp(1.0, 10.0 * directions.len() as f64) }
+        // min-p over a family: 1 - (1 - p)^K with K fitted to the draws.
+        let effective = [Family::Named, Family::Generic].map(|family| {
+            let members: Vec<usize> = (0..families.len()).filter(|&group| families[group] == family).collect();
+            let log_survival = |draw: usize| {
+                let alone = |&group: &usize| tail_probability(surprises[group][draw], tails[group]);
+                (1.0 - members.iter().map(alone).fold(1.0, f64::min)).max(1e-300).ln()
+            };
+            let log_survivals: f64 = (0..count).map(log_survival).sum();
+            (count as f64 / -log_survivals).clamp(1.0, 10.0 * members.len().max(1) as f64)
+        });
+        Self { tails, families, effective }
     }
 
-    /// Family-wise probability that a group's surprise (-log p of its best variant) arises when nothing is missing.
+    /// Family-wise probability that a group's surprise (-log p of its best variant) arises when nothing is missing, over the
+    /// share of false alarms that its family has.
     pub fn family_wise(&self, group: usize, surprise: f64) -> f64 {
         let alone = tail_probability(surprise, self.tails[group]);
-        -(self.effective * (-alone).ln_1p()).exp_m1()
+        let family = self.families[group];
+        let within = -(self.effective[family as usize] * (-alone).ln_1p()).exp_m1();
+        (within / family.share()).min(1.0)
     }
 }
 

@@ -1,12 +1,12 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
-use super::candidates::{Label, ridge_of};
+use super::candidates::{Group, Label, ridge_of};
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};
 use super::linear::{orthonormal, project_out};
 use super::noise::Noise;
-use super::null::{Directions, NullDraws, chi_square_surprise};
+use super::null::{Directions, Family, NullDraws, chi_square_surprise};
 use super::refine::refine;
-use super::search::{Accepted, Search};
+use super::search::{Accepted, Search, Settings};
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
 
@@ -247,5 +247,11 @@ fn draw_null(
     let mut extended = base_directions.clone();
     extended.extend(best.to_vec());
     project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
-    NullDraws::draw(&directions, &base_directions, &rest, &runs, search.settings.null_draws, search.settings.seed)
+    let family = |group: &Group| match group.label {
+        Label::Named(_) => Family::Named,
+        Label::Generic(_) => Family::Generic,
+    };
+    let families = search.design.groups.iter().map(family).collect();
+    let Settings { null_draws, seed, .. } = search.settings;
+    NullDraws::draw(&directions, families, &base_directions, &rest, &runs, null_draws, seed)
 }

@@ -164,7 +164,7 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
         let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
         let unproven = lasting.filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
-            is_unproven(&accepted[i], &proof, search.settings.least_score).then_some((i, proof.gain_nats))
+            is_unproven(&accepted[i], &proof, &search.settings).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
@@ -172,9 +172,11 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
     withdrawn
 }
 
-/// Whether all rows together no longer carry an effect, or the error on locked rows grows by it beyond doubt.
-fn is_unproven(found: &Accepted, proof: &Proof, least_score: f64) -> bool {
-    found.score + proof.gain_nats < least_score || proof.ratio_ci95[0] > 1.0
+/// Whether all rows together do not carry an effect, or the error on locked rows grows by it beyond doubt.
+fn is_unproven(found: &Accepted, proof: &Proof, settings: &Settings) -> bool {
+    found.score + proof.gain_nats < settings.least_score
+        || found.family_wise * (-proof.gain_nats).exp() > settings.family_wise_level
+        || proof.ratio_ci95[0] > 1.0
 }
 
 /// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the

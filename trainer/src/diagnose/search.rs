@@ -15,10 +15,15 @@ use std::ops::Range;
 /// Limits of the search; fixed on one set of seeds and reported on another.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Family-wise probability below which an effect is a finding.
+    /// Family-wise probability, over the likelihood ratio of the locked rows, below which an effect is a finding: a p-value over
+    /// an independent e-value is a p-value (Ignatiadis, Wang and Ramdas 2024).
     pub family_wise_level: f64,
-    /// Least score in nats.
+    /// Least score in nats, locked rows included.
     pub least_score: f64,
+    /// The same two for what the locked rows are asked about.
+    pub candidate_level: f64,
+    /// See [`Self::candidate_level`].
+    pub candidate_score: f64,
     /// Margin in nats within which rivals cannot be told apart.
     pub ambiguity_margin: f64,
     /// Null draws a round.
@@ -32,8 +37,10 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            family_wise_level: 0.003,
+            family_wise_level: 0.002,
             least_score: 4.0,
+            candidate_level: 0.05,
+            candidate_score: 2.0,
             ambiguity_margin: 3.0,
             null_draws: 200,
             most_findings: 4,
@@ -157,7 +164,7 @@ impl<'a> Search<'a> {
         loop {
             let round = Round::new(self, self.base_with(&accepted, None));
             let mut table = round.score_table(&accepted);
-            if table.first().is_some_and(|best| best.score > self.settings.least_score) {
+            if table.first().is_some_and(|best| best.score > self.settings.candidate_score) {
                 // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
                 let null = null.get_or_insert_with(|| round.draw_null());
                 table
