@@ -26,7 +26,7 @@ const STEPS: [usize; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 40, 60];
 
 /// Samples of the trainings of growing size, and the steps of each.
 const SAMPLES: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
-const LONG_STEPS: usize = 10;
+const LONG_STEPS: usize = 3;
 
 /// Durations of the recordings that the command fits, s; 1000 rows a second.
 const DURATIONS: [usize; 3] = [100, 1_000, 10_000];

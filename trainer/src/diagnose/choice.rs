@@ -18,13 +18,9 @@ impl Round<'_, '_> {
     pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
         let settings = &self.search.settings;
         // Locked rows have nothing to say of a one-off event.
-        let confirmable = self.search.prepared.blocks.iter().any(|block| block.locked);
+        let any_locked = self.search.prepared.blocks.iter().any(|block| block.locked);
         let passes = |s: &&Scored| {
-            let candidate = confirmable && s.label != Label::Named(EffectId::TransientEvent);
-            let (level, score) = match candidate {
-                true => (settings.candidate_level, settings.candidate_score),
-                false => (settings.family_wise_level, settings.least_score),
-            };
+            let (level, score) = settings.on_open_rows(any_locked && s.label != Label::Named(EffectId::TransientEvent));
             s.family_wise < level && s.score > score
         };
         let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));

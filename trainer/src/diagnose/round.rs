@@ -6,7 +6,8 @@ use super::linear::{orthonormal, project_out};
 use super::noise::Noise;
 use super::null::{Directions, Family, NullDraws, chi_square_surprise};
 use super::refine::refine;
-use super::search::{Accepted, Search, Settings};
+use super::search::{Accepted, Search};
+use super::settings::Settings;
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
 

@@ -11,7 +11,8 @@ use super::prepare::Prepared;
 use super::prove::{Proof, prove, prove_alone, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
-use super::search::{Accepted, Search, SearchOutcome, Settings};
+use super::search::{Accepted, Search, SearchOutcome};
+use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
 use crate::physics::{Action, EffectId, catalogue};
@@ -174,9 +175,7 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
 
 /// Whether all rows together do not carry an effect, or the error on locked rows grows by it beyond doubt.
 fn is_unproven(found: &Accepted, proof: &Proof, settings: &Settings) -> bool {
-    found.score + proof.gain_nats < settings.least_score
-        || found.family_wise * (-proof.gain_nats).exp() > settings.family_wise_level
-        || proof.ratio_ci95[0] > 1.0
+    !settings.carried(found.score, found.family_wise, proof.gain_nats) || proof.ratio_ci95[0] > 1.0
 }
 
 /// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the

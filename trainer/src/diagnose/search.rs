@@ -8,46 +8,10 @@ use super::linear::residual;
 use super::noise::Noise;
 use super::prepare::Prepared;
 use super::round::{Round, Scored, score_of};
+use super::settings::Settings;
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Limits of the search; fixed on one set of seeds and reported on another.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Family-wise probability, over the likelihood ratio of the locked rows, below which an effect is a finding: a p-value over
-    /// an independent e-value is a p-value (Ignatiadis, Wang and Ramdas 2024).
-    pub family_wise_level: f64,
-    /// Least score in nats, locked rows included.
-    pub least_score: f64,
-    /// The same two for what the locked rows are asked about.
-    pub candidate_level: f64,
-    /// See [`Self::candidate_level`].
-    pub candidate_score: f64,
-    /// Margin in nats within which rivals cannot be told apart.
-    pub ambiguity_margin: f64,
-    /// Null draws a round.
-    pub null_draws: usize,
-    /// Largest number of accepted effects.
-    pub most_findings: usize,
-    /// Seed of the null draws.
-    pub seed: u64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            family_wise_level: 0.002,
-            least_score: 4.0,
-            candidate_level: 0.05,
-            candidate_score: 2.0,
-            ambiguity_margin: 3.0,
-            null_draws: 200,
-            most_findings: 4,
-            seed: 0,
-        }
-    }
-}
 
 /// Terms at most, repeated ones included.
 const MOST_TERMS: usize = 12;

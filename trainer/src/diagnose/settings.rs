@@ -1,0 +1,71 @@
+//! Limits of the search, fixed on one set of seeds and reported on another.
+
+/// Limits of the search.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Family-wise probability below which an effect is a finding, locked rows included.
+    pub family_wise_level: f64,
+    /// Least score in nats, locked rows included.
+    pub least_score: f64,
+    /// Family-wise probability on the open rows below which the locked rows are asked about an effect.
+    pub candidate_level: f64,
+    /// Least score in nats on the open rows at which the locked rows are asked about an effect.
+    pub candidate_score: f64,
+    /// Margin in nats within which rivals cannot be told apart.
+    pub ambiguity_margin: f64,
+    /// Null draws a round.
+    pub null_draws: usize,
+    /// Largest number of accepted effects.
+    pub most_findings: usize,
+    /// Seed of the null draws.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            family_wise_level: 0.002,
+            least_score: 4.0,
+            candidate_level: 0.05,
+            candidate_score: 2.0,
+            ambiguity_margin: 3.0,
+            null_draws: 200,
+            most_findings: 4,
+            seed: 0,
+        }
+    }
+}
+
+impl Settings {
+    /// Largest family-wise probability and least score on the open rows, for what the locked rows can confirm and for what they
+    /// cannot.
+    pub(super) fn on_open_rows(&self, confirmable: bool) -> (f64, f64) {
+        if confirmable {
+            (self.candidate_level, self.candidate_score)
+        } else {
+            (self.family_wise_level, self.least_score)
+        }
+    }
+
+    /// Whether open and locked rows together carry an effect: by its score and the gain on the locked rows, in nats, and by its
+    /// p-value on the open rows over the likelihood ratio of the locked ones. That ratio is an e-value of independent rows, so
+    /// that the quotient is a p-value (Ignatiadis, Wang and Ramdas 2024).
+    pub(super) fn carried(&self, score: f64, family_wise: f64, locked_gain: f64) -> bool {
+        score + locked_gain >= self.least_score && family_wise * (-locked_gain).exp() <= self.family_wise_level
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn locked_rows_decide_about_a_weak_candidate() {
+        let settings = Settings::default();
+        assert!(settings.carried(3.0, 0.02, 4.0));
+        assert!(!settings.carried(3.0, 0.02, 0.5), "the score is too low");
+        assert!(!settings.carried(6.0, 0.02, 0.5), "the probability is too high");
+        assert!(settings.carried(20.0, 1e-8, -2.0), "a strong one survives a locked row or two against it");
+        assert!(!settings.carried(5.0, 1e-3, -2.0));
+    }
+}
