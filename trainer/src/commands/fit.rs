@@ -71,7 +71,7 @@ pub struct Fit {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Training")]
 pub struct TrainingArguments {
-    /// Shape of the network, such as [1,5,1] or [2,[5,2],1] (five sums and two products)
+    /// Shape of the network, such as `[1,5,1]` or `[2,[5,2],1]` (five sums and two products)
     #[arg(long, value_name = "SHAPE")]
     pub network: Option<Architecture>,
     /// Independent starts; the best on held-out blocks is kept
