@@ -13,7 +13,7 @@ const NEARLY_AS_MUCH: f64 = 0.88;
 const NEARLY_ALL: f64 = 0.01;
 const ALL: f64 = 1e-6;
 
-/// Lead in nats up to which an inferred state is no better than the recorded channel: it has a time constant to fit.
+/// Lead in nats up to which an effect is no better than the one that it yields to: it has more to fit.
 const AS_GOOD_NATS: f64 = 0.5;
 
 impl Round<'_, '_> {
@@ -85,13 +85,13 @@ impl Round<'_, '_> {
         })
     }
 
-    /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by a
-    /// recorded channel in place of an inferred state that is no better.
+    /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
+    /// effect that the best one yields to.
     fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
         let Label::Named(effect) = best.label else { return best };
-        let measured = self.search.hypothesis(effect).and_then(Hypothesis::measured_instead).map(Label::Named);
+        let first = self.search.hypothesis(effect).and_then(Hypothesis::yields_to).map(Label::Named);
         let plainer = |rival: &&Scored| {
-            let as_good = best.score - rival.score < AS_GOOD_NATS && measured.as_ref() == Some(&rival.label);
+            let as_good = best.score - rival.score < AS_GOOD_NATS && first.as_ref() == Some(&rival.label);
             as_good
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
         };

@@ -127,8 +127,9 @@ pub trait Hypothesis: Sync {
         None
     }
 
-    /// The effect of a recorded channel for which this one stands in where there is no sensor.
-    fn measured_instead(&self) -> Option<EffectId> {
+    /// The effect that goes before this one where it explains as much: that of a recorded channel before that of an inferred
+    /// state, the plain spring before one with a loop.
+    fn yields_to(&self) -> Option<EffectId> {
         None
     }
 

@@ -72,7 +72,7 @@ impl Hypothesis for WarmUp {
         ]
     }
 
-    fn measured_instead(&self) -> Option<EffectId> {
+    fn yields_to(&self) -> Option<EffectId> {
         Some(EffectId::Temperature)
     }
 

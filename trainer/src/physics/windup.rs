@@ -13,7 +13,7 @@ const LINK_SHARE: f64 = 0.5;
 /// Stiffness of the loop at a reversal over that of the spring.
 const LOOP_STIFFNESS: f64 = 1.5;
 /// Damping ratio of the spring.
-const DAMPING_RATIO: f64 = 0.1;
+const DAMPING_RATIO: f64 = 0.15;
 
 /// Minus the acceleration of the twist: `e'' = u - w^2 (e + r L z) - 2 zeta w e'`, `dz = (sign(de) - z) |de| / L`.
 fn winding(state: &JointState, drive: &[f64], antiresonance: f64, loop_twist: f64) -> Vec<f64> {
@@ -61,9 +61,9 @@ impl Hypothesis for WindupHysteresis {
             return Vec::new();
         }
         let highest = highest_antiresonance(state);
-        geometric_grid(0.12 * highest, 0.8 * highest, 5)
+        geometric_grid(0.12 * highest, 0.8 * highest, 9)
             .into_iter()
-            .flat_map(|w| [0.05, 0.25].map(|share| vec![w, share * usual_twist(&drive, w)]))
+            .flat_map(|w| [0.03, 0.1, 0.3].map(|share| vec![w, share * usual_twist(&drive, w)]))
             .collect()
     }
 
@@ -78,6 +78,10 @@ impl Hypothesis for WindupHysteresis {
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
         vec![("link_inertia", "J_l", Dimension::Inertia)]
+    }
+
+    fn yields_to(&self) -> Option<EffectId> {
+        Some(EffectId::Elasticity)
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
