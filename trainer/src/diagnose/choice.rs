@@ -36,7 +36,7 @@ impl Round<'_, '_> {
         let nearly = |generic: &Scored| {
             passing_names().find(|s| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
-                    || s.evidence.statistic >= NEARLY_AS_MUCH * generic.evidence.statistic
+                    || s.evidence.beyond_noise() >= NEARLY_AS_MUCH * generic.evidence.beyond_noise()
             })
         };
         let best = match (named, generic) {

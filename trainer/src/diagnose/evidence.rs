@@ -1,6 +1,6 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
-use super::linear::{dot, gram, solve_symmetric};
+use super::linear::{Factored, dot, gram, solve_symmetric, unit_diagonal};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -120,26 +120,28 @@ impl Bench {
         let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
         let base_residual = energy - explained(&normal.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
         let posterior = &normal + &prior;
-        let solution = if right.is_empty() { DVector::zeros(0) } else { solve_symmetric(&posterior, &right)? };
+        let full = Factored::new(&posterior)?;
+        let solution = full.solve(&right)?;
         let residual = energy - solution.dot(&right);
         let coefficients = solution.iter().skip(p).copied().collect();
         let rows = self.rows();
         let complexity = if ridge.is_empty() {
             0.5 * d as f64 * rows.ln()
         } else {
-            let lower = posterior.cholesky()?.l();
+            let lower = posterior.clone().cholesky()?.l();
             (p..p + d).map(|i| 0.5 * (lower[(i, i)] * lower[(i, i)] / prior[(i, i)]).ln()).sum()
         };
         let mut fold_train = Vec::with_capacity(blocks.len());
         let mut fold_likelihood = Vec::with_capacity(blocks.len());
         for ((block_normal, block_right), sums) in blocks.iter().zip(&self.sums).filter(|_| folds) {
-            let (train_normal, train_right) = (&normal - block_normal, &right - block_right);
-            let solution = solve_symmetric(&(&train_normal + &prior), &train_right)?;
-            let train = (energy - sums.target - solution.dot(&train_right)).max(f64::MIN_POSITIVE);
-            let held_out = sums.target - 2.0 * solution.dot(block_right) + solution.dot(&(block_normal * &solution));
+            // The predictive density of a block: what its other blocks do not determine makes it wide, not wrong.
+            let right = &right - block_right;
+            let trained = Factored::scaled(&(&posterior - block_normal), unit_diagonal(&posterior))?;
+            let train = (energy - sums.target - trained.solve(&right)?.dot(&right)).max(f64::MIN_POSITIVE);
             let variance = train / (rows - sums.rows - (p + d) as f64).max(1.0);
+            let width = full.log_determinant() - trained.log_determinant();
             fold_train.push(train);
-            fold_likelihood.push(-0.5 * sums.rows * variance.ln() - 0.5 * held_out / variance);
+            fold_likelihood.push(-0.5 * (sums.rows * variance.ln() + (residual - train) / variance + width));
         }
         Some(VariantEvidence {
             statistic: base_residual - residual,
@@ -226,6 +228,11 @@ pub struct GroupEvidence {
 }
 
 impl GroupEvidence {
+    /// Estimate of the non-centrality: the statistic less what noise alone gives so many coefficients.
+    pub fn beyond_noise(&self) -> f64 {
+        self.statistic - self.degrees as f64
+    }
+
     /// Weighs the variants of a group against the base.
     pub fn weigh(
         base: &VariantEvidence,

@@ -5,7 +5,7 @@ use super::form::{FORMULAS, Form};
 use super::generic::Generic;
 use super::noise::Noise;
 use super::refine::climb;
-use super::search::{Accepted, Search};
+use super::search::{Accepted, Search, others};
 use crate::figures::digits;
 use crate::physics::Shape;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ pub(super) fn equation(search: &Search, accepted: &[Accepted], index: usize, riv
 
 fn formula(search: &Search, accepted: &[Accepted], index: usize, rival: Generic, noise: &Noise) -> Option<String> {
     let state = &search.prepared.state;
-    let bench = search.bench(search.base_with(accepted, Some(index)), noise);
+    let bench = search.bench(search.base_with(others(accepted, index)), noise);
     let alone = bench.alone()?;
     let rows = bench.rows();
     let weigh = |rival: Generic, shape: &[f64]| {

@@ -1,6 +1,6 @@
 //! Small dense least squares over columns and runs of rows.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
 /// Inner product of two columns over runs of rows.
@@ -35,28 +35,56 @@ pub(crate) fn gram(columns: &[Vec<f64>], runs: &[Range<usize>]) -> DMatrix<f64> 
     gram
 }
 
+/// A symmetric positive matrix, factored after scaling.
+pub(crate) struct Factored {
+    factor: Cholesky<f64, Dyn>,
+    scale: DVector<f64>,
+}
+
+impl Factored {
+    /// Scaled to a unit diagonal; `None` where the matrix is singular to working precision.
+    pub fn new(matrix: &DMatrix<f64>) -> Option<Self> {
+        Self::scaled(matrix, unit_diagonal(matrix))
+    }
+
+    /// Scaled by another matrix' diagonal.
+    pub fn scaled(matrix: &DMatrix<f64>, scale: DVector<f64>) -> Option<Self> {
+        let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+            matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
+        });
+        Some(Self { factor: scaled.cholesky()?, scale })
+    }
+
+    pub fn solve(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
+        let solution = self.factor.solve(&right.component_mul(&self.scale)).component_mul(&self.scale);
+        solution.iter().all(|v| v.is_finite()).then_some(solution)
+    }
+
+    pub fn inverse(&self) -> DMatrix<f64> {
+        let inverse = self.factor.inverse();
+        DMatrix::from_fn(inverse.nrows(), inverse.ncols(), |i, j| inverse[(i, j)] * self.scale[i] * self.scale[j])
+    }
+
+    /// Logarithm of the determinant of the scaled matrix.
+    pub fn log_determinant(&self) -> f64 {
+        2.0 * self.factor.l_dirty().diagonal().iter().map(|pivot| pivot.ln()).sum::<f64>()
+    }
+}
+
+/// Factors that scale a matrix to a unit diagonal; 0 where its diagonal is.
+pub(crate) fn unit_diagonal(matrix: &DMatrix<f64>) -> DVector<f64> {
+    let reciprocal = |d: &f64| if *d > 0.0 { d.sqrt().recip() } else { 0.0 };
+    DVector::from_iterator(matrix.nrows(), matrix.diagonal().iter().map(reciprocal))
+}
+
 /// Solves a symmetric positive system with unit-diagonal scaling; `None` where it is singular to working precision.
 pub(crate) fn solve_symmetric(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let scale = DVector::from_iterator(
-        matrix.nrows(),
-        matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }),
-    );
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
-    });
-    let factor = scaled.cholesky()?;
-    let solution = factor.solve(&right.component_mul(&scale)).component_mul(&scale);
-    solution.iter().all(|v| v.is_finite()).then_some(solution)
+    Factored::new(matrix)?.solve(right)
 }
 
 /// Inverse of a symmetric positive matrix with the same scaling.
 pub(crate) fn invert_symmetric(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> = matrix.diagonal().iter().map(|d| if *d > 0.0 { d.sqrt().recip() } else { 0.0 }).collect();
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        matrix[(i, j)] * scale[i] * scale[j] + if i == j { 1e-11 } else { 0.0 }
-    });
-    let inverse = scaled.cholesky()?.inverse();
-    Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    Factored::new(matrix).map(|factored| factored.inverse())
 }
 
 /// Coefficients of the least-squares fit of `target` by `columns` over runs; `None` where it is singular.
@@ -103,5 +131,28 @@ pub(crate) fn project_out(column: &mut [f64], basis: &[Vec<f64>], runs: &[Range<
         for (value, d) in column.iter_mut().zip(direction) {
             *value -= share * d;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_factored_matrix_is_solved_inverted_and_measured() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[4.0, 2.0, 2.0, 9.0]);
+        let factored = Factored::new(&matrix).expect("positive");
+        let solution = factored.solve(&DVector::from_vec(vec![8.0, 20.0])).expect("finite");
+        assert!((&matrix * solution - DVector::from_vec(vec![8.0, 20.0])).norm() < 1e-9);
+        assert!((&matrix * factored.inverse() - DMatrix::identity(2, 2)).norm() < 1e-9);
+        let determinant = 32.0 / (4.0 * 9.0);
+        assert!((factored.log_determinant() - f64::ln(determinant)).abs() < 1e-9, "of the scaled matrix");
+    }
+
+    #[test]
+    fn nothing_to_solve_is_solved() {
+        let nothing = Factored::new(&DMatrix::zeros(0, 0)).expect("no column");
+        assert_eq!(nothing.log_determinant(), 0.0);
+        assert_eq!(nothing.solve(&DVector::zeros(0)).map(|solution| solution.len()), Some(0));
     }
 }

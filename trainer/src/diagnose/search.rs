@@ -126,7 +126,7 @@ impl<'a> Search<'a> {
         let mut accepted: Vec<Accepted> = Vec::new();
         let mut null = None;
         loop {
-            let round = Round::new(self, self.base_with(&accepted, None));
+            let round = Round::new(self, self.base_with(&accepted));
             let mut table = round.score_table(&accepted);
             if table.first().is_some_and(|best| best.score > self.settings.candidate_score) {
                 // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
@@ -150,15 +150,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Filtered columns of the base and of the accepted effects with their tangents, but not those of `without`.
-    pub(crate) fn base_with(&self, accepted: &[Accepted], without: Option<usize>) -> Vec<Vec<f64>> {
+    /// Filtered columns of the base and of the accepted effects with their tangents.
+    pub(crate) fn base_with<'f>(&self, accepted: impl IntoIterator<Item = &'f Accepted>) -> Vec<Vec<f64>> {
         let mut columns = self.base.columns.clone();
-        for (index, effect) in accepted.iter().enumerate() {
-            if Some(index) != without {
-                columns.extend(self.filtered_columns(&effect.label, &effect.shape));
-                let tangents = self.column_tangents(&effect.label, &effect.shape);
-                columns.extend(tangents.into_iter().flat_map(|(_, columns)| columns));
-            }
+        for effect in accepted {
+            columns.extend(self.filtered_columns(&effect.label, &effect.shape));
+            let tangents = self.column_tangents(&effect.label, &effect.shape);
+            columns.extend(tangents.into_iter().flat_map(|(_, columns)| columns));
         }
         columns
     }
@@ -184,26 +182,34 @@ impl<'a> Search<'a> {
         .collect()
     }
 
+    /// Whether the open rows alone carry an effect.
+    fn is_proved(&self, found: &Accepted) -> bool {
+        found.family_wise < self.settings.family_wise_level && found.score > self.settings.least_score
+    }
+
     /// Drops every effect that the others have made superfluous.
     fn backward(&self, mut accepted: Vec<Accepted>, noise: &Noise) -> Vec<Accepted> {
         while accepted.len() > 1 {
-            let weakest = (0..accepted.len())
-                .map(|index| {
-                    let bench = self.bench(self.base_with(&accepted, Some(index)), noise);
-                    let columns =
-                        self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
-                    let ridge = ridge_of(&accepted[index].label, &accepted[index].shape);
-                    let gain = bench.alone().zip(bench.weigh(&columns, &ridge, true)).and_then(|(alone, evidence)| {
-                        GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0)
-                    });
-                    (index, gain.map_or(f64::NEG_INFINITY, |g| score_of(&accepted[index].label, &g, 1.0)))
-                })
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            match weakest {
-                Some((index, score)) if score < self.settings.least_score => {
+            let superfluous = (0..accepted.len()).filter(|&index| {
+                // What only the locked rows can still confirm displaces nothing that the open rows have proved.
+                let counts = |other: &Accepted| self.is_proved(other) || !self.is_proved(&accepted[index]);
+                let bench = self.bench(self.base_with(others(&accepted, index).filter(|other| counts(other))), noise);
+                let columns =
+                    self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
+                let ridge = ridge_of(&accepted[index].label, &accepted[index].shape);
+                let gain = bench
+                    .alone()
+                    .zip(bench.weigh(&columns, &ridge, true))
+                    .and_then(|(alone, evidence)| GroupEvidence::weigh(&alone, &[Some(evidence)], bench.rows(), 1.0));
+                let score = gain.map_or(f64::NEG_INFINITY, |gain| score_of(&accepted[index].label, &gain, 1.0));
+                score < self.settings.least_score
+            });
+            // Of two that make each other superfluous the one goes that had less in its favour when it came.
+            match superfluous.min_by(|&a, &b| accepted[a].score.total_cmp(&accepted[b].score)) {
+                Some(index) => {
                     accepted.remove(index);
                 }
-                _ => break,
+                None => break,
             }
         }
         accepted
@@ -252,6 +258,11 @@ impl<'a> Search<'a> {
         };
         Noise::fit(&rest, &runs, &self.features)
     }
+}
+
+/// Every accepted effect but one.
+pub(crate) fn others(accepted: &[Accepted], without: usize) -> impl Iterator<Item = &Accepted> {
+    accepted.iter().enumerate().filter(move |(index, _)| *index != without).map(|(_, found)| found)
 }
 
 /// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.

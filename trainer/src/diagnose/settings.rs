@@ -11,6 +11,10 @@ pub struct Settings {
     pub candidate_level: f64,
     /// Least score in nats on the open rows at which the locked rows are asked about an effect.
     pub candidate_score: f64,
+    /// Family-wise probability below which a one-off event, of which locked rows say nothing, is a finding.
+    pub unconfirmed_level: f64,
+    /// Least score in nats of such an event.
+    pub unconfirmed_score: f64,
     /// Margin in nats within which rivals cannot be told apart.
     pub ambiguity_margin: f64,
     /// Null draws a round.
@@ -28,6 +32,8 @@ impl Default for Settings {
             least_score: 4.0,
             candidate_level: 0.05,
             candidate_score: 2.0,
+            unconfirmed_level: 2e-4,
+            unconfirmed_score: 6.0,
             ambiguity_margin: 3.0,
             null_draws: 200,
             most_findings: 4,
@@ -43,7 +49,7 @@ impl Settings {
         if confirmable {
             (self.candidate_level, self.candidate_score)
         } else {
-            (self.family_wise_level, self.least_score)
+            (self.unconfirmed_level, self.unconfirmed_score)
         }
     }
 

@@ -4,6 +4,9 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 
 pub(super) struct WarmUp;
 
+/// No joint, however light, warms up faster: what decays sooner is memory of the contact, not heat.
+const LEAST_TIME_CONSTANT_S: f64 = 5.0;
+
 /// Power smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.
 pub(crate) fn smoothed_power(state: &JointState, time_constant: f64) -> Vec<f64> {
     let step = 1.0 - (-state.period / time_constant).exp();
@@ -34,10 +37,10 @@ impl Hypothesis for WarmUp {
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let duration = state.duration();
-        if duration < 10.0 {
+        if duration < 2.0 * LEAST_TIME_CONSTANT_S {
             return Vec::new();
         }
-        geometric_grid(0.08 * duration, 3.0 * duration, 4)
+        geometric_grid((0.08 * duration).max(LEAST_TIME_CONSTANT_S), 3.0 * duration, 4)
             .into_iter()
             .flat_map(|tau| [vec![tau, 0.0], vec![tau, 1.0], vec![tau, 2.0]])
             .collect()
@@ -77,6 +80,6 @@ impl Hypothesis for WarmUp {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        (index == 0).then(|| (0.02 * state.duration(), 3.0 * state.duration()))
+        (index == 0).then(|| ((0.02 * state.duration()).max(LEAST_TIME_CONSTANT_S), 3.0 * state.duration()))
     }
 }
