@@ -2,7 +2,7 @@
 
 use super::conclude::{Refit, refit, weighted};
 use super::linear::residual;
-use super::search::{Accepted, Search};
+use super::search::{Accepted, Search, others};
 use std::ops::Range;
 
 /// Error before and after on rows that took no part in the fit.
@@ -52,8 +52,7 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
 
 /// The proof of one effect given all the others; `all` is the refit of every one of them. `None` where nothing is locked.
 pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize, all: &Refit) -> Option<Proof> {
-    let mut others = accepted.to_vec();
-    others.remove(index);
+    let others: Vec<Accepted> = others(accepted, index).cloned().collect();
     prove(search, &refit(search, &others)?, all)
 }
 

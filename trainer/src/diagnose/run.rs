@@ -189,8 +189,11 @@ fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Ref
     while let (Some(all), true) = (energy(accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
         let share = |effect: EffectId| {
-            let others: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
-            energy(&others).map(|without| (effect, (without - all) / removable))
+            // A structure without a name can take over what any effect explains: a name is weighed beside names.
+            let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
+            let with: Vec<Accepted> = accepted.iter().filter(|other| beside(other.effect())).cloned().collect();
+            let without: Vec<Accepted> = with.iter().filter(|other| other.effect() != effect).cloned().collect();
+            energy(&without).zip(energy(&with)).map(|(without, with)| (effect, (without - with) / removable))
         };
         // A one-off event is short: its share says nothing of its size.
         let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
