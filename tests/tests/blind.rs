@@ -1,0 +1,55 @@
+//! Every effect of the catalogue, hidden in a recording and named by a diagnosis that knows nothing of it.
+
+use frikan_tests::concealed::{Case, Hidden, Outcome, run, set_of};
+use frikan_trainer::diagnose::BaseKind;
+use frikan_trainer::physics::EffectId;
+use frikan_trainer::plant::{CATALOGUE, NoiseKind};
+use rayon::prelude::*;
+
+fn hidden(effect: &'static str, lambda: f64, seed: u64) -> Outcome {
+    let case = Case {
+        hidden: Hidden::Effect(effect, lambda),
+        noise: NoiseKind::Coloured,
+        base: BaseKind::CoulombViscous,
+        seed,
+    };
+    run(&case).unwrap()
+}
+
+fn in_set(outcome: &Outcome, effect: &str) -> bool {
+    outcome.diagnosis.findings.first().is_some_and(|found| set_of(found).any(|name| name.name() == effect))
+}
+
+/// A gap of the clock splits a recording and has no name among the findings: it is a note on the measurement.
+#[test]
+fn every_effect_is_in_the_stated_set_and_nearly_all_come_first() {
+    const SEED: u64 = 4_000_000;
+    let effects: Vec<&'static str> = CATALOGUE.iter().map(|entry| entry.name).filter(|n| *n != "clock_gaps").collect();
+    let outcomes: Vec<(&'static str, Outcome)> = effects
+        .par_iter()
+        .enumerate()
+        .map(|(index, effect)| (*effect, hidden(effect, 300.0, SEED + index as u64)))
+        .collect();
+    let mut first = 0;
+    for (effect, outcome) in &outcomes {
+        println!("{effect}: {:?}", outcome.named());
+        first += usize::from(outcome.named().first().is_some_and(|name| name.name() == *effect));
+        assert!(in_set(outcome, effect), "{effect} is not in the set of {:?}", outcome.named());
+    }
+    assert!(outcomes.len() >= 28 && first + 3 >= outcomes.len(), "{first} of {} come first", outcomes.len());
+}
+
+#[test]
+fn a_weak_newcomer_does_not_displace_what_was_proved() {
+    assert_eq!(hidden("viscous_nonlinearity", 80.0, 460_001).named(), [EffectId::ViscousNonlinearity]);
+}
+
+#[test]
+fn a_term_that_one_block_alone_determines_leaves_the_rest_of_the_search_in_order() {
+    assert!(in_set(&hidden("contact", 80.0, 460_021), "contact"));
+}
+
+#[test]
+fn a_free_function_of_many_coefficients_does_not_go_before_a_name_that_explains_as_much() {
+    assert!(in_set(&hidden("direction_asymmetry", 80.0, 460_002), "direction_asymmetry"));
+}
