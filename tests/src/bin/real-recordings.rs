@@ -53,8 +53,8 @@ const CASES: [Case; 10] = [
         joint: Some("[drive]\ncounts_per_turn = 8192\n"),
         known: "Seven pole pairs; its owner measured a cogging of about 0.4 A by standing still at every count. The ripple that \
                 is found agrees with that map (`tests/tests/real_diagnosis.rs`). The motor moves in small jerks from slot to \
-                slot: the lag, the warming within a second and the fault between the ripples are how a controller with \
-                little gain answers the cogging, and no property of the friction that anything else would confirm.",
+                slot: the lag among the ripples is how a controller with little gain answers the cogging, and no property of \
+                the friction that anything else would confirm.",
     },
     Case {
         title: "A pin on a plate, stroke 0.24 mm",
@@ -70,7 +70,8 @@ const CASES: [Case; 10] = [
         known: "The owner's rigid-body torque is that of the links. What it leaves out should come back on every axis: the \
                 rotors, which a gear of more than a hundred makes as heavy as the links, as an inertia that is wrong, and \
                 gravity, which over a third of a radian is a preload with a little stiffness. Axis 1 stands upright: no \
-                gravity. Three passes of ten seconds are too short to tell a stop from a warming, on any axis.",
+                gravity. Three passes of ten seconds hold few stops, all of them short: where break-away after a stop is \
+                named, its time scale lies at the lower bound, so that every stop counts alike.",
     },
     Case {
         title: "KR300, axis 2",

@@ -238,7 +238,9 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
 
 fn minor(diagnosis: &Diagnosis) -> Option<String> {
     let named = |(effect, share): &(EffectId, f64)| {
-        format!("{} ({:.1} % of the removable error)", plain_name(*effect), 100.0 * share.max(0.0))
+        let percent = 100.0 * share;
+        let percent = if percent < 0.1 { "under 0.1".to_string() } else { format!("{percent:.1}") };
+        format!("{} ({percent} % of the removable error)", plain_name(*effect))
     };
     let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
     (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
