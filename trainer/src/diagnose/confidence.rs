@@ -8,7 +8,7 @@ use crate::physics::EffectId;
 const BY_RIVALS: [f64; 3] = [0.98, 0.80, 0.62];
 /// The same without such a rival where the next one stands closer than [`CLEAR_NATS`].
 const NARROWLY_ALONE: f64 = 0.85;
-/// Margin in nats from which a name that stands alone was never wrong there.
+/// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
 
 /// Calibrated probability that the named effect is the true one.

@@ -40,7 +40,7 @@ pub struct VariantEvidence {
     pub residual: f64,
     /// Residual energy of the training part of each fold.
     pub fold_train: Vec<f64>,
-    /// Held-out log-likelihood of each fold.
+    /// Logarithm of the predictive density of each fold, given the others.
     pub fold_likelihood: Vec<f64>,
 }
 

@@ -11,9 +11,9 @@ pub struct Settings {
     pub candidate_level: f64,
     /// Least score in nats on the open rows at which the locked rows are asked about an effect.
     pub candidate_score: f64,
-    /// Family-wise probability below which a one-off event, of which locked rows say nothing, is a finding.
+    /// Family-wise probability below which an effect is a finding that no locked rows can confirm, such as a one-off event.
     pub unconfirmed_level: f64,
-    /// Least score in nats of such an event.
+    /// Least score in nats of such an effect.
     pub unconfirmed_score: f64,
     /// Margin in nats within which rivals cannot be told apart.
     pub ambiguity_margin: f64,
