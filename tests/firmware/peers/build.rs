@@ -11,13 +11,13 @@ fn main() {
     build.compile("friction");
 
     let compiler = build.get_compiler();
-    for library in ["libm.a", "libc.a", "libgcc.a"] {
+    for library in ["m", "c", "gcc"] {
         let mut command = Command::new(compiler.path());
         command.args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);
-        let output = command.arg(format!("-print-file-name={library}")).output().expect("the C compiler runs");
+        let output = command.arg(format!("-print-file-name=lib{library}.a")).output().expect("the C compiler runs");
         let path = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
         let folder = path.parent().expect("newlib is installed");
         println!("cargo::rustc-link-search=native={}", folder.display());
-        println!("cargo::rustc-link-lib=static={}", &library[3..library.len() - 2]);
+        println!("cargo::rustc-link-lib=static={library}");
     }
 }
