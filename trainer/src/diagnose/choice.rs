@@ -6,8 +6,10 @@ use super::round::{Round, Scored};
 use super::search::Accepted;
 use crate::physics::{EffectId, Hypothesis};
 
-/// Share of what a free function explains at which a name is good enough.
+/// Shares of what a free function explains at which a name is good enough: of the energy, and of the whitened energy, in which the
+/// slow errors of a formula count for less.
 const NEARLY_AS_MUCH: f64 = 0.88;
+const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
 
 /// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
 const NEARLY_ALL: f64 = 0.01;
@@ -36,7 +38,7 @@ impl Round<'_, '_> {
         let nearly = |generic: &Scored| {
             passing_names().find(|s| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
-                    || s.evidence.beyond_noise() >= NEARLY_AS_MUCH * generic.evidence.beyond_noise()
+                    || s.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise()
             })
         };
         let best = match (named, generic) {

@@ -66,9 +66,7 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
             };
             if plain {
                 // The variant was chosen by what is fast in it; now by all that it explains.
-                let gain = |shape: &Shape| {
-                    weigh(shape).map(|e| e.statistic / (e.residual / bench.rows()) - 2.0 * e.complexity)
-                };
+                let gain = |shape: &Shape| weigh(shape).map(|evidence| evidence.criterion(bench.rows()));
                 let variants = hypothesis.shapes(state).into_iter().filter_map(|shape| Some((gain(&shape)?, shape)));
                 if let Some((_, best)) = variants.max_by(|a, b| a.0.total_cmp(&b.0)) {
                     accepted[index].shape = best;

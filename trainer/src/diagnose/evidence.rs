@@ -44,6 +44,13 @@ pub struct VariantEvidence {
     pub fold_likelihood: Vec<f64>,
 }
 
+impl VariantEvidence {
+    /// Bayesian criterion over the base in nats; free of the scale of the noise.
+    pub fn criterion(&self, rows: f64) -> f64 {
+        0.5 * rows * (1.0 + self.statistic / self.residual).ln() - self.complexity
+    }
+}
+
 impl Bench {
     /// Collects the sums of each block.
     pub fn new(base: Vec<Vec<f64>>, target: Vec<f64>, blocks: Vec<Vec<Range<usize>>>) -> Self {

@@ -36,7 +36,6 @@ const BINS: usize = 40;
 /// Locates one effect of a refit: the evidence that it adds to all the others.
 pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let runs = search.prepared.open_runs();
-    let order = refit.noise.autoregression.len();
     let with = rest(search, refit);
     let effect = &refit.effects[index];
     let torque = weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients);
@@ -44,7 +43,7 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let mut white_without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
     refit.noise.whiten(&mut white_with, &runs);
     refit.noise.whiten(&mut white_without, &runs);
-    let rows: Vec<usize> = runs.iter().flat_map(|run| (run.start + order).min(run.end)..run.end).collect();
+    let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
     let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
     let state = &search.prepared.state;
     let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };

@@ -1,114 +1,128 @@
 //! The noise model: autoregressive colour and a variance that depends on the state.
 //!
-//! e = A(L)^-1 sigma(x) w with the order of A by the Bayesian information criterion and log sigma^2 linear in the state.
+//! e = A(L)^-1 sigma(x) w with the order of A by Akaike's information criterion and log sigma^2 linear in the state.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Largest order of the autoregression.
-const LARGEST_ORDER: usize = 12;
+const LARGEST_ORDER: usize = 24;
+/// Rows for each of its coefficients at least.
+const ROWS_PER_COEFFICIENT: usize = 10;
 /// Mean of the logarithm of a squared standard normal variable.
 const LOG_CHI_SQUARE_MEAN: f64 = -1.270_362_8;
 
 /// A fitted noise model.
 #[derive(Clone, Debug)]
 pub struct Noise {
-    /// Coefficients a_1.. of A(L) = 1 - a_1 L - a_2 L^2 ...
-    pub autoregression: Vec<f64>,
+    /// Predictors of one row by those before it.
+    colour: Colour,
     /// Standard deviation of the innovation at each row.
     pub deviation: Vec<f64>,
     /// Root mean square of the coloured residual from which it was fitted.
     pub rms: f64,
 }
 
+/// The autoregression with the predictors of every lower order: near the start of a run there are fewer rows to predict from.
+#[derive(Clone, Debug)]
+struct Colour {
+    /// Coefficients a_1.. of A(L) = 1 - a_1 L - a_2 L^2 ... by order.
+    predictors: Vec<Vec<f64>>,
+    /// Error of each predictor over that of the last: ratio of standard deviations.
+    excess: Vec<f64>,
+}
+
 impl Noise {
     /// White noise of unit variance over `rows`: what is assumed before anything is known.
     pub fn white(rows: usize) -> Self {
-        Self { autoregression: Vec::new(), deviation: vec![1.0; rows], rms: 1.0 }
+        Self {
+            colour: Colour { predictors: vec![Vec::new()], excess: vec![1.0] },
+            deviation: vec![1.0; rows],
+            rms: 1.0,
+        }
     }
 
     /// Fits colour and variance to a residual. `runs` are the stretches of consecutive rows; `features` are columns on
     /// which log sigma^2 depends linearly (a constant is added).
     pub fn fit(residual: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Self {
-        let autoregression = autoregression(residual, runs);
-        let innovation = whiten_colour(residual, runs, &autoregression);
-        let deviation = deviation(&innovation, runs, autoregression.len(), features);
+        let colour = Colour::fit(residual, runs);
+        let mut innovation = residual.to_vec();
+        colour.remove(&mut innovation, runs);
+        let deviation = deviation(&innovation, runs, features);
         let count: usize = runs.iter().map(|run| run.len()).sum();
         let energy: f64 = runs.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
-        Self { autoregression, deviation, rms: (energy / count.max(1) as f64).sqrt() }
+        Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt() }
     }
 
-    /// Applies `sigma^-1 A(L)` to a column, in place. Rows within the order of a run's start become zero.
+    /// Applies `sigma^-1 A(L)` to a column, in place.
     pub fn whiten(&self, column: &mut [f64], runs: &[Range<usize>]) {
-        let order = self.autoregression.len();
+        self.colour.remove(column, runs);
+        for i in runs.iter().flat_map(Range::clone) {
+            column[i] /= self.deviation[i];
+        }
+    }
+}
+
+impl Colour {
+    /// Burg's method over all runs (Burg 1975): always stable, and not blurred where the runs are short, as the autocovariance is.
+    fn fit(residual: &[f64], runs: &[Range<usize>]) -> Self {
+        let count: usize = runs.iter().map(|run| run.len()).sum();
+        let (mut forward, mut backward) = (residual.to_vec(), residual.to_vec());
+        let mut predictors = vec![Vec::new()];
+        let mut errors = vec![1.0];
+        let (mut best, mut best_criterion) = (0, 0.0);
+        for order in 1..=LARGEST_ORDER.min(count / ROWS_PER_COEFFICIENT) {
+            let rows = || runs.iter().flat_map(|run| run.start + order..run.end);
+            let (product, power) = rows().fold((0.0, 0.0), |(product, power), i| {
+                let (f, b) = (forward[i], backward[i - 1]);
+                (product + f * b, power + f * f + b * b)
+            });
+            let reflection: f64 = if power > 0.0 { 2.0 * product / power } else { break };
+            for run in runs {
+                for i in (run.start + order..run.end).rev() {
+                    let (f, b) = (forward[i], backward[i - 1]);
+                    (forward[i], backward[i]) = (f - reflection * b, b - reflection * f);
+                }
+            }
+            let shorter = &predictors[order - 1];
+            let mut longer: Vec<f64> =
+                (0..order - 1).map(|k| shorter[k] - reflection * shorter[order - 2 - k]).collect();
+            longer.push(reflection);
+            predictors.push(longer);
+            let error: f64 = errors[order - 1] * (1.0 - reflection * reflection);
+            if error <= 1e-12 {
+                break;
+            }
+            errors.push(error);
+            // Colour that is left counts as evidence, a coefficient too many costs little.
+            let criterion = count as f64 * error.ln() + 2.0 * order as f64;
+            if criterion < best_criterion {
+                (best, best_criterion) = (order, criterion);
+            }
+        }
+        predictors.truncate(best + 1);
+        let excess = errors[..=best].iter().map(|error| (error / errors[best]).sqrt()).collect();
+        Self { predictors, excess }
+    }
+
+    /// Subtracts from each row what those before it in its run predict, in place; at the start of a run scaled to the error of
+    /// the last predictor.
+    fn remove(&self, column: &mut [f64], runs: &[Range<usize>]) {
+        let largest = self.predictors.len() - 1;
         for run in runs {
             for i in run.clone().rev() {
-                column[i] = if i < run.start + order {
-                    0.0
-                } else {
-                    let coloured: f64 =
-                        self.autoregression.iter().enumerate().map(|(k, a)| a * column[i - k - 1]).sum();
-                    (column[i] - coloured) / self.deviation[i]
-                };
+                let order = (i - run.start).min(largest);
+                let predicted: f64 =
+                    self.predictors[order].iter().enumerate().map(|(k, a)| a * column[i - k - 1]).sum();
+                column[i] = (column[i] - predicted) / self.excess[order];
             }
         }
     }
-
-    /// Number of rows that keep information after whitening.
-    pub fn rows(&self, runs: &[Range<usize>]) -> usize {
-        runs.iter().map(|run| run.len().saturating_sub(self.autoregression.len())).sum()
-    }
-}
-
-/// Autoregression by the Levinson recursion on the pooled autocovariance (always stable), order by BIC.
-fn autoregression(residual: &[f64], runs: &[Range<usize>]) -> Vec<f64> {
-    let count: usize = runs.iter().map(|run| run.len()).sum();
-    let covariance: Vec<f64> = (0..=LARGEST_ORDER)
-        .map(|lag| {
-            runs.iter()
-                .map(|run| (run.start + lag..run.end).map(|i| residual[i] * residual[i - lag]).sum::<f64>())
-                .sum()
-        })
-        .collect();
-    if covariance[0] <= 0.0 || count < 10 * LARGEST_ORDER {
-        return Vec::new();
-    }
-    let mut coefficients: Vec<f64> = Vec::new();
-    let mut error = covariance[0];
-    let (mut best, mut best_criterion) = (Vec::new(), count as f64 * error.ln());
-    for order in 1..=LARGEST_ORDER {
-        let predicted: f64 = coefficients.iter().enumerate().map(|(k, a)| a * covariance[order - 1 - k]).sum();
-        let reflection = (covariance[order] - predicted) / error;
-        let mut longer: Vec<f64> =
-            (0..order - 1).map(|k| coefficients[k] - reflection * coefficients[order - 2 - k]).collect();
-        longer.push(reflection);
-        coefficients = longer;
-        error *= 1.0 - reflection * reflection;
-        if error <= 1e-12 * covariance[0] {
-            break;
-        }
-        let criterion = count as f64 * error.ln() + order as f64 * (count as f64).ln();
-        if criterion < best_criterion {
-            (best, best_criterion) = (coefficients.clone(), criterion);
-        }
-    }
-    best
-}
-
-fn whiten_colour(residual: &[f64], runs: &[Range<usize>], autoregression: &[f64]) -> Vec<f64> {
-    let mut innovation = vec![0.0; residual.len()];
-    for run in runs {
-        for i in run.start + autoregression.len()..run.end {
-            innovation[i] =
-                residual[i] - autoregression.iter().enumerate().map(|(k, a)| a * residual[i - k - 1]).sum::<f64>();
-        }
-    }
-    innovation
 }
 
 /// Standard deviation of the innovation, log-linear in the features; rescaled so that the whitened variance is one.
-fn deviation(innovation: &[f64], runs: &[Range<usize>], order: usize, features: &[Vec<f64>]) -> Vec<f64> {
-    let rows: Vec<usize> = runs.iter().flat_map(|run| run.start + order..run.end).collect();
+fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Vec<f64> {
+    let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
     let energy: f64 = rows.iter().map(|&i| innovation[i] * innovation[i]).sum();
     let mean = (energy / rows.len().max(1) as f64).max(f64::MIN_POSITIVE);
     let flat = vec![mean.sqrt(); innovation.len()];
@@ -169,7 +183,7 @@ mod tests {
         }
         let runs = vec![0..count];
         let noise = Noise::fit(&series, &runs, std::slice::from_ref(&feature));
-        assert!((noise.autoregression[0] - 1.2).abs() < 0.05, "{:?}", noise.autoregression);
+        assert!((noise.colour.predictors[2][0] - 1.2).abs() < 0.05, "{:?}", noise.colour);
         noise.whiten(&mut series, &runs);
         let split = |low: bool| -> f64 {
             let part: Vec<f64> =
@@ -179,5 +193,34 @@ mod tests {
         assert!((split(true) - 1.0).abs() < 0.05 && (split(false) - 1.0).abs() < 0.05);
         let lagged: f64 = series.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / count as f64;
         assert!(lagged.abs() < 0.03);
+    }
+
+    #[test]
+    fn short_runs_tell_the_colour_and_keep_their_first_rows() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let (length, count) = (25, 400);
+        let runs: Vec<Range<usize>> = (0..count).map(|run| run * length..(run + 1) * length).collect();
+        let mut series = Vec::new();
+        for _ in &runs {
+            let mut before = [0.0; 2];
+            for row in 0..200 + length {
+                let value = 1.5 * before[0] - 0.7 * before[1] + crate::diagnose::random::normal(&mut random);
+                before = [value, before[0]];
+                if row >= 200 {
+                    series.push(value);
+                }
+            }
+        }
+        let noise = Noise::fit(&series, &runs, &[]);
+        let [first, second] = noise.colour.predictors[2][..] else { panic!("an order of two") };
+        assert!((first - 1.5).abs() < 0.03 && (second + 0.7).abs() < 0.03, "{first} {second}");
+        noise.whiten(&mut series, &runs);
+        for row in [0, 1, 2, 20] {
+            let power = runs.iter().map(|run| series[run.start + row].powi(2)).sum::<f64>() / count as f64;
+            assert!((power - 1.0).abs() < 0.25, "row {row} of a run: {power}");
+        }
+        let sums: Vec<f64> = runs.iter().map(|run| series[run.clone()].iter().sum()).collect();
+        let power = sums.iter().map(|sum| sum * sum).sum::<f64>() / (count * length) as f64;
+        assert!((power - 1.0).abs() < 0.25, "slow power {power}");
     }
 }

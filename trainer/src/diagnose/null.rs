@@ -9,8 +9,9 @@ use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Length of a moving block in whitened rows (about half a second at the usual working rates).
-const BLOCK_ROWS: usize = 64;
+/// Length of a moving block in whitened rows (about two seconds at the usual working rates): longer than the colour that whitening
+/// leaves.
+const BLOCK_ROWS: usize = 256;
 
 /// One null draw of every hypothesis.
 #[derive(Clone, Debug)]
@@ -62,7 +63,7 @@ pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
 }
 
 impl NullDraws {
-    /// Draws the null `count` times; `families` and `directions` have one entry a group. `residual` is whitened, what the base and the best candidates leave.
+    /// Draws the null `count` times; `families` and `directions` have one entry a group. `residual` is whitened, what the base and the clear candidates leave.
     pub fn draw(
         directions: &Directions,
         families: Vec<Family>,

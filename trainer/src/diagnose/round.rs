@@ -14,6 +14,10 @@ use rayon::prelude::*;
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
 const PLACES_LOOKED_AT: f64 = 10.0;
 
+/// Criterion from which a candidate does not belong to the noise that the null draws are made of. With what is less they keep
+/// the chance directions that look best: without those, the noise of slow hypotheses would seem too small.
+const CLEAR_NATS: f64 = 10.0;
+
 /// A hypothesis with its score in one round.
 #[derive(Clone, Debug)]
 pub struct Scored {
@@ -65,7 +69,7 @@ impl<'s, 'a> Round<'s, 'a> {
         let mut noise = Noise::white(search.prepared.rows.len());
         let mut explained = Vec::new();
         for _ in 0..2 {
-            let (_, _, variants) = weigh_all(search, base.clone(), &noise, false);
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |tested: &Vec<Option<VariantEvidence>>| {
                     tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
@@ -73,7 +77,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 explained = variants.iter().map(largest).collect();
             }
             let mut generous = base.clone();
-            generous.extend(best_two(search, &variants));
+            generous.extend(best_two(search, &variants, bench.rows(), f64::NEG_INFINITY));
             noise = search.noise_after(&generous);
         }
         let (white, bench, variants) = weigh_all(search, base, &noise, true);
@@ -82,7 +86,7 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
-        let best = best_two(self.search, &self.variants);
+        let best = best_two(self.search, &self.variants, self.bench.rows(), CLEAR_NATS);
         draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
     }
 
@@ -192,18 +196,13 @@ fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -
     (white, bench, variants)
 }
 
-/// Unwhitened columns of the two groups whose best variants surprise most.
-fn best_two(search: &Search, variants: &[Vec<Option<VariantEvidence>>]) -> Vec<Vec<f64>> {
+/// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats.
+fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
-        let best = tested
-            .iter()
-            .enumerate()
-            .filter_map(|(i, v)| v.as_ref().map(|v| (v.statistic - 2.0 * v.complexity, i)))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((gain, variant)) = best {
-            gains.push((gain, group, variant));
-        }
+        let criteria = tested.iter().enumerate().filter_map(|(i, v)| v.as_ref().map(|v| (v.criterion(rows), i)));
+        let best = criteria.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > least);
+        gains.extend(best.map(|(gain, variant)| (gain, group, variant)));
     }
     gains.sort_by(|a, b| b.0.total_cmp(&a.0));
     gains

@@ -11,7 +11,6 @@ use super::round::{Round, Scored, score_of};
 use super::settings::Settings;
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Terms at most, repeated ones included.
 const MOST_TERMS: usize = 12;
@@ -228,22 +227,8 @@ impl<'a> Search<'a> {
     }
 
     pub(crate) fn bench(&self, base: Vec<Vec<f64>>, noise: &Noise) -> Bench {
-        let order = noise.autoregression.len();
-        let blocks = self
-            .prepared
-            .blocks
-            .iter()
-            .filter(|block| !block.locked)
-            .map(|block| {
-                block
-                    .runs
-                    .iter()
-                    .map(|run| (run.start + order).min(run.end)..run.end)
-                    .filter(|r| !r.is_empty())
-                    .collect()
-            })
-            .filter(|runs: &Vec<Range<usize>>| !runs.is_empty())
-            .collect();
+        let blocks =
+            self.prepared.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect();
         let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
         Bench::new(self.whitened(&base, noise), target, blocks)
     }

@@ -35,15 +35,13 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();
     let coefficients = least_squares(&known, &base.target, &runs)?;
     let model = Noise::fit(&residual(&known, &base.target, &coefficients), &runs, &noise_features(&prepared));
-    let order = model.autoregression.len();
-    let trimmed: Vec<_> = runs.iter().map(|r| (r.start + order).min(r.end)..r.end).filter(|r| !r.is_empty()).collect();
     let white = |column: &[f64]| {
         let mut white = column.to_vec();
         model.whiten(&mut white, &runs);
         white
     };
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
-    let whitened = Bench::new(columns, white(&filtered), vec![trimmed]);
+    let whitened = Bench::new(columns, white(&filtered), vec![runs.clone()]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
     let bare: Vec<f64> = base.target.iter().zip(&filtered).map(|(t, f)| t - f).collect();
     let without = Bench::new(whitened.base.clone(), white(&bare), whitened.blocks.clone());
