@@ -47,7 +47,12 @@ pub struct VariantEvidence {
 impl VariantEvidence {
     /// Bayesian criterion over the base in nats; free of the scale of the noise.
     pub fn criterion(&self, rows: f64) -> f64 {
-        0.5 * rows * (1.0 + self.statistic / self.residual).ln() - self.complexity
+        self.criterion_of(rows, self.residual + self.statistic, self.residual)
+    }
+
+    /// The criterion by the energy that the base leaves and the energy left with the candidate.
+    fn criterion_of(&self, rows: f64, base_energy: f64, energy: f64) -> f64 {
+        0.5 * rows * (base_energy / energy).ln() - self.complexity
     }
 }
 
@@ -247,19 +252,15 @@ impl GroupEvidence {
         rows: f64,
         grid_size: f64,
     ) -> Option<Self> {
-        let criterion_of = |variant: &VariantEvidence, energy: f64, base_energy: f64| {
-            0.5 * rows * (base_energy / energy).ln() - variant.complexity
-        };
+        let criterion = |variant: &VariantEvidence| variant.criterion_of(rows, base.residual, variant.residual);
         let tested = || variants.iter().enumerate().filter_map(|(i, v)| v.as_ref().map(|v| (i, v)));
-        let (best, variant) = tested().max_by(|(_, a), (_, b)| {
-            criterion_of(a, a.residual, base.residual).total_cmp(&criterion_of(b, b.residual, base.residual))
-        })?;
+        let (best, variant) = tested().max_by(|(_, a), (_, b)| criterion(a).total_cmp(&criterion(b)))?;
         let folds = base.fold_likelihood.len();
         let fold_gain: Vec<f64> = (0..folds)
             .map(|fold| {
                 let weighed: Vec<(f64, f64)> = tested()
                     .map(|(_, v)| {
-                        let trained = criterion_of(v, v.fold_train[fold], base.fold_train[fold]);
+                        let trained = v.criterion_of(rows, base.fold_train[fold], v.fold_train[fold]);
                         (trained, v.fold_likelihood[fold] - base.fold_likelihood[fold])
                     })
                     .collect();
@@ -273,7 +274,7 @@ impl GroupEvidence {
             degrees: variant.degrees,
             held_out: fold_gain.iter().sum(),
             fold_gain,
-            criterion: criterion_of(variant, variant.residual, base.residual) - 0.5 * grid_size.ln(),
+            criterion: criterion(variant) - 0.5 * grid_size.ln(),
         })
     }
 }

@@ -4,8 +4,10 @@
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
 use super::linear::{least_squares, residual};
+use super::noise::Noise;
 use super::prepare::Prepared;
 use super::reference::{Reference, tabulated_velocities};
+use super::search::noise_features;
 use super::signals::Signals;
 use crate::physics::JointState;
 
@@ -58,7 +60,7 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
     }
     let (low, high) = state.travel();
     let gravity = state.rotary && high - low > GRAVITY_TRAVEL_RAD;
-    KNOTS
+    let laws: Vec<(InverseLaw, Vec<f64>)> = KNOTS
         .into_iter()
         .filter_map(|knots| {
             let law = InverseLaw {
@@ -72,13 +74,29 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
             };
             law.fitted(&prepared)
         })
-        .min_by(|a, b| a.criterion(rows).total_cmp(&b.criterion(rows)))
-        .ok_or(Unlearnable::Undetermined)
+        .collect();
+    // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
+    let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
+    let runs = prepared.open_runs();
+    let noise = Noise::fit(finest, &runs, &noise_features(&prepared));
+    let criterion = |(law, rest): &(InverseLaw, Vec<f64>)| {
+        let mut white = rest.clone();
+        noise.whiten(&mut white, &runs);
+        let rows = rows as f64;
+        2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + law.coefficients.len() as f64 * rows.ln()
+    };
+    let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
+    best.map(|(law, _)| law.clone()).ok_or(Unlearnable::Undetermined)
+}
+
+fn root_mean_square(series: &[f64]) -> f64 {
+    (series.iter().map(|value| value * value).sum::<f64>() / series.len() as f64).sqrt()
 }
 
 impl InverseLaw {
-    /// The law with its coefficients. Differentiation bias and the sampling's delay are fitted beside it and left out.
-    fn fitted(mut self, prepared: &Prepared) -> Option<Self> {
+    /// The law with its coefficients, and what it leaves. Differentiation bias and the sampling's delay are fitted beside it and
+    /// left out.
+    fn fitted(mut self, prepared: &Prepared) -> Option<(Self, Vec<f64>)> {
         let state = &prepared.state;
         let raw = self.columns(state);
         let runs = prepared.open_runs();
@@ -90,16 +108,10 @@ impl InverseLaw {
         columns.push(prepared.filtered(&late));
         coefficients = least_squares(&columns, &target, &runs)?;
         let rest = residual(&columns, &target, &coefficients);
-        self.rmse = (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt();
+        self.rmse = root_mean_square(&rest);
         coefficients.truncate(raw.len());
         self.coefficients = coefficients;
-        Some(self)
-    }
-
-    /// Bayesian criterion up to a constant: less is better.
-    fn criterion(&self, rows: usize) -> f64 {
-        let rows = rows as f64;
-        2.0 * rows * self.rmse.max(f64::MIN_POSITIVE).ln() + self.coefficients.len() as f64 * rows.ln()
+        Some((self, rest))
     }
 
     /// Friction columns at one velocity with its smoothed sign: odd hats over speed, dense at low speed where friction
