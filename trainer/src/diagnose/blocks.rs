@@ -117,11 +117,13 @@ fn runs_of_motion(
 pub(super) fn standstill(signals: &Signals) -> Vec<bool> {
     const WINDOW_S: f64 = 0.004;
     let mut stuck = vec![false; signals.position.len()];
-    let reach = ((0.5 * WINDOW_S / signals.period).round() as usize).max(1);
+    let steps = ((WINDOW_S / signals.period).round() as usize).max(1);
     for segment in &signals.segments {
-        for i in segment.start + reach..segment.end.saturating_sub(reach) {
-            let moved = (signals.position[i + reach] - signals.position[i - reach]).abs();
-            stuck[i] = moved <= 1.5 * signals.position_resolution;
+        for begin in segment.start..segment.end.saturating_sub(steps) {
+            let moved = (signals.position[begin + steps] - signals.position[begin]).abs();
+            if moved <= 1.5 * signals.position_resolution {
+                stuck[begin + steps / 2..=begin + steps.div_ceil(2)].fill(true);
+            }
         }
     }
     stuck

@@ -3,7 +3,7 @@
 use super::blocks::{Block, Lock, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::signals::Signals;
-use crate::physics::{JointState, MemoryAxes, OtherJoint};
+use crate::physics::{JointState, MemoryAxes, OtherJoint, quantile, top_speed};
 use std::ops::Range;
 
 /// States at the recording's rate and the rows on which evidence is weighed.
@@ -19,10 +19,8 @@ pub struct Prepared {
     pub rows: Vec<usize>,
     /// Blocks of rows.
     pub blocks: Vec<Block>,
-    /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
-    pub narrow_velocity: Vec<f64>,
-    /// Acceleration behind a narrower filter.
-    pub narrow_acceleration: Vec<f64>,
+    /// Motion behind a narrower filter, for the nuisance columns of the differentiation bias.
+    pub(super) narrow: Motion,
     /// Recorded torque less the nominal rigid body or the reference, unfiltered: what the friction has to explain.
     pub friction_torque: Vec<f64>,
     /// Recorded torque, unfiltered.
@@ -35,6 +33,16 @@ const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.
 const ENCODER_SHARE: f64 = 0.1;
 /// Width of the smoothed sign at least, as a share of the top speed.
 const SIGN_SHARE: f64 = 0.001;
+/// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
+const STATE_WIDTHS: [f64; 3] = [4.0, 2.5, 1.6];
+/// The filter before the other channels over the common one.
+const CHANNEL_WIDTH: f64 = 1.6;
+/// Widest filter, in cycles a sample.
+const WIDEST: f64 = 0.35;
+/// Standard deviation of normal noise over the median of its magnitude.
+const DEVIATION_PER_MEDIAN: f64 = 1.4826;
+/// Filter of the nuisance columns over that before the motion.
+const NARROWER: f64 = 0.4;
 
 impl Prepared {
     /// Prepares states and rows. The cut-off is the widest at which encoder noise, through the inertia, stays below a
@@ -62,25 +70,11 @@ impl Prepared {
         let period = signals.period;
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);
-        let wide = ZeroPhase::new((1.6 * cut_off).min(0.35 / period), period);
-        let narrow = ZeroPhase::new(0.8 * cut_off, period);
-        let position = wide.over(&signals.position, segments);
-        let velocity = match &signals.velocity {
-            Some(recorded) => wide.over(recorded, segments),
-            None => first_derivative(&position, segments, period),
-        };
-        let second = |smooth: &[f64]| match &signals.velocity {
-            Some(recorded) => first_derivative(&wide.over(recorded, segments), segments, period),
-            None => second_derivative(smooth, segments, period),
-        };
-        let acceleration = second(&position);
-        let narrow_position = narrow.over(&signals.position, segments);
-        let narrow_velocity = match &signals.velocity {
-            Some(recorded) => narrow.over(recorded, segments),
-            None => first_derivative(&narrow_position, segments, period),
-        };
-        let narrow_acceleration = second(&narrow_position);
-        let velocity_noise = velocity_noise(signals.position_resolution, &wide, period);
+        let channels = ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period);
+        let states = state_filter(signals, cut_off);
+        let narrow = Motion::behind(&ZeroPhase::new(NARROWER * states.cut_off_hz, period), signals);
+        let Motion { position, velocity, acceleration } = Motion::behind(&states, signals);
+        let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
         let mut state = JointState {
             period,
             time: signals.time.clone(),
@@ -89,15 +83,15 @@ impl Prepared {
             acceleration,
             sign_velocity: 0.0,
             sign: Vec::new(),
-            rigid_body: signals.rigid_body.as_ref().map(|series| wide.over(series, segments)),
-            load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| wide.over(series, segments)),
+            rigid_body: signals.rigid_body.as_ref().map(|series| channels.over(series, segments)),
+            load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| channels.over(series, segments)),
             temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
-            link_position: signals.link_position.as_ref().map(|series| wide.over(series, segments)),
+            link_position: signals.link_position.as_ref().map(|series| states.over(series, segments)),
             other_joints: signals
                 .other_positions
                 .iter()
                 .map(|series| {
-                    let smooth = wide.over(series, segments);
+                    let smooth = states.over(series, segments);
                     OtherJoint {
                         velocity: first_derivative(&smooth, segments, period),
                         acceleration: second_derivative(&smooth, segments, period),
@@ -105,7 +99,7 @@ impl Prepared {
                     }
                 })
                 .collect(),
-            torque: wide.over(&signals.torque, segments),
+            torque: channels.over(&signals.torque, segments),
             predicted: Vec::new(),
             base_friction: Vec::new(),
             segments: segments.clone(),
@@ -130,8 +124,7 @@ impl Prepared {
             grain_limited: false,
             rows,
             blocks,
-            narrow_velocity,
-            narrow_acceleration,
+            narrow,
             friction_torque,
             torque: signals.torque.clone(),
         }
@@ -156,6 +149,46 @@ impl Prepared {
     pub fn locked_runs(&self) -> Vec<Range<usize>> {
         self.blocks.iter().filter(|block| block.locked).flat_map(|block| block.runs.clone()).collect()
     }
+}
+
+/// Position, velocity and acceleration behind one filter.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    pub position: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub acceleration: Vec<f64>,
+}
+
+impl Motion {
+    fn behind(filter: &ZeroPhase, signals: &Signals) -> Self {
+        let (period, segments) = (signals.period, &signals.segments);
+        let position = filter.over(&signals.position, segments);
+        let (velocity, acceleration) = match &signals.velocity {
+            Some(recorded) => {
+                let velocity = filter.over(recorded, segments);
+                let acceleration = first_derivative(&velocity, segments, period);
+                (velocity, acceleration)
+            }
+            None => (first_derivative(&position, segments, period), second_derivative(&position, segments, period)),
+        };
+        Self { position, velocity, acceleration }
+    }
+}
+
+/// The widest filter behind which four deviations of the velocity's noise stay within the width of the smoothed sign. A wider
+/// filter adds noise alone at most samples, so that the median tells its deviation.
+fn state_filter(signals: &Signals, cut_off: f64) -> ZeroPhase {
+    let period = signals.period;
+    let widths = STATE_WIDTHS.map(|width| ZeroPhase::new((width * cut_off).min(WIDEST / period), period));
+    let [wider @ .., smoothest] = &widths;
+    let smooth = Motion::behind(smoothest, signals).velocity;
+    let allowed = SIGN_SHARE * top_speed(&smooth);
+    let is_quiet = |filter: &&ZeroPhase| {
+        let velocity = Motion::behind(filter, signals).velocity;
+        let added = quantile(velocity.iter().zip(&smooth).map(|(wide, smooth)| (wide - smooth).abs()), 0.5);
+        4.0 * DEVIATION_PER_MEDIAN * added <= allowed
+    };
+    wider.iter().find(is_quiet).unwrap_or(smoothest).clone()
 }
 
 /// Deviation of the derived velocity caused by the encoder's grain.

@@ -83,7 +83,7 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
         let mut white = rest.clone();
         noise.whiten(&mut white, &runs);
         let rows = rows as f64;
-        2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + law.coefficients.len() as f64 * rows.ln()
+        2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
     };
     let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
     best.map(|(law, _)| law.clone()).ok_or(Unlearnable::Undetermined)

@@ -143,7 +143,7 @@ impl JointState {
 
     /// Largest speed that is common: the 98 % quantile of |v|.
     pub fn top_speed(&self) -> f64 {
-        quantile(self.velocity.iter().map(|v| v.abs()), 0.98)
+        top_speed(&self.velocity)
     }
 
     /// Travel between the 0.5 % and 99.5 % quantiles of position.
@@ -207,6 +207,11 @@ impl JointState {
     pub fn map(&self, torque: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.len()).map(torque).collect()
     }
+}
+
+/// Speed that all but a fiftieth of the samples stay below.
+pub(crate) fn top_speed(velocity: &[f64]) -> f64 {
+    quantile(velocity.iter().map(|v| v.abs()), 0.98)
 }
 
 /// Quantile of finite values by sorting; 0 when there are none.
