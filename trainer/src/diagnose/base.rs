@@ -121,9 +121,9 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
 pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
-    let narrow_sign = state.averaged_sign(&prepared.narrow.velocity, state.sign_velocity);
+    let narrow_sign = state.averaged_sign(&prepared.narrow_velocity, state.sign_velocity);
     let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
-    let acceleration = state.map(|i| prepared.narrow.acceleration[i] - state.acceleration[i]);
+    let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
     // The smoothed sign stands for a jump: its width is a nuisance too.
     let wide_sign = state.averaged_sign(&state.velocity, 3.0 * state.sign_velocity);
     let width = state.map(|i| wide_sign[i] - state.sign[i]);

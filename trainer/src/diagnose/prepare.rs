@@ -19,8 +19,10 @@ pub struct Prepared {
     pub rows: Vec<usize>,
     /// Blocks of rows.
     pub blocks: Vec<Block>,
-    /// Motion behind a narrower filter, for the nuisance columns of the differentiation bias.
-    pub(super) narrow: Motion,
+    /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
+    pub narrow_velocity: Vec<f64>,
+    /// Acceleration behind a narrower filter.
+    pub narrow_acceleration: Vec<f64>,
     /// Recorded torque less the nominal rigid body or the reference, unfiltered: what the friction has to explain.
     pub friction_torque: Vec<f64>,
     /// Recorded torque, unfiltered.
@@ -41,8 +43,10 @@ const CHANNEL_WIDTH: f64 = 1.6;
 const WIDEST: f64 = 0.35;
 /// Standard deviation of normal noise over the median of its magnitude.
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
-/// Filter of the nuisance columns over that before the motion.
-const NARROWER: f64 = 0.4;
+/// Filter of the nuisance column of the velocity over that before the motion.
+const NARROW_VELOCITY: f64 = 0.4;
+/// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.
+const NARROW_ACCELERATION: f64 = 0.8;
 
 impl Prepared {
     /// Prepares states and rows. The cut-off is the widest at which encoder noise, through the inertia, stays below a
@@ -72,7 +76,9 @@ impl Prepared {
         let filter = ZeroPhase::new(cut_off, period);
         let channels = ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period);
         let states = state_filter(signals, cut_off);
-        let narrow = Motion::behind(&ZeroPhase::new(NARROWER * states.cut_off_hz, period), signals);
+        let narrow = |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), signals);
+        let narrow_velocity = narrow(NARROW_VELOCITY * states.cut_off_hz).velocity;
+        let narrow_acceleration = narrow(NARROW_ACCELERATION * cut_off).acceleration;
         let Motion { position, velocity, acceleration } = Motion::behind(&states, signals);
         let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
         let mut state = JointState {
@@ -124,7 +130,8 @@ impl Prepared {
             grain_limited: false,
             rows,
             blocks,
-            narrow,
+            narrow_velocity,
+            narrow_acceleration,
             friction_torque,
             torque: signals.torque.clone(),
         }
@@ -152,11 +159,10 @@ impl Prepared {
 }
 
 /// Position, velocity and acceleration behind one filter.
-#[derive(Clone, Debug)]
-pub(super) struct Motion {
-    pub position: Vec<f64>,
-    pub velocity: Vec<f64>,
-    pub acceleration: Vec<f64>,
+struct Motion {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
 }
 
 impl Motion {
