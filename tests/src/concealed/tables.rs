@@ -55,10 +55,10 @@ fn controls(rows: &[Row], text: &mut String) {
         let _ = writeln!(text, "| {kind} | {} |", share(*hits, *of));
     }
     let hits = controls.iter().filter(|r| !r.findings.is_empty()).count();
-    let _ = writeln!(text, "| all | {} |", share(hits, controls.len()));
+    let _ = writeln!(text, "| all | {} |\n", share(hits, controls.len()));
     for alarm in controls.iter().filter(|r| !r.findings.is_empty()) {
         let names: Vec<&str> = alarm.findings.iter().map(|(effect, ..)| effect.name()).collect();
-        let _ = writeln!(text, "\n* {:?}, seed {}: {}", alarm.case.noise, alarm.case.seed, names.join(" + "));
+        let _ = writeln!(text, "* {:?}, seed {}: {}", alarm.case.noise, alarm.case.seed, names.join(" + "));
     }
 }
 
