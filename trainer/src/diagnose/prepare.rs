@@ -75,11 +75,10 @@ impl Prepared {
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);
         let channels = ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period);
-        let states = state_filter(signals, cut_off);
+        let (states, Motion { position, velocity, acceleration }) = sharpest_motion(signals, cut_off);
         let narrow = |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), signals);
         let narrow_velocity = narrow(NARROW_VELOCITY * states.cut_off_hz).velocity;
         let narrow_acceleration = narrow(NARROW_ACCELERATION * cut_off).acceleration;
-        let Motion { position, velocity, acceleration } = Motion::behind(&states, signals);
         let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
         let mut state = JointState {
             period,
@@ -181,20 +180,23 @@ impl Motion {
     }
 }
 
-/// The widest filter behind which four deviations of the velocity's noise stay within the width of the smoothed sign. A wider
-/// filter adds noise alone at most samples, so that the median tells its deviation.
-fn state_filter(signals: &Signals, cut_off: f64) -> ZeroPhase {
-    let period = signals.period;
-    let widths = STATE_WIDTHS.map(|width| ZeroPhase::new((width * cut_off).min(WIDEST / period), period));
-    let [wider @ .., smoothest] = &widths;
-    let smooth = Motion::behind(smoothest, signals).velocity;
-    let allowed = SIGN_SHARE * top_speed(&smooth);
-    let is_quiet = |filter: &&ZeroPhase| {
-        let velocity = Motion::behind(filter, signals).velocity;
-        let added = quantile(velocity.iter().zip(&smooth).map(|(wide, smooth)| (wide - smooth).abs()), 0.5);
+/// Motion behind the widest filter behind which four deviations of the velocity's noise stay within the width of the smoothed
+/// sign. A wider filter adds noise alone at most samples, so that the median tells its deviation.
+fn sharpest_motion(signals: &Signals, cut_off: f64) -> (ZeroPhase, Motion) {
+    let behind = |width: f64| {
+        let filter = ZeroPhase::new((width * cut_off).min(WIDEST / signals.period), signals.period);
+        let motion = Motion::behind(&filter, signals);
+        (filter, motion)
+    };
+    let [wider @ .., narrowest] = STATE_WIDTHS;
+    let smoothest = behind(narrowest);
+    let smooth = &smoothest.1.velocity;
+    let allowed = SIGN_SHARE * top_speed(smooth);
+    let is_quiet = |(_, motion): &(ZeroPhase, Motion)| {
+        let added = quantile(motion.velocity.iter().zip(smooth).map(|(wide, smooth)| (wide - smooth).abs()), 0.5);
         4.0 * DEVIATION_PER_MEDIAN * added <= allowed
     };
-    wider.iter().find(is_quiet).unwrap_or(smoothest).clone()
+    wider.into_iter().map(behind).find(is_quiet).unwrap_or(smoothest)
 }
 
 /// Deviation of the derived velocity caused by the encoder's grain.
