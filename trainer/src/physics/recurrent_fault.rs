@@ -9,6 +9,8 @@ pub(super) struct RecurrentFault;
 const WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
 /// Widths of a pulse that is only passed to and fro: what is wider has other names.
 const NARROW_TURNS: [f64; 2] = [0.004, 0.008];
+/// Passes of an angle from which a pulse there comes back; what is passed once is a one-off event.
+const LEAST_PASSES: usize = 2;
 
 /// Logarithm of the pulse's height below which it is nothing.
 const NOTHING_LEFT: f64 = 40.0;
@@ -36,7 +38,9 @@ impl Hypothesis for RecurrentFault {
             for width in NARROW_TURNS {
                 let places = ((high - low) * order / (1.2 * TAU * width)).ceil() as usize;
                 let at = |place: usize| order * (low + (high - low) * (place as f64 + 0.5) / places as f64);
-                shapes.extend((0..places).map(|place| vec![order, at(place), width, 0.0]));
+                let comes_back =
+                    |phase: &f64| passes(&state.position, phase / order, TAU * width / order) >= LEAST_PASSES;
+                shapes.extend((0..places).map(at).filter(comes_back).map(|phase| vec![order, phase, width, 0.0]));
             }
         }
         for order in again {
@@ -85,5 +89,26 @@ impl Hypothesis for RecurrentFault {
 
     fn step(&self, _state: &JointState, index: usize, shape: &[f64]) -> f64 {
         if index == 1 { 0.5 * TAU * shape[2] } else { 0.3 * shape[2] }
+    }
+}
+
+/// How often positions pass through an angle, from outside `margin` on one side to outside it on the other.
+fn passes(position: &[f64], angle: f64, margin: f64) -> usize {
+    let beyond = position.iter().map(|q| q - angle).filter(|distance| distance.abs() > margin);
+    let sides: Vec<bool> = beyond.map(|distance| distance > 0.0).collect();
+    sides.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::passes;
+
+    #[test]
+    fn a_jerk_within_the_margin_is_no_second_pass() {
+        let once: Vec<f64> = (0..100).map(|i| 0.02 * f64::from(i) + if i % 2 == 0 { 0.03 } else { -0.03 }).collect();
+        assert_eq!(passes(&once, 1.0, 0.05), 1);
+        let to_and_fro: Vec<f64> = (0..100).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        assert_eq!(passes(&to_and_fro, 0.5, 0.05), 3);
+        assert_eq!(passes(&to_and_fro, 2.0, 0.05), 0);
     }
 }
