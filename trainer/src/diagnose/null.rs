@@ -1,7 +1,7 @@
 //! What the statistics do when nothing is missing: draws of moving blocks of the residual with random signs and places,
 //! the tail of every hypothesis' statistic, and the family-wise probability (Westfall and Young 1993).
 
-use super::linear::{orthonormal, project_out};
+use super::linear::{dot, orthonormal, project_out};
 use super::random::uniform;
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
@@ -80,52 +80,32 @@ impl NullDraws {
         let packed_runs = [0..rows];
         let packed_base = orthonormal(&base.iter().map(|c| gather(c)).collect::<Vec<_>>(), &packed_runs);
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let starts: Vec<Vec<(usize, f64)>> = (0..count)
-            .map(|_| {
-                (0..rows.div_ceil(BLOCK_ROWS))
-                    .map(|_| {
-                        let start = (uniform(&mut random) * pool.len() as f64) as usize;
-                        (start, if uniform(&mut random) < 0.5 { -1.0 } else { 1.0 })
-                    })
-                    .collect()
-            })
+        let draws: Vec<Vec<Block>> = (0..count)
+            .map(|_| (0..rows.div_ceil(BLOCK_ROWS)).map(|_| Block::draw(&mut random, rows)).collect())
             .collect();
-        let draws: Vec<Vec<f64>> = starts
-            .par_iter()
-            .map(|blocks| {
-                let mut draw: Vec<f64> = (0..rows)
-                    .map(|i| {
-                        let (start, sign) = blocks[i / BLOCK_ROWS];
-                        sign * pool[(start + i % BLOCK_ROWS) % pool.len()]
-                    })
-                    .collect();
-                project_out(&mut draw, &packed_base, &packed_runs);
-                draw
-            })
-            .collect();
-        let matrix = DMatrix::from_fn(rows, count, |i, j| draws[j][i]);
-        // One group after the other, so that only one group's directions are packed at a time.
+        // One group after the other, so that only one group's directions and draws are held at a time.
         let surprises: Vec<Vec<f64>> = directions
             .par_iter()
             .map(|variants| {
-                let packed: Vec<Vec<f64>> = variants.iter().flatten().map(|d| gather(d)).collect();
-                if packed.is_empty() {
+                let variants: Vec<Vec<Vec<f64>>> =
+                    variants.iter().map(|variant| variant.iter().map(|d| gather(d)).collect()).collect();
+                let surprise = |variant: &[Vec<f64>]| {
+                    let energy = variant.iter().map(|d| dot(d, &pool, &packed_runs).powi(2)).sum();
+                    chi_square_surprise(energy, variant.len())
+                };
+                let Some(strongest) = variants.iter().max_by(|a, b| surprise(a).total_cmp(&surprise(b))) else {
                     return vec![0.0; count];
-                }
-                let directions = DMatrix::from_fn(packed.len(), rows, |i, j| packed[i][j]);
-                let shares = directions * &matrix;
-                (0..count)
-                    .map(|draw| {
-                        let mut row = 0;
-                        let mut largest = 0.0f64;
-                        for variant in variants {
-                            let energy: f64 = (row..row + variant.len()).map(|i| shares[(i, draw)].powi(2)).sum();
-                            row += variant.len();
-                            largest = largest.max(chi_square_surprise(energy, variant.len()));
-                        }
-                        largest
-                    })
-                    .collect()
+                };
+                // What the group itself explains is its evidence and no measure of its chance (ter Braak 1992).
+                let mut pool = pool.clone();
+                project_out(&mut pool, strongest, &packed_runs);
+                let drawn = |blocks: &Vec<Block>| {
+                    let mut draw = resample(&pool, blocks);
+                    project_out(&mut draw, &packed_base, &packed_runs);
+                    draw
+                };
+                let matrix = DMatrix::from_vec(rows, count, draws.iter().flat_map(drawn).collect());
+                largest_surprises(&variants, &matrix)
             })
             .collect();
         let tails: Vec<(f64, f64)> = surprises.iter().map(|values| gumbel(values)).collect();
@@ -150,6 +130,45 @@ impl NullDraws {
         let within = -(self.effective[family as usize] * (-alone).ln_1p()).exp_m1();
         (within / family.share()).min(1.0)
     }
+}
+
+/// A stretch of the residual in a draw: where it begins, and with which sign it is taken.
+struct Block {
+    start: usize,
+    sign: f64,
+}
+
+impl Block {
+    fn draw(random: &mut ChaCha8Rng, rows: usize) -> Self {
+        let start = (uniform(random) * rows as f64) as usize;
+        Self { start, sign: if uniform(random) < 0.5 { -1.0 } else { 1.0 } }
+    }
+}
+
+/// A pool of residuals in another order: block behind block, from its end on at its beginning.
+fn resample(pool: &[f64], blocks: &[Block]) -> Vec<f64> {
+    let value = |i: usize| {
+        let Block { start, sign } = blocks[i / BLOCK_ROWS];
+        sign * pool[(start + i % BLOCK_ROWS) % pool.len()]
+    };
+    (0..pool.len()).map(value).collect()
+}
+
+/// The largest surprise among the variants of a group, for each draw (a column).
+fn largest_surprises(variants: &[Vec<Vec<f64>>], draws: &DMatrix<f64>) -> Vec<f64> {
+    let flat: Vec<&Vec<f64>> = variants.iter().flatten().collect();
+    let shares = DMatrix::from_fn(flat.len(), draws.nrows(), |i, j| flat[i][j]) * draws;
+    let largest = |draw: usize| {
+        let mut row = 0;
+        let mut largest = 0.0f64;
+        for variant in variants {
+            let energy: f64 = (row..row + variant.len()).map(|i| shares[(i, draw)].powi(2)).sum();
+            row += variant.len();
+            largest = largest.max(chi_square_surprise(energy, variant.len()));
+        }
+        largest
+    };
+    (0..draws.ncols()).map(largest).collect()
 }
 
 /// Gumbel location and scale by moments; the scale is at least one, that of independent exponential tails.

@@ -28,7 +28,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            family_wise_level: 0.002,
+            family_wise_level: 0.004,
             least_score: 4.0,
             candidate_level: 0.05,
             candidate_score: 2.0,
