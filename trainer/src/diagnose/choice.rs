@@ -15,6 +15,10 @@ const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
 const NEARLY_ALL: f64 = 0.01;
 const ALL: f64 = 1e-6;
 
+/// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
+/// chance what the name's formula misses.
+const UNKNOWN_LEAD_NATS: f64 = 12.0;
+
 /// Lead in nats up to which an effect is no better than the one that it yields to: it has more to fit.
 const AS_GOOD_NATS: f64 = 0.5;
 
@@ -63,15 +67,17 @@ impl Round<'_, '_> {
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
+        let cannot_be_ruled_out = |rival: &Scored| match best.label {
+            Label::Named(_) => within_reach(best, rival, settings.ambiguity_margin),
+            Label::Generic(_) => passes(&rival) && within_reach(best, rival, UNKNOWN_LEAD_NATS),
+        };
         for rival in table.iter().filter(|s| s.label != best.label) {
             let Label::Named(effect) = rival.label else { continue };
             let distance = best.score - rival.score;
             standings.push((effect, distance));
-            if !within_reach(best, rival, settings.ambiguity_margin) {
+            if !cannot_be_ruled_out(rival) {
                 margin = margin.min(distance);
-            } else if matches!(best.label, Label::Named(_))
-                && (distance < 0.0 || !self.contains(rival, best, NEARLY_ALL))
-            {
+            } else if distance < 0.0 || !self.contains(rival, best, NEARLY_ALL) {
                 rivals.push((effect, distance));
             }
         }
