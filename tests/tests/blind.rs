@@ -53,3 +53,8 @@ fn a_term_that_one_block_alone_determines_leaves_the_rest_of_the_search_in_order
 fn a_free_function_of_many_coefficients_does_not_go_before_a_name_that_explains_as_much() {
     assert!(in_set(&hidden("direction_asymmetry", 80.0, 460_002), "direction_asymmetry"));
 }
+
+#[test]
+fn a_name_that_a_free_function_leads_by_little_stays_in_its_set() {
+    assert!(in_set(&hidden("spring", 80.0, 82_000_287), "spring"));
+}

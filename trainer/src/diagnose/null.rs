@@ -184,3 +184,26 @@ fn gumbel(values: &[f64]) -> (f64, f64) {
 fn tail_probability(surprise: f64, (location, scale): (f64, f64)) -> f64 {
     -(-(-(surprise - location) / scale).exp()).exp_m1()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::random::normal;
+
+    #[test]
+    fn what_a_direction_explains_does_not_widen_its_own_null() {
+        let rows = 2_000;
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let noise: Vec<f64> = (0..rows).map(|_| normal(&mut random)).collect();
+        let direction = vec![(rows as f64).powf(-0.5); rows];
+        let chance = |effect: f64| {
+            let residual: Vec<f64> = noise.iter().zip(&direction).map(|(e, d)| e + effect * d).collect();
+            let directions = vec![vec![vec![direction.clone()]]];
+            let runs = std::iter::once(0..rows).collect::<Vec<_>>();
+            let null = NullDraws::draw(&directions, vec![Family::Named], &[], &residual, &runs, 200, 1);
+            null.family_wise(0, chi_square_surprise(25.0, 1))
+        };
+        assert!(chance(5.0) < 2.0 * chance(0.0), "{} against {}", chance(5.0), chance(0.0));
+        assert!(chance(5.0) < 1e-4);
+    }
+}
