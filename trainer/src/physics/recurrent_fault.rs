@@ -108,7 +108,7 @@ mod tests {
         let once: Vec<f64> = (0..100).map(|i| 0.02 * f64::from(i) + if i % 2 == 0 { 0.03 } else { -0.03 }).collect();
         assert_eq!(passes(&once, 1.0, 0.05), 1);
         let to_and_fro: Vec<f64> = (0..100).map(|i| (0.1 * f64::from(i)).sin()).collect();
-        assert_eq!(passes(&to_and_fro, 0.5, 0.05), 3);
+        assert_eq!(passes(&to_and_fro, 0.5, 0.05), 4);
         assert_eq!(passes(&to_and_fro, 2.0, 0.05), 0);
     }
 }
