@@ -67,15 +67,15 @@ impl Round<'_, '_> {
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
-        let cannot_be_ruled_out = |rival: &Scored| match best.label {
-            Label::Named(_) => within_reach(best, rival, settings.ambiguity_margin),
-            Label::Generic(_) => passes(&rival) && within_reach(best, rival, UNKNOWN_LEAD_NATS),
-        };
         for rival in table.iter().filter(|s| s.label != best.label) {
             let Label::Named(effect) = rival.label else { continue };
             let distance = best.score - rival.score;
             standings.push((effect, distance));
-            if !cannot_be_ruled_out(rival) {
+            let is_ruled_out = match best.label {
+                Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
+                Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
+            };
+            if is_ruled_out {
                 margin = margin.min(distance);
             } else if distance < 0.0 || !self.contains(rival, best, NEARLY_ALL) {
                 rivals.push((effect, distance));

@@ -253,5 +253,5 @@ fn draw_null(
     };
     let families = search.design.groups.iter().map(family).collect();
     let Settings { null_draws, seed, .. } = search.settings;
-    NullDraws::draw(&directions, families, &base_directions, &rest, &runs, null_draws, seed)
+    NullDraws::draw(&directions, families, &rest, &runs, null_draws, seed)
 }
