@@ -58,3 +58,17 @@ fn a_free_function_of_many_coefficients_does_not_go_before_a_name_that_explains_
 fn a_name_that_a_free_function_leads_by_little_stays_in_its_set() {
     assert!(in_set(&hidden("spring", 80.0, 82_000_287), "spring"));
 }
+
+/// Noise that grows up to the top acceleration of a sweep; a motion that nearly stops and goes on; slow noise behind a coarse
+/// encoder: none of them is an effect.
+#[test]
+fn where_nothing_is_missing_nothing_is_named() {
+    let state_dependent =
+        [93_000_456, 93_000_510, 93_000_511, 93_000_557].map(|seed| (NoiseKind::StateDependent, seed));
+    let coarse = [93_000_625, 93_000_641, 93_000_664].map(|seed| (NoiseKind::CoarseEncoder, seed));
+    let controls: Vec<(NoiseKind, u64)> = state_dependent.into_iter().chain(coarse).collect();
+    controls.into_par_iter().for_each(|(noise, seed)| {
+        let case = Case { hidden: Hidden::Nothing, noise, base: BaseKind::CoulombViscous, seed };
+        assert_eq!(run(&case).unwrap().named(), [], "{noise:?}, seed {seed}");
+    });
+}

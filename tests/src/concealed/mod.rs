@@ -189,17 +189,10 @@ impl Outcome {
         self.diagnosis.findings.iter().map(|finding| finding.effect).collect()
     }
 
-    /// Channels of the first unnamed finding.
-    pub fn unknown_channels(&self) -> Vec<String> {
-        use frikan_trainer::diagnose::Label;
-        self.diagnosis
-            .findings
-            .iter()
-            .find_map(|finding| match finding.fitted.label {
-                Label::Generic(rival) => Some(vec![rival.factor.text().to_string(), rival.channel.name().to_string()]),
-                Label::Named(_) => None,
-            })
-            .unwrap_or_default()
+    /// Channels that the first unnamed finding states, likeliest first; empty where there is none.
+    pub fn unknown_channels(&self) -> Vec<&'static str> {
+        let stated = self.diagnosis.findings.iter().map(|finding| &finding.channels).find(|stated| !stated.is_empty());
+        stated.into_iter().flatten().map(|channel| channel.name()).collect()
     }
 }
 

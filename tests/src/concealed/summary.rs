@@ -16,8 +16,8 @@ pub struct Row {
     pub effect_to_noise: f64,
     /// Findings in order, each with its ambiguity set and stated probability.
     pub findings: Vec<(EffectId, Vec<EffectId>, f64)>,
-    /// Channels of an unnamed finding.
-    pub unknown_channels: Vec<String>,
+    /// Channels that an unnamed finding states, likeliest first.
+    pub unknown_channels: Vec<&'static str>,
     /// Share of the removable error that is removed on locked rows, from Coulomb and viscous friction.
     pub removed_share: Option<f64>,
     /// Parameters of a right finding of which the truth is known.
@@ -72,9 +72,10 @@ impl Row {
         self.findings.first().is_some_and(|(effect, _, _)| *effect != EffectId::Unknown) && !self.in_set()
     }
 
-    /// Whether a structure outside the catalogue is located along a channel on which it depends.
-    pub fn channels_are_right(&self) -> bool {
-        let Hidden::Effect(name, _) = self.case.hidden else { return false };
+    /// Whether a structure outside the catalogue is said to hang on a channel on which it depends: on the first that is stated,
+    /// or on any of them.
+    pub fn channels_are_right(&self) -> [bool; 2] {
+        let Hidden::Effect(name, _) = self.case.hidden else { return [false; 2] };
         let channels: &[&str] = match name {
             "unknown_acceleration_sign" | "unknown_acceleration_square" => &["acceleration"],
             "unknown_load_position" => &["load", "position"],
@@ -87,7 +88,8 @@ impl Row {
             "unknown_speed_band" => &["velocity"],
             _ => &["position"],
         };
-        self.unknown_channels.last().is_some_and(|found| channels.contains(&found.as_str()))
+        let right = |found: &&str| channels.contains(found);
+        [self.unknown_channels.first().is_some_and(right), self.unknown_channels.iter().any(|found| right(&found))]
     }
 }
 

@@ -210,7 +210,7 @@ fn outside(rows: &[Row], text: &mut String) {
         if let Hidden::Effect(name, _) = row.case.hidden {
             let answer = row.findings.first().map_or("nothing".to_string(), |(effect, _, _)| {
                 if *effect == EffectId::Unknown {
-                    format!("unknown ({})", row.unknown_channels.join(", "))
+                    format!("unknown ({})", row.unknown_channels.join(" or "))
                 } else {
                     effect.name().to_string()
                 }
@@ -223,12 +223,15 @@ fn outside(rows: &[Row], text: &mut String) {
     }
     let unknown =
         outside.iter().filter(|r| r.findings.first().is_some_and(|(e, _, _)| *e == EffectId::Unknown)).count();
-    let right = outside.iter().filter(|r| r.channels_are_right()).count();
+    let [first, any] =
+        [0, 1].map(|which| share(outside.iter().filter(|r| r.channels_are_right()[which]).count(), outside.len()));
+    let stated: Vec<f64> =
+        outside.iter().map(|r| r.unknown_channels.len() as f64).filter(|stated| *stated > 0.0).collect();
     let _ = writeln!(
         text,
-        "\nAnswered \"unknown\": {}. With the right channel: {}.",
+        "\nAnswered \"unknown\": {}. The first channel right: {first}; a right one among those stated: {any}; on average {:.2} are stated.",
         share(unknown, outside.len()),
-        share(right, outside.len())
+        stated.iter().sum::<f64>() / stated.len().max(1) as f64
     );
 }
 

@@ -129,6 +129,24 @@ pub(super) fn standstill(signals: &Signals) -> Vec<bool> {
     stuck
 }
 
+/// Samples at which the joint is slower than `slow` and then goes on in the same direction: whether it sticks in between, no
+/// encoder tells.
+pub(super) fn hesitation(velocity: &[f64], slow: f64, segments: &[Range<usize>]) -> Vec<bool> {
+    let mut hesitates = vec![false; velocity.len()];
+    for segment in segments {
+        let mut end = segment.start;
+        for stretch in velocity[segment.clone()].chunk_by(|a, b| (a.abs() < slow) == (b.abs() < slow)) {
+            let begin = end;
+            end += stretch.len();
+            let goes_on = || velocity[begin - 1] * velocity[end] > 0.0;
+            if stretch[0].abs() < slow && begin > segment.start && end < segment.end && goes_on() {
+                hesitates[begin..end].fill(true);
+            }
+        }
+    }
+    hesitates
+}
+
 /// Sample ranges of the blocks: the segments where there are enough of them, else segments cut into pieces. What the
 /// filter reaches at both ends of a segment is left out.
 fn pieces(state: &JointState, reach: usize, step: usize) -> Vec<Range<usize>> {
@@ -153,4 +171,18 @@ fn pieces(state: &JointState, reach: usize, step: usize) -> Vec<Range<usize>> {
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_that_goes_on_after_a_near_stop_hesitates_and_one_that_turns_back_does_not() {
+        let velocity = [0.0, 1.0, 0.1, -0.1, 1.0, 0.1, -0.1, -1.0, -0.1, -1.0, 0.0];
+        let segments = [0..7, 7..11];
+        let slow = hesitation(&velocity, 0.5, &segments);
+        let expected = [2, 3, 8];
+        assert_eq!((0..velocity.len()).filter(|&i| slow[i]).collect::<Vec<_>>(), expected);
+    }
 }

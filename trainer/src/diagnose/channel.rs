@@ -47,6 +47,19 @@ impl Channel {
         }
     }
 
+    /// The name that people read.
+    pub fn plain_name(self) -> &'static str {
+        match self {
+            Channel::Speed => "speed",
+            Channel::DistanceSinceReversal => "the distance since the last reversal",
+            Channel::TimeSinceReversal => "the time since the last reversal",
+            Channel::Dwell => "the stop before the motion",
+            Channel::OtherJoint(_) => "the other joint's velocity",
+            Channel::OtherPosition(_) => "the other joint's position",
+            _ => self.name(),
+        }
+    }
+
     /// The axes along which a finding is located, velocity apart: it keeps its sign there.
     pub fn axes(state: &JointState) -> Vec<Channel> {
         let mut axes = vec![

@@ -1,6 +1,8 @@
 //! The end of a round: the best passing hypothesis with those that cannot be told apart from it, or nothing.
 
 use super::candidates::Label;
+use super::channel::Channel;
+use super::generic::Generic;
 use super::linear::{dot, orthonormal, project_out};
 use super::round::{Round, Scored};
 use super::search::Accepted;
@@ -18,6 +20,10 @@ const ALL: f64 = 1e-6;
 /// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
 /// chance what the name's formula misses.
 const UNKNOWN_LEAD_NATS: f64 = 12.0;
+
+/// Lead in nats up to which an effect does not rule out the one that it yields to: its further shape may fit what the other's
+/// formula misses.
+const YIELDING_LEAD_NATS: f64 = 8.0;
 
 /// Lead in nats up to which an effect is no better than the one that it yields to: it has more to fit.
 const AS_GOOD_NATS: f64 = 0.5;
@@ -64,6 +70,7 @@ impl Round<'_, '_> {
             (None, None) => return None,
         };
         let best = self.plainest(best, passing_names());
+        let yields_to = self.yields_to(best);
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
@@ -72,6 +79,7 @@ impl Round<'_, '_> {
             let distance = best.score - rival.score;
             standings.push((effect, distance));
             let is_ruled_out = match best.label {
+                Label::Named(_) if yields_to.as_ref() == Some(&rival.label) => distance >= YIELDING_LEAD_NATS,
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
                 Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
             };
@@ -90,20 +98,29 @@ impl Round<'_, '_> {
             margin,
             rivals,
             standings,
+            channels: channels(best, table.iter().filter(passes), settings.ambiguity_margin),
         })
     }
 
     /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
     /// effect that the best one yields to.
     fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
-        let Label::Named(effect) = best.label else { return best };
-        let first = self.search.hypothesis(effect).and_then(Hypothesis::yields_to).map(Label::Named);
+        if !matches!(best.label, Label::Named(_)) {
+            return best;
+        }
+        let first = self.yields_to(best);
         let plainer = |rival: &&Scored| {
             let as_good = best.score - rival.score < AS_GOOD_NATS && first.as_ref() == Some(&rival.label);
             as_good
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
         };
         passing.find(plainer).unwrap_or(best)
+    }
+
+    /// The effect to which a named one yields on equal terms.
+    fn yields_to(&self, best: &Scored) -> Option<Label> {
+        let Label::Named(effect) = best.label else { return None };
+        self.search.hypothesis(effect).and_then(Hypothesis::yields_to).map(Label::Named)
     }
 
     /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.
@@ -126,6 +143,20 @@ impl Round<'_, '_> {
             outside(&span) < but_for * outside(&base)
         })
     }
+}
+
+/// The channel of a structure without a name, then those of the passing structures within reach, likeliest first.
+fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach: f64) -> Vec<Channel> {
+    let Label::Generic(structure) = best.label else { return Vec::new() };
+    let mut channels = vec![structure.channel];
+    for rival in passing.filter(|rival| within_reach(best, rival, reach)) {
+        if let Label::Generic(Generic { channel, .. }) = rival.label
+            && !channels.contains(&channel)
+        {
+            channels.push(channel);
+        }
+    }
+    channels
 }
 
 /// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from

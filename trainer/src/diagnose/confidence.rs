@@ -3,19 +3,28 @@
 use super::search::Accepted;
 use crate::physics::EffectId;
 
-/// Frequency of a right first name by the number of rivals that cannot be ruled out (two and more in the last), measured
-/// on some six hundred concealed effects of other seeds than the report's.
-const BY_RIVALS: [f64; 3] = [0.98, 0.80, 0.62];
-/// The same without such a rival where the next one stands closer than [`CLEAR_NATS`].
+/// Frequency of a right first name that stands alone, measured on some three hundred concealed effects of other seeds than the
+/// report's.
+const ALONE: f64 = 0.98;
+/// The same where the next name stands closer than [`CLEAR_NATS`].
 const NARROWLY_ALONE: f64 = 0.85;
+/// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
+const BESIDE_FAR_RIVALS: f64 = 0.87;
+/// The same beside a nearer rival.
+const BESIDE_A_NEAR_RIVAL: f64 = 0.65;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
+/// Distance in nats from which a rival was seldom the truth.
+const FAR_NATS: f64 = 1.5;
 
 /// Calibrated probability that the named effect is the true one.
 pub(crate) fn probability(found: &Accepted) -> f64 {
-    match found.rivals.len() {
-        0 if found.margin < CLEAR_NATS => NARROWLY_ALONE,
-        rivals => BY_RIVALS[rivals.min(BY_RIVALS.len() - 1)],
+    let nearest = found.rivals.iter().map(|(_, distance)| *distance).min_by(f64::total_cmp);
+    match nearest {
+        None if found.margin < CLEAR_NATS => NARROWLY_ALONE,
+        None => ALONE,
+        Some(distance) if distance < FAR_NATS => BESIDE_A_NEAR_RIVAL,
+        Some(_) => BESIDE_FAR_RIVALS,
     }
 }
 

@@ -57,6 +57,7 @@ pub(super) fn finding(
         score: found.score,
         margin: found.margin,
         standings: found.standings.clone(),
+        channels: found.channels.clone(),
         locked_gain_nats: locked,
     }
 }
@@ -143,6 +144,7 @@ pub(super) fn measurement_finding(note: &HealthNote) -> Finding {
         score: 0.0,
         margin: f64::INFINITY,
         standings: Vec::new(),
+        channels: Vec::new(),
         locked_gain_nats: None,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::advise::Advice;
 use super::base::BaseKind;
+use super::channel::Channel;
 use super::conclude::{Fitted, Refit};
 use super::health::HealthNote;
 use super::localise::Location;
@@ -56,6 +57,8 @@ pub struct Finding {
     pub margin: f64,
     /// Every other named effect with its distance in nats when this one was accepted, nearest first.
     pub standings: Vec<(EffectId, f64)>,
+    /// Of a structure without a name: its channel, then those that cannot be told from it. Empty for a named effect.
+    pub channels: Vec<Channel>,
     /// Gain on locked data in nats when this effect alone is left out.
     pub locked_gain_nats: Option<f64>,
 }

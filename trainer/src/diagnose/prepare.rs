@@ -1,6 +1,6 @@
 //! From signals to states and working rows: one filter for all, rest and edges left out, blocks set aside.
 
-use super::blocks::{Block, Lock, rows_and_blocks, standstill};
+use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::signals::Signals;
 use crate::physics::{JointState, MemoryAxes, OtherJoint, quantile, top_speed};
@@ -122,7 +122,10 @@ impl Prepared {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),
         };
-        let (rows, blocks) = rows_and_blocks(&state, &standstill(signals), &filter, lock);
+        let unsure = hesitation(&state.velocity, state.sign_velocity, segments);
+        let stuck: Vec<bool> =
+            standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
+        let (rows, blocks) = rows_and_blocks(&state, &stuck, &filter, lock);
         Self {
             state,
             filter,

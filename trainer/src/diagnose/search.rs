@@ -2,6 +2,7 @@
 
 use super::base::Base;
 use super::candidates::{Design, Label, ridge_of};
+use super::channel::Channel;
 use super::evidence::{Bench, GroupEvidence};
 use super::generic::Generic;
 use super::linear::residual;
@@ -34,6 +35,8 @@ pub struct Accepted {
     pub rivals: Vec<(EffectId, f64)>,
     /// Every other named effect with its distance in nats, nearest first.
     pub standings: Vec<(EffectId, f64)>,
+    /// Of a structure without a name: its channel, then those that cannot be told from it. Empty for a named effect.
+    pub channels: Vec<Channel>,
 }
 
 /// What the search found.
@@ -250,12 +253,15 @@ pub(crate) fn others(accepted: &[Accepted], without: usize) -> impl Iterator<Ite
     accepted.iter().enumerate().filter(move |(index, _)| *index != without).map(|(_, found)| found)
 }
 
+/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a glitch more.
+const LARGEST_FEATURE: f64 = 20.0;
+
 /// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.
 pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
     let scaled = |series: Vec<f64>| {
         let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
-        series.iter().map(|v| (v / mean.max(f64::MIN_POSITIVE)).min(5.0)).collect::<Vec<f64>>()
+        series.iter().map(|v| (v / mean.max(f64::MIN_POSITIVE)).min(LARGEST_FEATURE)).collect::<Vec<f64>>()
     };
     let slow = (0.05 * state.top_speed()).max(3.0 * state.sign_velocity);
     vec![

@@ -195,10 +195,17 @@ fn certainty(found: &Finding) -> String {
         .iter()
         .map(|(effect, probability)| format!("{} ({})", plain_name(*effect), percent(*probability)))
         .collect();
-    if others.is_empty() {
+    let known = if others.is_empty() {
         format!("{sure}.")
     } else {
         format!("{sure}; this recording cannot rule out {}.", others.join(" or "))
+    };
+    match found.channels.as_slice() {
+        [first, rest @ ..] if !rest.is_empty() => {
+            let rest: Vec<&str> = rest.iter().map(|channel| channel.plain_name()).collect();
+            format!("{known} It may hang on {} as well as on {}.", rest.join(" or "), first.plain_name())
+        }
+        _ => known,
     }
 }
 

@@ -71,6 +71,7 @@ fn finding_json((found, sentence): (&Finding, &String)) -> Value {
         "alternatives": found.alternatives.iter()
             .map(|(effect, probability)| json!({"effect": effect, "probability": probability}))
             .collect::<Vec<_>>(),
+        "channels": found.channels.iter().map(|channel| channel.name()).collect::<Vec<_>>(),
         "action": found.action,
         "equation": found.equation,
         "parameters": found.parameters,

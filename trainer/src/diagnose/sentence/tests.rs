@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::{Advice, BaseKind, Fitted, Label, Location, Proof, Refit, Score, Traces};
+use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Label, Location, Proof, Refit, Score, Traces};
 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 
@@ -37,6 +37,7 @@ fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
         score: 40.0,
         margin: 9.0,
         standings: Vec::new(),
+        channels: Vec::new(),
         locked_gain_nats: Some(20.0),
     }
 }
@@ -107,4 +108,13 @@ fn a_finding_reads_as_a_sentence() {
 fn a_region_from_a_reversal_on_says_so() {
     let sentence = finding(&diagnosis(presliding("distance_since_reversal", 1e-6, 0.004)), 0, ROTARY);
     assert!(sentence.starts_with("Within 4 mrad after each reversal the real joint needs up to"), "{sentence}");
+}
+
+#[test]
+fn channels_that_cannot_be_told_apart_are_said() {
+    let channels = vec![Channel::Load, Channel::Position, Channel::TimeSinceReversal];
+    let unknown = Finding { effect: EffectId::Unknown, channels, ..presliding("load", 1.0, 2.0) };
+    let sentence = finding(&diagnosis(unknown), 0, ROTARY);
+    let expected = "It may hang on position or the time since the last reversal as well as on load.";
+    assert!(sentence.contains(expected), "{sentence}");
 }
