@@ -89,7 +89,7 @@ impl Row {
             _ => &["position"],
         };
         let right = |found: &&str| channels.contains(found);
-        [self.unknown_channels.first().is_some_and(right), self.unknown_channels.iter().any(|found| right(&found))]
+        [self.unknown_channels.first().is_some_and(right), self.unknown_channels.iter().any(right)]
     }
 }
 
