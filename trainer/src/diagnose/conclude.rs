@@ -7,6 +7,7 @@ use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
 use crate::physics::{Dimension, Shape};
+use std::ops::Range;
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -96,6 +97,9 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let noise = search.noise_after(&columns);
     let bench = search.bench(columns.clone(), &noise);
     let (mut solution, covariance) = bench.solve(&ridge)?;
+    let white = residual(&bench.base, &bench.target, &solution);
+    let long_run_variance = long_run_variance(&white, &bench.runs());
+    let covariance = covariance * long_run_variance;
     let runs = search.prepared.open_runs();
     let left = residual(&columns, &search.base.target, &solution);
     let rows: usize = runs.iter().map(|run| run.len()).sum();
@@ -113,7 +117,7 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
             deviation: place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect(),
         });
     }
-    widen_by_shapes(search, &bench, &noise, &mut effects, &places);
+    widen_by_shapes(search, &bench, &noise, &mut effects, &places, long_run_variance);
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     Some(Refit {
         base: solution[..base_width].to_vec(),
@@ -122,6 +126,22 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
         noise,
         plain,
     })
+}
+
+/// Variance of a slow sum of what whitening leaves over that of as many independent rows (Newey and West 1987), at least one:
+/// the slow colour that it does not remove.
+fn long_run_variance(white: &[f64], runs: &[Range<usize>]) -> f64 {
+    const LAGS: usize = 16;
+    let lagged = |lag: usize| -> f64 {
+        runs.iter()
+            .map(|run| &white[run.clone()])
+            .flat_map(|run| run.iter().zip(run.iter().skip(lag)))
+            .map(|(a, b)| a * b)
+            .sum()
+    };
+    let weight = |lag: usize| 2.0 * (1.0 - lag as f64 / (LAGS + 1) as f64);
+    let slow: f64 = (1..=LAGS).map(|lag| weight(lag) * lagged(lag)).sum();
+    (1.0 + slow / lagged(0).max(f64::MIN_POSITIVE)).max(1.0)
 }
 
 /// Filtered base columns with every accepted effect but one, shapes as they stand, without tangents.
@@ -139,7 +159,8 @@ fn widen_by_shapes(
     bench: &Bench,
     noise: &Noise,
     effects: &mut [Fitted],
-    places: &[std::ops::Range<usize>],
+    places: &[Range<usize>],
+    long_run_variance: f64,
 ) {
     let mut tangents: Vec<Vec<f64>> = Vec::new();
     let mut owners: Vec<(usize, usize)> = Vec::new();
@@ -155,6 +176,7 @@ fn widen_by_shapes(
     let mut all = bench.base.clone();
     all.extend(search.whitened(&tangents, noise));
     let Some(covariance) = invert_symmetric(&super::linear::gram(&all, &bench.runs())) else { return };
+    let covariance = covariance * long_run_variance;
     for (effect, place) in effects.iter_mut().zip(places) {
         effect.deviation = place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
     }
@@ -200,5 +222,28 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
         Dimension::TorquePerVelocitySquared => format!("{actuator} s2/{position}2"),
         Dimension::Order => if rotary { "1/turn" } else { "rad/m" }.to_string(),
         Dimension::One => "1".to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::random::normal;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    #[test]
+    fn slow_colour_widens_the_intervals_and_white_noise_does_not() {
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let (runs, mut last) = ([0..6_000, 6_000..20_000], 0.0);
+        let white: Vec<f64> = (0..20_000).map(|_| normal(&mut random)).collect();
+        let colour = |e: &f64| {
+            last = 0.3 * last + e;
+            last
+        };
+        let coloured: Vec<f64> = white.iter().map(colour).collect();
+        assert!(long_run_variance(&white, &runs) < 1.1);
+        let expected = (1.0 + 0.3) / (1.0 - 0.3);
+        assert!((long_run_variance(&coloured, &runs) / expected - 1.0).abs() < 0.15);
     }
 }

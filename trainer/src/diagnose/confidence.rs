@@ -3,15 +3,15 @@
 use super::search::Accepted;
 use crate::physics::EffectId;
 
-/// Frequency of a right first name that stands alone, measured on some three hundred concealed effects of other seeds than the
+/// Frequency of a right first name that stands alone, measured on some five hundred concealed effects of other seeds than the
 /// report's.
 const ALONE: f64 = 0.98;
 /// The same where the next name stands closer than [`CLEAR_NATS`].
-const NARROWLY_ALONE: f64 = 0.85;
+const NARROWLY_ALONE: f64 = 0.91;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
-const BESIDE_FAR_RIVALS: f64 = 0.87;
+const BESIDE_FAR_RIVALS: f64 = 0.81;
 /// The same beside a nearer rival.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.65;
+const BESIDE_A_NEAR_RIVAL: f64 = 0.63;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
 /// Distance in nats from which a rival was seldom the truth.

@@ -56,8 +56,10 @@ pub enum Refusal {
 const LEAST_ROWS: usize = 150;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
-/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque.
-const MINOR_SHARE: f64 = 0.1;
+/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque; a structure
+/// without a name takes up more of the error of a formula.
+const MINOR_SHARE: f64 = 0.06;
+const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
 /// Root mean square over that of the recorded torque below which it is small.
 const MINOR_TORQUE: f64 = 0.025;
 /// Non-centrality that is found with 90 % probability.
@@ -197,12 +199,16 @@ fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Ref
         };
         // A one-off event is short: its share says nothing of its size.
         let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
-        match effects.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((effect, share)) if share < MINOR_SHARE && share * removable < small => {
+        let is_minor = |(effect, share): &(EffectId, f64)| {
+            let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
+            *share < least && share * removable < small
+        };
+        match effects.filter_map(share).filter(is_minor).min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((effect, share)) => {
                 accepted.retain(|other| other.effect() != effect);
                 minor.push((effect, share));
             }
-            _ => break,
+            None => break,
         }
     }
     minor

@@ -129,6 +129,7 @@ fn place(region: &Region, units: Units) -> String {
         "temperature" => format!("At temperatures between {between}"),
         "acceleration" => format!("At accelerations between {between}"),
         "time" => format!("Between {between} of the recording"),
+        "dwell" if region.to <= 0.0 => "After reversals without a stop".to_string(),
         "dwell" => format!("After stops between {between}"),
         "distance_since_reversal" | "time_since_reversal" if from_zero => {
             format!("Within {} after each reversal", quantity(region.to, &unit))

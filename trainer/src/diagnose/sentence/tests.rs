@@ -118,3 +118,9 @@ fn channels_that_cannot_be_told_apart_are_said() {
     let expected = "It may hang on position or the time since the last reversal as well as on load.";
     assert!(sentence.contains(expected), "{sentence}");
 }
+
+#[test]
+fn no_stop_is_no_stop_of_zero_seconds() {
+    let sentence = finding(&diagnosis(presliding("dwell", 0.0, 0.0)), 0, ROTARY);
+    assert!(sentence.starts_with("After reversals without a stop the real joint needs up to"), "{sentence}");
+}
