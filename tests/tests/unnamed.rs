@@ -1,7 +1,7 @@
 //! What the diagnosis says of structures without a name: where they sit, and the formula that generated them.
 
 use frikan_tests::concealed::{Case, Hidden, run};
-use frikan_trainer::diagnose::BaseKind;
+use frikan_trainer::diagnose::{BaseKind, Label};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::NoiseKind;
 
@@ -17,7 +17,10 @@ fn formula_holds(effect: &'static str, factor: &str, channel: &str, drawn: [(&st
     let outcome = run(&case).unwrap();
     assert_eq!(outcome.named(), [EffectId::Unknown]);
     assert_eq!(outcome.unknown_channels(), [channel]);
-    let equation = &outcome.diagnosis.findings[0].equation;
+    let found = &outcome.diagnosis.findings[0];
+    let Label::Generic(structure) = found.fitted.label else { panic!("{:?} has a name", found.fitted.label) };
+    assert_eq!(structure.factor.text(), factor);
+    let equation = &found.equation;
     let Some((_, formula)) = equation.split_once(&format!("{factor} (")) else {
         panic!("{equation} is no formula");
     };

@@ -125,6 +125,11 @@ pub fn share(hits: usize, of: usize) -> String {
     )
 }
 
+/// The mean; zero of none.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
 /// The upper of the middle values; `None` of none.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::Hidden;
 use super::intervals::Held;
-use super::summary::{Row, median, share};
+use super::summary::{Row, mean, median, share};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::physics::EffectId;
 
@@ -97,7 +97,7 @@ fn by_strength(rows: &[Row], base: BaseKind, text: &mut String) {
             share(count(&|r| !r.findings.is_empty()), bin.len()),
             share(count(&Row::first_is_right), bin.len()),
             share(count(&Row::in_set), bin.len()),
-            sets.iter().sum::<f64>() / sets.len().max(1) as f64,
+            mean(&sets),
             share(count(&Row::wrongly_named), bin.len()),
         );
     }
@@ -231,7 +231,7 @@ fn outside(rows: &[Row], text: &mut String) {
         text,
         "\nAnswered \"unknown\": {}. The first channel right: {first}; a right one among those stated: {any}; on average {:.2} are stated.",
         share(unknown, outside.len()),
-        stated.iter().sum::<f64>() / stated.len().max(1) as f64
+        mean(&stated)
     );
 }
 

@@ -70,7 +70,6 @@ impl Round<'_, '_> {
             (None, None) => return None,
         };
         let best = self.plainest(best, passing_names());
-        let yields_to = self.yields_to(best);
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
@@ -79,7 +78,7 @@ impl Round<'_, '_> {
             let distance = best.score - rival.score;
             standings.push((effect, distance));
             let is_ruled_out = match best.label {
-                Label::Named(_) if yields_to.as_ref() == Some(&rival.label) => distance >= YIELDING_LEAD_NATS,
+                Label::Named(_) if self.yields(best, rival) => distance >= YIELDING_LEAD_NATS,
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
                 Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
             };
@@ -108,19 +107,19 @@ impl Round<'_, '_> {
         if !matches!(best.label, Label::Named(_)) {
             return best;
         }
-        let first = self.yields_to(best);
         let plainer = |rival: &&Scored| {
-            let as_good = best.score - rival.score < AS_GOOD_NATS && first.as_ref() == Some(&rival.label);
+            let as_good = best.score - rival.score < AS_GOOD_NATS && self.yields(best, rival);
             as_good
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
         };
         passing.find(plainer).unwrap_or(best)
     }
 
-    /// The effect to which a named one yields on equal terms.
-    fn yields_to(&self, best: &Scored) -> Option<Label> {
-        let Label::Named(effect) = best.label else { return None };
-        self.search.hypothesis(effect).and_then(Hypothesis::yields_to).map(Label::Named)
+    /// Whether the best hypothesis is an effect that yields to the rival on equal terms.
+    fn yields(&self, best: &Scored, rival: &Scored) -> bool {
+        let Label::Named(effect) = best.label else { return false };
+        let first = self.search.hypothesis(effect).and_then(Hypothesis::yields_to);
+        first.is_some_and(|first| rival.label == Label::Named(first))
     }
 
     /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.

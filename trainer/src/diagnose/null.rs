@@ -89,18 +89,15 @@ impl NullDraws {
             .map(|(variants, family)| {
                 let variants: Vec<Vec<Vec<f64>>> =
                     variants.iter().map(|variant| variant.iter().map(|d| gather(d)).collect()).collect();
-                let surprising = variants.iter().map(|variant| {
-                    let energy = variant.iter().map(|d| dot(d, &pool, &packed_runs).powi(2)).sum();
-                    (chi_square_surprise(energy, variant.len()), variant)
-                });
-                let Some((_, strongest)) = surprising.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-                    return vec![0.0; count];
-                };
-                let mut pool = pool.clone();
                 // What a named effect explains is its evidence and no measure of its chance (ter Braak 1992). A series of a dozen
                 // terms also holds the slow noise itself.
-                if *family == Family::Named {
-                    project_out(&mut pool, strongest, &packed_runs);
+                let own = match family {
+                    Family::Named => strongest(&variants, &pool),
+                    Family::Generic => None,
+                };
+                let mut pool = pool.clone();
+                if let Some(own) = own {
+                    project_out(&mut pool, own, &packed_runs);
                 }
                 // The directions are free of the base, so that what a draw has of it does not count.
                 let values = draws.iter().flat_map(|blocks| resample(&pool, blocks)).collect();
@@ -151,6 +148,15 @@ fn resample(pool: &[f64], blocks: &[Block]) -> Vec<f64> {
         sign * pool[(start + i % BLOCK_ROWS) % pool.len()]
     };
     (0..pool.len()).map(value).collect()
+}
+
+/// The variant with the largest surprise in a residual; `None` of none.
+fn strongest<'v>(variants: &'v [Vec<Vec<f64>>], residual: &[f64]) -> Option<&'v Vec<Vec<f64>>> {
+    let surprising = variants.iter().map(|variant| {
+        let energy = variant.iter().map(|d| dot(d, residual, &[0..residual.len()]).powi(2)).sum();
+        (chi_square_surprise(energy, variant.len()), variant)
+    });
+    surprising.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, variant)| variant)
 }
 
 /// The largest surprise among the variants of a group, for each draw (a column).
