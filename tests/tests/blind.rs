@@ -1,7 +1,7 @@
 //! Every effect of the catalogue, hidden in a recording and named by a diagnosis that knows nothing of it.
 
-use frikan_tests::concealed::{Case, Hidden, Outcome, run, set_of};
-use frikan_trainer::diagnose::BaseKind;
+use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, run, set_of, signals};
+use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
 use rayon::prelude::*;
@@ -71,4 +71,37 @@ fn where_nothing_is_missing_nothing_is_named() {
         let case = Case { hidden: Hidden::Nothing, noise, base: BaseKind::CoulombViscous, seed };
         assert_eq!(run(&case).unwrap().named(), [], "{noise:?}, seed {seed}");
     });
+}
+
+#[test]
+fn locked_rows_that_hardly_touch_an_effect_do_not_withdraw_it() {
+    assert!(in_set(&hidden("contact", 80.0, 85_000_244), "contact"));
+}
+
+#[test]
+fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
+    let quiet =
+        Case { hidden: Hidden::Nothing, noise: NoiseKind::Coloured, base: BaseKind::CoulombViscous, seed: 460_040 };
+    let concealed = conceal(&quiet).unwrap();
+    let mut signals = signals(&concealed.recording, &concealed.joint);
+    let options = Options::default();
+    let before = diagnose(&signals, "N m", &options).unwrap();
+    assert_eq!((before.findings.len(), before.lock), (0, Lock::Spread));
+    let traces = &before.traces;
+    let rows: Vec<(f64, bool)> = traces.time.iter().copied().zip(traces.locked.iter().copied()).collect();
+    let stretches = rows.chunk_by(|a, b| a.1 == b.1 && b.0 - a.0 < 0.02).filter(|stretch| stretch[0].1);
+    let longest = stretches.max_by_key(|stretch| stretch.len()).unwrap();
+    let event = longest[0].0..longest[longest.len() - 1].0;
+    signals
+        .torque
+        .iter_mut()
+        .zip(&signals.time)
+        .filter(|(_, time)| event.contains(time))
+        .for_each(|(torque, _)| *torque += 1.0);
+    let after = diagnose(&signals, "N m", &options).unwrap();
+    assert_eq!(after.lock, Lock::SpreadElsewhere);
+    let [found] = after.findings.as_slice() else { panic!("{} findings", after.findings.len()) };
+    assert_eq!(found.effect, EffectId::TransientEvent);
+    let [start, end] = found.fitted.shape[..] else { panic!("{:?}", found.fitted.shape) };
+    assert!(start < event.end && end > event.start, "{start} to {end} instead of {event:?}");
 }

@@ -15,6 +15,8 @@ const LEAST_BLOCKS: usize = 10;
 pub enum Lock {
     /// A fifth of every block, spread over the recording.
     Spread,
+    /// Another fifth of every block: what happened once may have been locked away.
+    SpreadElsewhere,
     /// The last share (0..1) of the recording.
     Tail(f64),
     /// Nothing is locked: proof must come from another recording.
@@ -73,10 +75,11 @@ fn split_for_lock(
             let border = ((1.0 - share) * duration as f64) as usize;
             if before + piece.len() / 2 >= border { vec![(piece.clone(), true)] } else { vec![(piece.clone(), false)] }
         }
-        Lock::Spread => {
+        Lock::Spread | Lock::SpreadElsewhere => {
             // One fifth of every block, another one in each, so that every kind of motion is proved.
             let at = |k: usize| piece.start + piece.len() * k / 5;
-            let fifth = (2 * index + 1) % 5;
+            let first = if lock == Lock::Spread { 1 } else { 3 };
+            let fifth = (2 * index + first) % 5;
             [(piece.start..at(fifth), false), (at(fifth)..at(fifth + 1), true), (at(fifth + 1)..piece.end, false)]
                 .into_iter()
                 .filter(|(part, _)| !part.is_empty())

@@ -13,6 +13,11 @@ use crate::physics::{EffectId, Hypothesis};
 const NEARLY_AS_MUCH: f64 = 0.88;
 const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
 
+/// Score in nats from which the errors of a formula show. Of what is weaker a name needs this share of a free function's score
+/// too: much of the energy that it explains may be chance.
+const STRONG_NATS: f64 = 60.0;
+const NEARLY_AS_GOOD: f64 = 0.8;
+
 /// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
 const NEARLY_ALL: f64 = 0.01;
 const ALL: f64 = 1e-6;
@@ -46,8 +51,10 @@ impl Round<'_, '_> {
         // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
         // much, whitened or not, is kept.
         let nearly = |generic: &Scored| {
+            let is_strong = generic.score >= STRONG_NATS;
             passing_names().find(|s| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
+                    && (is_strong || s.score >= NEARLY_AS_GOOD * generic.score)
                     || s.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise()
             })
         };

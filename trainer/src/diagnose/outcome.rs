@@ -2,6 +2,7 @@
 
 use super::advise::Advice;
 use super::base::BaseKind;
+use super::blocks::Lock;
 use super::channel::Channel;
 use super::conclude::{Fitted, Refit};
 use super::health::HealthNote;
@@ -90,6 +91,8 @@ pub struct Diagnosis {
     pub limits: Vec<DetectionLimit>,
     /// Which base the recording was compared with.
     pub base: BaseKind,
+    /// Which rows the proof was kept away from.
+    pub lock: Lock,
     /// Names of the base's physical parameters, as far as they have one, with their refitted values.
     pub base_parameters: Vec<Parameter>,
     /// Root mean square of the noise that is left.

@@ -103,12 +103,13 @@ impl<'s, 'a> Round<'s, 'a> {
             .filter_map(|(index, group)| {
                 let grid = self.search.grid_size(index);
                 let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
+                let scanned = self.search.scanned_beyond(index);
                 // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&self.variants[index]);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
                     .filter_map(|(_, evidence)| evidence.as_ref())
-                    .map(|v| chi_square_surprise(v.statistic, v.degrees))
+                    .map(|v| chi_square_surprise(v.statistic, v.degrees) - scanned)
                     .fold(0.0, f64::max);
                 Some(Scored {
                     label: group.label.clone(),
@@ -162,7 +163,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
-                    let looked_at = PLACES_LOOKED_AT.ln() * free as f64;
+                    let looked_at = PLACES_LOOKED_AT.ln() * free as f64 + self.search.scanned_beyond(scored.group);
                     let refined = chi_square_surprise(evidence.statistic, evidence.degrees) - looked_at;
                     scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;

@@ -98,6 +98,11 @@ impl<'a> Search<'a> {
         scanned.unwrap_or(group.variants.len() as f64)
     }
 
+    /// Nats that a group's surprise loses to the shapes that were scanned and not proposed: the null draws do not know them.
+    pub(crate) fn scanned_beyond(&self, group: usize) -> f64 {
+        (self.grid_size(group) / self.design.groups[group].variants.len() as f64).ln()
+    }
+
     /// The hypothesis of an effect.
     pub(crate) fn hypothesis(&self, effect: EffectId) -> Option<&dyn Hypothesis> {
         self.hypotheses.iter().find(|h| h.id() == effect).map(|h| h.as_ref() as &dyn Hypothesis)

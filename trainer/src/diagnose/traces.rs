@@ -5,6 +5,7 @@ use super::conclude::{Refit, weighted};
 use super::localise::{Region, locate_density};
 use super::prove::rest;
 use super::search::Search;
+use crate::physics::quantile;
 
 /// Series at the working rows behind the common filter; all of one length.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +29,10 @@ pub struct Traces {
     /// First row of each uninterrupted run, ascending.
     pub run_starts: Vec<usize>,
 }
+
+/// Root mean square that sticks out among those of the locked stretches, over their median: the noise of fast motion is twice
+/// that of slow motion.
+const STICKS_OUT: f64 = 3.0;
 
 impl Traces {
     /// Traces of a finished search.
@@ -85,6 +90,24 @@ impl Traces {
             return Some(&self.velocity);
         }
         self.channels.iter().find(|(channel, _)| *channel == name).map(|(_, values)| values.as_slice())
+    }
+
+    /// Whether one of the locked stretches is left with far more than the others: what happened there once, no open row saw.
+    #[must_use]
+    pub fn locked_stretch_sticks_out(&self) -> bool {
+        let ends = self.run_starts.iter().skip(1).copied().chain([self.len()]);
+        let left: Vec<f64> = self
+            .run_starts
+            .iter()
+            .zip(ends)
+            .filter(|(start, _)| self.locked[**start])
+            .map(|(start, end)| {
+                let rest = &self.after[*start..end];
+                (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt()
+            })
+            .collect();
+        let largest = left.iter().copied().fold(0.0, f64::max);
+        !left.is_empty() && largest > STICKS_OUT * quantile(left.into_iter(), 0.5)
     }
 
     /// Where all effects together lower the squared residual: regions, sharpest first, and stretches of time in s.

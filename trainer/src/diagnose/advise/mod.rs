@@ -186,7 +186,7 @@ pub fn plan(question: &Question) -> Option<Plan> {
     if pairs.is_empty() {
         return None;
     }
-    let past = Prepared::at_cut_off(question.signals, question.diagnosis.cut_off_hz, question.options.lock);
+    let past = Prepared::at_cut_off(question.signals, question.diagnosis.cut_off_hz, question.diagnosis.lock);
     let future = Future::new(question.signals, &past.state);
     let present = Outlook::new(question, question.signals.clone())?.evidence(&pairs, true);
     let weigh = |candidates: Vec<Candidate>, refined: bool| -> Vec<Weighed> {

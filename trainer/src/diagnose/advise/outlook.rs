@@ -32,7 +32,7 @@ impl Outlook {
     /// Prepares signals of which the part as long as `question.signals` was recorded. `None` where the base cannot be
     /// determined.
     pub(super) fn new(question: &Question, mut signals: Signals) -> Option<Self> {
-        let (cut_off, lock) = (question.diagnosis.cut_off_hz, question.options.lock);
+        let (cut_off, lock) = (question.diagnosis.cut_off_hz, question.diagnosis.lock);
         let mut prepared = Prepared::at_cut_off(&signals, cut_off, lock);
         if question.options.base == BaseKind::Reference && signals.reference_torque.is_none() {
             signals.compare_with(question.reference?(&prepared.state)?);

@@ -61,6 +61,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         withdrawn: vec![EffectId::Spring],
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
+        lock: crate::diagnose::Lock::Spread,
         base_parameters: Vec::new(),
         noise_rmse: 0.4,
         baseline: Score { rmse: 0.92, r2: 0.9 },
