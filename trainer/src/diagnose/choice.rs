@@ -26,12 +26,12 @@ const ALL: f64 = 1e-6;
 /// chance what the name's formula misses.
 const UNKNOWN_LEAD_NATS: f64 = 12.0;
 
-/// Lead in nats up to which an effect does not rule out the one that it yields to: its further shape may fit what the other's
-/// formula misses.
+/// Lead in nats up to which an effect does not rule out the one that it yields to, nor that one it: the further shape of the one may
+/// fit what the other's formula misses, and a recorded channel what an inferred one cannot.
 const YIELDING_LEAD_NATS: f64 = 8.0;
 
 /// Lead in nats up to which an effect is no better than the one that it yields to: it has more to fit.
-const AS_GOOD_NATS: f64 = 0.5;
+const AS_GOOD_NATS: f64 = 2.0;
 
 impl Round<'_, '_> {
     /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
@@ -85,7 +85,9 @@ impl Round<'_, '_> {
             let distance = best.score - rival.score;
             standings.push((effect, distance));
             let is_ruled_out = match best.label {
-                Label::Named(_) if self.yields(best, rival) => distance >= YIELDING_LEAD_NATS,
+                Label::Named(_) if self.yields(best, rival) || self.yields(rival, best) => {
+                    distance >= YIELDING_LEAD_NATS
+                }
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
                 Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
             };
@@ -122,11 +124,11 @@ impl Round<'_, '_> {
         passing.find(plainer).unwrap_or(best)
     }
 
-    /// Whether the best hypothesis is an effect that yields to the rival on equal terms.
-    fn yields(&self, best: &Scored, rival: &Scored) -> bool {
-        let Label::Named(effect) = best.label else { return false };
+    /// Whether a hypothesis is an effect that yields to another on equal terms.
+    fn yields(&self, one: &Scored, other: &Scored) -> bool {
+        let Label::Named(effect) = one.label else { return false };
         let first = self.search.hypothesis(effect).and_then(Hypothesis::yields_to);
-        first.is_some_and(|first| rival.label == Label::Named(first))
+        first.is_some_and(|first| other.label == Label::Named(first))
     }
 
     /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.

@@ -7,7 +7,7 @@ pub(super) struct WarmUp;
 /// No joint, however light, warms up faster: what decays sooner is memory of the contact, not heat.
 const LEAST_TIME_CONSTANT_S: f64 = 5.0;
 
-/// Power smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.
+/// Power that friction dissipates, smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.
 pub(crate) fn smoothed_power(state: &JointState, time_constant: f64) -> Vec<f64> {
     let step = 1.0 - (-state.period / time_constant).exp();
     let mut warmth = 0.0;
@@ -19,7 +19,8 @@ pub(crate) fn smoothed_power(state: &JointState, time_constant: f64) -> Vec<f64>
                 warmth *= (-gap / time_constant).exp();
             }
             before = state.time[i];
-            let power = (state.predicted[i] * state.velocity[i]).abs();
+            let velocity = state.velocity[i];
+            let power = (state.base_friction_at(velocity) * velocity).abs();
             warmth += step * (power - warmth);
             warmth
         })
@@ -32,7 +33,7 @@ impl Hypothesis for WarmUp {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = h (b_0 tanh(v/v_eps) + b_1 v), tau_th dh/dt = |tau v| - h"
+        "dF = h (b_0 tanh(v/v_eps) + b_1 v), tau_th dh/dt = |F v| - h"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
