@@ -71,6 +71,19 @@ impl FrictionState {
         Self { states }
     }
 
+    /// At rest, nothing wound up, and as warm as `effects` are after a rest of so many seconds; cold where the rest is not
+    /// positive, for then nothing is known of it.
+    #[must_use]
+    pub fn after_rest(&self, effects: &[Effect], rest: f32) -> Self {
+        let mut after = Self::new(effects);
+        if rest > 0.0 {
+            for ((state, effect), before) in after.states.iter_mut().zip(effects).zip(&self.states) {
+                *state = before.after_rest(effect, rest);
+            }
+        }
+        after
+    }
+
     /// Advances by `dt` seconds and returns the friction at the end of them.
     ///
     /// NaN in a channel that the model reads gives no friction and leaves the memory as it was; `dt` must be finite and

@@ -119,6 +119,15 @@ impl State {
             _ => Self::None,
         }
     }
+
+    /// The memory of `effect` after a rest of so many seconds: its warmth has faded, the rest is as at the start.
+    #[must_use]
+    pub fn after_rest(&self, effect: &Effect, rest: f32) -> Self {
+        match self {
+            Self::Heat(heat) => Self::Heat(heat.after_rest(effect, rest)),
+            _ => Self::new(effect),
+        }
+    }
 }
 
 /// Advances `state` by one sample and returns what `effect` adds. A state that is not the effect's adds nothing.

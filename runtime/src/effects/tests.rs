@@ -112,6 +112,26 @@ fn warm_up_reaches_its_power_however_small_the_step() {
 }
 
 #[test]
+fn warmth_fades_in_a_rest_and_is_gone_after_one_of_unknown_length() {
+    let effect = Effect::WarmUp {
+        time_constant: 10.0,
+        coulomb: 0.1,
+        viscous: 0.0,
+        power_limit: 50.0,
+        smoothing_velocity: SMOOTHING,
+    };
+    let model = coulomb_model(10.0, &[effect]);
+    let mut warm = FrictionState::new(&model.effects);
+    for _ in 0..200 {
+        let _ = warm.step(&model, &at(1.0), 1.0);
+    }
+    let left = |rest: f32| warm.after_rest(&model.effects, rest).step(&model, &at(1.0), 0.0).torque - 10.0;
+    for (rest, expected) in [(1.0e-3, 1.0), (10.0, (-1.0f32).exp()), (1.0e9, 0.0), (-1.0, 0.0), (f32::NAN, 0.0)] {
+        assert!((left(rest) - expected).abs() < 6.0e-3, "{rest} s: {}", left(rest));
+    }
+}
+
+#[test]
 fn play_lags_by_half_its_width() {
     let effect = Effect::Play { half_width: 0.1, torque: 2.0 };
     let model = coulomb_model(10.0, &[effect]);

@@ -31,3 +31,12 @@ pub fn step(effect: &Effect, heat: &mut Heat, motion: &Motion) -> Contribution {
     let slope = coulomb * motion.smooth_sign(smoothing_velocity) + viscous * motion.velocity;
     Contribution::torque(slope * heat.power)
 }
+
+impl Heat {
+    /// What is left of it after a rest, s, in which nothing dissipates.
+    #[must_use]
+    pub fn after_rest(&self, effect: &Effect, rest: f32) -> Self {
+        let Effect::WarmUp { time_constant, .. } = *effect else { return Self::default() };
+        Self { power: self.power * (1.0 - lag_share(rest / time_constant)), excess: 0.0 }
+    }
+}

@@ -57,11 +57,14 @@ fn measurement(state: &JointState, i: usize) -> Measurement {
     measurement
 }
 
-/// Law and effects over the recording; memories restart at each segment.
+/// Law and effects over the recording; memories restart at each segment, but for the warmth that the rest before it leaves.
 fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<f64> {
     let mut friction = vec![0.0; state.len()];
+    let mut memory = FrictionState::new(&model.effects);
+    let mut end = f64::INFINITY;
     for segment in &state.segments {
-        let mut memory = FrictionState::new(&model.effects);
+        memory = memory.after_rest(&model.effects, (state.time[segment.start] - end) as f32);
+        end = state.time[segment.end - 1];
         for i in segment.clone() {
             let dt = if i > segment.start { state.period as f32 } else { 0.0 };
             friction[i] = f64::from(memory.step(model, &measurement(state, i), dt).torque);
