@@ -24,6 +24,8 @@ pub struct Context {
     pub longest_dwell: f64,
     /// Largest power that friction dissipated in the recording, W.
     pub power_limit: f64,
+    /// Power that the friction dissipated of which warmth was measured, over that of the law that the drive evaluates.
+    pub power_ratio: f64,
     /// Length of the recording, s.
     pub duration: f64,
 }
@@ -126,7 +128,9 @@ impl Terms {
             }
             EffectId::WarmUp => {
                 let (coulomb, viscous) = pair(shape[1]);
-                let (time_constant, power_limit) = (shape[0] as f32, context.power_limit as f32);
+                let [time_constant, power_limit, ratio] =
+                    [shape[0], context.power_limit, context.power_ratio].map(|value| value as f32);
+                let (coulomb, viscous) = (ratio * coulomb, ratio * viscous);
                 Effect::WarmUp { time_constant, coulomb, viscous, power_limit, smoothing_velocity }
             }
             EffectId::LoadFriction => {

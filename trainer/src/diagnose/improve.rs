@@ -1,7 +1,8 @@
 //! The improved model: base law as refitted, rigid body as corrected, and every finding that a drive can run.
 
-use super::base::friction_basis;
+use super::base::{BaseKind, friction_basis};
 use super::candidates::Label;
+use super::conclude::Refit;
 use super::model::{hats, is_odd, moved};
 use super::outcome::Diagnosis;
 use super::sentence::plain_name;
@@ -50,13 +51,18 @@ const OUTPUT_ROOM: f64 = 2.0;
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
     let top_speed = state.top_speed();
-    let friction = |velocity: f64| refitted_friction(diagnosis, origin, velocity, state.sign_velocity, top_speed);
-    let dissipated = state.velocity.iter().map(|v| (friction(*v) * v).abs()).fold(1e-6, f64::max);
+    let with = |refit: &Refit, velocity: f64| {
+        refitted_friction(diagnosis.base, refit, origin, velocity, state.sign_velocity, top_speed)
+    };
+    let friction = |velocity: f64| with(&diagnosis.improved_refit, velocity);
+    let dissipated = |refit: &Refit| state.velocity.iter().map(|v| (with(refit, *v) * v).abs()).collect::<Vec<f64>>();
+    let [measured, evaluated] = [&diagnosis.baseline_refit, &diagnosis.improved_refit].map(dissipated);
     let context = Context {
         smoothing_velocity: state.sign_velocity,
         load_scale: quantile_of_load(&state),
         longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
-        power_limit: dissipated,
+        power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
+        power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
         duration: state.time.last()? - state.time.first()?,
     };
     let kept = match origin {
@@ -108,12 +114,11 @@ fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -
         .collect()
 }
 
-/// Friction of the base over velocity after the refit.
-fn refitted_friction(diagnosis: &Diagnosis, origin: Origin<'_>, velocity: f64, eps: f64, top: f64) -> f64 {
-    let refitted = &diagnosis.improved_refit.base;
-    let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(refitted).map(|(b, c)| b * c).sum() };
+/// Friction of the base over velocity after a refit.
+fn refitted_friction(base: BaseKind, refit: &Refit, origin: Origin<'_>, velocity: f64, eps: f64, top: f64) -> f64 {
+    let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(&refit.base).map(|(b, c)| b * c).sum() };
     match origin {
-        Origin::Recording(_) => sum(friction_basis(diagnosis.base, velocity, (velocity / eps).tanh(), top)),
+        Origin::Recording(_) => sum(friction_basis(base, velocity, (velocity / eps).tanh(), top)),
         Origin::Simulation(law) => law.friction(velocity) + sum(vec![(velocity / eps).tanh(), velocity]),
         Origin::Model(model) => {
             let inputs = [velocity as f32, 0.0, 0.0, 0.0];
