@@ -51,11 +51,12 @@ const OUTPUT_ROOM: f64 = 2.0;
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
     let top_speed = state.top_speed();
-    let with = |refit: &Refit, velocity: f64| {
+    let friction_after = |refit: &Refit, velocity: f64| {
         refitted_friction(diagnosis.base, refit, origin, velocity, state.sign_velocity, top_speed)
     };
-    let friction = |velocity: f64| with(&diagnosis.improved_refit, velocity);
-    let dissipated = |refit: &Refit| state.velocity.iter().map(|v| (with(refit, *v) * v).abs()).collect::<Vec<f64>>();
+    let friction = |velocity: f64| friction_after(&diagnosis.improved_refit, velocity);
+    let dissipated =
+        |refit: &Refit| state.velocity.iter().map(|v| (friction_after(refit, *v) * v).abs()).collect::<Vec<f64>>();
     let [measured, evaluated] = [&diagnosis.baseline_refit, &diagnosis.improved_refit].map(dissipated);
     let context = Context {
         smoothing_velocity: state.sign_velocity,
