@@ -16,6 +16,10 @@ fn hidden(effect: &'static str, lambda: f64, seed: u64) -> Outcome {
     run(&case).unwrap()
 }
 
+fn control(noise: NoiseKind, seed: u64) -> Case {
+    Case { hidden: Hidden::Nothing, noise, base: BaseKind::CoulombViscous, seed }
+}
+
 fn in_set(outcome: &Outcome, effect: &str) -> bool {
     outcome.diagnosis.findings.first().is_some_and(|found| set_of(found).any(|name| name.name() == effect))
 }
@@ -68,8 +72,7 @@ fn where_nothing_is_missing_nothing_is_named() {
     let coarse = [93_000_625, 93_000_641, 93_000_664].map(|seed| (NoiseKind::CoarseEncoder, seed));
     let controls: Vec<(NoiseKind, u64)> = state_dependent.into_iter().chain(coarse).collect();
     controls.into_par_iter().for_each(|(noise, seed)| {
-        let case = Case { hidden: Hidden::Nothing, noise, base: BaseKind::CoulombViscous, seed };
-        assert_eq!(run(&case).unwrap().named(), [], "{noise:?}, seed {seed}");
+        assert_eq!(run(&control(noise, seed)).unwrap().named(), [], "{noise:?}, seed {seed}");
     });
 }
 
@@ -80,9 +83,7 @@ fn locked_rows_that_hardly_touch_an_effect_do_not_withdraw_it() {
 
 #[test]
 fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
-    let quiet =
-        Case { hidden: Hidden::Nothing, noise: NoiseKind::Coloured, base: BaseKind::CoulombViscous, seed: 460_040 };
-    let concealed = conceal(&quiet).unwrap();
+    let concealed = conceal(&control(NoiseKind::Coloured, 460_040)).unwrap();
     let mut signals = signals(&concealed.recording, &concealed.joint);
     let options = Options::default();
     let before = diagnose(&signals, "N m", &options).unwrap();

@@ -8,7 +8,7 @@ use super::findings::{base_parameters, finding, measurement_finding};
 use super::health::{coarse_position, examine};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
 use super::prepare::Prepared;
-use super::prove::{Proof, prove, prove_alone, rest};
+use super::prove::{prove, prove_alone, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Accepted, Search, SearchOutcome};
@@ -183,17 +183,13 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
         let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
         let unproven = lasting.filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
-            is_unproven(&accepted[i], &proof, &search.settings).then_some((i, proof.gain_nats))
+            let Accepted { score, family_wise, .. } = accepted[i];
+            (!search.settings.carried(score, family_wise, proof.gain_nats)).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
     }
     withdrawn
-}
-
-/// Whether all rows together do not carry an effect.
-fn is_unproven(found: &Accepted, proof: &Proof, settings: &Settings) -> bool {
-    !settings.carried(found.score, found.family_wise, proof.gain_nats)
 }
 
 /// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the

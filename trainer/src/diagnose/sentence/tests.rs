@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Label, Location, Proof, Refit, Score, Traces};
+use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Label, Location, Lock, Proof, Refit, Score, Traces};
 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 
@@ -61,7 +61,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         withdrawn: vec![EffectId::Spring],
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
-        lock: crate::diagnose::Lock::Spread,
+        lock: Lock::Spread,
         base_parameters: Vec::new(),
         noise_rmse: 0.4,
         baseline: Score { rmse: 0.92, r2: 0.9 },
