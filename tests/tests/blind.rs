@@ -1,5 +1,6 @@
 //! Every effect of the catalogue, hidden in a recording and named by a diagnosis that knows nothing of it.
 
+use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, run, set_of, signals};
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
 use frikan_trainer::physics::EffectId;
@@ -74,6 +75,25 @@ fn where_nothing_is_missing_nothing_is_named() {
     controls.into_par_iter().for_each(|(noise, seed)| {
         assert_eq!(run(&control(noise, seed)).unwrap().named(), [], "{noise:?}, seed {seed}");
     });
+}
+
+/// A power of the velocity near one takes the place of viscous friction: its free exponent leaves the coefficient open.
+#[test]
+fn a_base_parameter_has_the_uncertainty_of_the_shape_that_it_trades_with() {
+    let held = held(&hidden("viscous_nonlinearity", 80.0, 73_000_002));
+    let viscous = held.iter().find(|held| held.parameter.ends_with("viscous_coefficient")).unwrap();
+    assert!(viscous.deviations.abs() < 3.0, "{viscous:?}");
+}
+
+#[test]
+fn the_plain_spring_goes_before_one_with_a_loop_that_explains_a_little_more() {
+    assert_eq!(hidden("elasticity", 80.0, 71_000_055).named(), [EffectId::Elasticity]);
+}
+
+/// Of what is weak a fifth of the rows may hold nothing by chance.
+#[test]
+fn a_clear_effect_survives_locked_rows_that_hold_little_of_it() {
+    assert!(in_set(&hidden("presliding", 20.0, 43_000_016), "presliding"));
 }
 
 #[test]

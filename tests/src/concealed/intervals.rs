@@ -21,7 +21,8 @@ const ALIKE: [(&str, &str, bool, &str); 12] = [
 ];
 
 /// Effects beside which Coulomb torque and viscous coefficient keep their meaning.
-const BESIDE_FRICTION: [&str; 9] = [
+const BESIDE_FRICTION: [&str; 10] = [
+    "viscous_nonlinearity",
     "direction_asymmetry",
     "gravity_error",
     "inertia_error",

@@ -6,7 +6,7 @@ use super::generic::Generic;
 use super::linear::{dot, orthonormal, project_out};
 use super::round::{Round, Scored};
 use super::search::Accepted;
-use crate::physics::{EffectId, Hypothesis};
+use crate::physics::EffectId;
 
 /// Shares of what a free function explains at which a name is good enough: of the energy, and of the whitened energy, in which the
 /// slow errors of a formula count for less.
@@ -29,9 +29,6 @@ const UNKNOWN_LEAD_NATS: f64 = 12.0;
 /// Lead in nats up to which an effect does not rule out the one that it yields to, nor that one it: the further shape of the one may
 /// fit what the other's formula misses, and a recorded channel what an inferred one cannot.
 const YIELDING_LEAD_NATS: f64 = 8.0;
-
-/// Lead in nats up to which an effect is no better than the one that it yields to: it has more to fit.
-const AS_GOOD_NATS: f64 = 2.0;
 
 impl Round<'_, '_> {
     /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
@@ -85,7 +82,7 @@ impl Round<'_, '_> {
             let distance = best.score - rival.score;
             standings.push((effect, distance));
             let is_ruled_out = match best.label {
-                Label::Named(_) if self.yields(best, rival) || self.yields(rival, best) => {
+                Label::Named(_) if self.yields(best, rival).is_some() || self.yields(rival, best).is_some() => {
                     distance >= YIELDING_LEAD_NATS
                 }
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
@@ -117,18 +114,18 @@ impl Round<'_, '_> {
             return best;
         }
         let plainer = |rival: &&Scored| {
-            let as_good = best.score - rival.score < AS_GOOD_NATS && self.yields(best, rival);
-            as_good
+            let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
+            self.yields(best, rival).is_some_and(as_good)
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
         };
         passing.find(plainer).unwrap_or(best)
     }
 
-    /// Whether a hypothesis is an effect that yields to another on equal terms.
-    fn yields(&self, one: &Scored, other: &Scored) -> bool {
-        let Label::Named(effect) = one.label else { return false };
-        let first = self.search.hypothesis(effect).and_then(Hypothesis::yields_to);
-        first.is_some_and(|first| other.label == Label::Named(first))
+    /// Lead in nats up to which a hypothesis yields to another; `None` if it does not.
+    fn yields(&self, one: &Scored, other: &Scored) -> Option<f64> {
+        let Label::Named(effect) = one.label else { return None };
+        let (first, no_better_by) = self.search.hypothesis(effect)?.yields_to()?;
+        (other.label == Label::Named(first)).then_some(no_better_by)
     }
 
     /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.

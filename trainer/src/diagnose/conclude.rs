@@ -2,7 +2,7 @@
 
 use super::candidates::{Label, ridge_of};
 use super::evidence::Bench;
-use super::linear::{dot, invert_symmetric, least_squares, residual};
+use super::linear::{dot, least_squares, residual};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
@@ -99,7 +99,6 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let (mut solution, covariance) = bench.solve(&ridge)?;
     let white = residual(&bench.base, &bench.target, &solution);
     let long_run_variance = long_run_variance(&white, &bench.runs());
-    let covariance = covariance * long_run_variance;
     let runs = search.prepared.open_runs();
     let left = residual(&columns, &search.base.target, &solution);
     let rows: usize = runs.iter().map(|run| run.len()).sum();
@@ -107,18 +106,31 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     if plain {
         solution = least_squares(&columns, &search.base.target, &runs)?;
     }
-    let mut effects = Vec::new();
-    for (effect, place) in accepted.iter().zip(&places) {
-        effects.push(Fitted {
+    let mut effects: Vec<Fitted> = accepted
+        .iter()
+        .zip(&places)
+        .map(|(effect, place)| Fitted {
             label: effect.label.clone(),
             shape: effect.shape.clone(),
             shape_deviation: vec![None; effect.shape.len()],
             coefficients: solution[place.clone()].to_vec(),
-            deviation: place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect(),
-        });
-    }
-    widen_by_shapes(search, &bench, &noise, &mut effects, &places, long_run_variance);
+            deviation: Vec::new(),
+        })
+        .collect();
+    // Shapes that were fitted too make every interval wider: their tangents join the normal matrix (Gauss-Newton).
+    let (owners, tangents) = shape_tangents(search, &effects);
+    let wide = bench.base.iter().cloned().chain(search.whitened(&tangents, &noise)).collect();
+    let wide = Bench::new(wide, bench.target.clone(), bench.blocks.clone()).solve(&ridge);
+    let covariance = wide.map_or(covariance, |(_, wide)| wide) * long_run_variance;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+    for (effect, place) in effects.iter_mut().zip(places) {
+        effect.deviation = place.map(deviation).collect();
+    }
+    if covariance.nrows() > columns.len() {
+        for (row, (index, slot)) in (columns.len()..).zip(owners) {
+            effects[index].shape_deviation[slot] = Some(deviation(row));
+        }
+    }
     Some(Refit {
         base: solution[..base_width].to_vec(),
         base_deviation: (0..base_width).map(deviation).collect(),
@@ -153,36 +165,13 @@ fn columns_without(search: &Search, accepted: &[Accepted], without: usize) -> Ve
     columns
 }
 
-/// Adds the uncertainty of the free shapes: their tangents join the normal matrix (Gauss-Newton).
-fn widen_by_shapes(
-    search: &Search,
-    bench: &Bench,
-    noise: &Noise,
-    effects: &mut [Fitted],
-    places: &[Range<usize>],
-    long_run_variance: f64,
-) {
-    let mut tangents: Vec<Vec<f64>> = Vec::new();
-    let mut owners: Vec<(usize, usize)> = Vec::new();
-    for (index, effect) in effects.iter().enumerate() {
-        for (slot, columns) in search.column_tangents(&effect.label, &effect.shape) {
-            tangents.push(weighted(&columns, &effect.coefficients));
-            owners.push((index, slot));
-        }
-    }
-    if tangents.is_empty() {
-        return;
-    }
-    let mut all = bench.base.clone();
-    all.extend(search.whitened(&tangents, noise));
-    let Some(covariance) = invert_symmetric(&super::linear::gram(&all, &bench.runs())) else { return };
-    let covariance = covariance * long_run_variance;
-    for (effect, place) in effects.iter_mut().zip(places) {
-        effect.deviation = place.clone().map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
-    }
-    for (row, (index, slot)) in (bench.base.len()..).zip(owners) {
-        effects[index].shape_deviation[slot] = Some(covariance[(row, row)].max(0.0).sqrt());
-    }
+/// Change of the torque with each free shape parameter of the effects, filtered, with the effect and the place of the parameter.
+fn shape_tangents(search: &Search, effects: &[Fitted]) -> (Vec<(usize, usize)>, Vec<Vec<f64>>) {
+    let tangents = effects.iter().enumerate().flat_map(|(index, effect)| {
+        let of_columns = search.column_tangents(&effect.label, &effect.shape).into_iter();
+        of_columns.map(move |(slot, columns)| ((index, slot), weighted(&columns, &effect.coefficients)))
+    });
+    tangents.unzip()
 }
 
 /// Sum of columns weighted by coefficients.

@@ -130,7 +130,8 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
     }
     let base = Base::fit(&mut prepared, signals, options.base).ok_or(Refusal::Undetermined)?;
     let hypotheses = catalogue();
-    let search = Search::new(&prepared, &base, &hypotheses, options.settings);
+    let settings = if prepared.grain_limited { options.settings.behind_grain() } else { options.settings };
+    let search = Search::new(&prepared, &base, &hypotheses, settings);
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
@@ -184,7 +185,7 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
         let unproven = lasting.filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
             let Accepted { score, family_wise, .. } = accepted[i];
-            (!search.settings.carried(score, family_wise, proof.gain_nats)).then_some((i, proof.gain_nats))
+            (!search.settings.carried(score, family_wise, &proof)).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());

@@ -30,9 +30,8 @@ pub struct Traces {
     pub run_starts: Vec<usize>,
 }
 
-/// Root mean square that sticks out among those of the locked stretches, over their median: the noise of fast motion is twice
-/// that of slow motion.
-const STICKS_OUT: f64 = 3.0;
+/// Root mean square of a locked stretch that sticks out, over the largest of the open ones.
+const STICKS_OUT: f64 = 1.5;
 
 impl Traces {
     /// Traces of a finished search.
@@ -92,22 +91,20 @@ impl Traces {
         self.channels.iter().find(|(channel, _)| *channel == name).map(|(_, values)| values.as_slice())
     }
 
-    /// Whether one of the locked stretches is left with far more than the others: what happened there once, no open row saw.
+    /// Whether one of the locked stretches is left with far more than any open one: what happened there once, no open row saw.
     #[must_use]
     pub fn locked_stretch_sticks_out(&self) -> bool {
         let ends = self.run_starts.iter().skip(1).copied().chain([self.len()]);
-        let left: Vec<f64> = self
-            .run_starts
-            .iter()
-            .zip(ends)
-            .filter(|(start, _)| self.locked[**start])
-            .map(|(start, end)| {
-                let rest = &self.after[*start..end];
-                (rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64).sqrt()
-            })
-            .collect();
-        let largest = left.iter().copied().fold(0.0, f64::max);
-        !left.is_empty() && largest > STICKS_OUT * quantile(left.into_iter(), 0.5)
+        let (shut, open): (Vec<_>, Vec<_>) =
+            self.run_starts.iter().copied().zip(ends).partition(|(start, _)| self.locked[*start]);
+        let usual_length = quantile(shut.iter().map(|(start, end)| (end - start) as f64), 0.5) as usize;
+        // Pieces of one length, as a short one may hold nothing but a reversal.
+        let largest = |stretches: &[(usize, usize)]| {
+            let pieces = stretches.iter().flat_map(|&(start, end)| self.after[start..end].chunks(usual_length.max(1)));
+            let whole = pieces.filter(|piece| 2 * piece.len() > usual_length);
+            whole.map(|piece| piece.iter().map(|r| r * r).sum::<f64>() / piece.len() as f64).fold(0.0, f64::max).sqrt()
+        };
+        largest(&shut) > STICKS_OUT * largest(&open)
     }
 
     /// Where all effects together lower the squared residual: regions, sharpest first, and stretches of time in s.
@@ -124,4 +121,24 @@ impl Traces {
 
 fn varies(values: &[f64]) -> bool {
     values.iter().any(|value| *value != values[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five stretches of twenty rows of which the last is locked, and a locked one of four; `events` are rows that stick out.
+    fn sticks_out(events: std::ops::Range<usize>) -> bool {
+        let mut after: Vec<f64> = (0..104).map(|i| if i % 2 == 0 { 0.1 } else { -0.1 }).collect();
+        after[events].fill(1.0);
+        let locked = (0..104).map(|i| i >= 80).collect();
+        Traces { time: vec![0.0; 104], after, locked, run_starts: vec![0, 20, 40, 60, 80, 100], ..Traces::default() }
+            .locked_stretch_sticks_out()
+    }
+
+    #[test]
+    fn a_locked_stretch_sticks_out_by_more_than_the_open_ones_and_by_more_than_a_reversal() {
+        assert!(sticks_out(85..95));
+        assert!(!sticks_out(0..0) && !sticks_out(45..55) && !sticks_out(101..103));
+    }
 }

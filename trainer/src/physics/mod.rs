@@ -128,8 +128,9 @@ pub trait Hypothesis: Sync {
     }
 
     /// The effect that goes before this one where it explains as much: that of a recorded channel before that of an inferred
-    /// state, the plain spring before one with a loop.
-    fn yields_to(&self) -> Option<EffectId> {
+    /// state, the plain spring before one with a loop; and the lead in nats up to which this one is no better, as it has more to
+    /// fit.
+    fn yields_to(&self) -> Option<(EffectId, f64)> {
         None
     }
 

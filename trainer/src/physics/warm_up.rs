@@ -76,8 +76,8 @@ impl Hypothesis for WarmUp {
         ]
     }
 
-    fn yields_to(&self) -> Option<EffectId> {
-        Some(EffectId::Temperature)
+    fn yields_to(&self) -> Option<(EffectId, f64)> {
+        Some((EffectId::Temperature, 2.0))
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {

@@ -80,8 +80,8 @@ impl Hypothesis for WindupHysteresis {
         vec![("link_inertia", "J_l", Dimension::Inertia)]
     }
 
-    fn yields_to(&self) -> Option<EffectId> {
-        Some(EffectId::Elasticity)
+    fn yields_to(&self) -> Option<(EffectId, f64)> {
+        Some((EffectId::Elasticity, 5.0))
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {

@@ -71,6 +71,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
             improved_rmse: 0.41,
             ratio_ci95: [0.4, 0.5],
             gain_nats: 20.0,
+            evidence_nats: 20.0,
             rows: 300,
         }),
         rollout: None,
