@@ -16,7 +16,7 @@ pub struct Proof {
     pub ratio_ci95: [f64; 2],
     /// Gain of the whitened log-likelihood on locked rows in nats.
     pub gain_nats: f64,
-    /// Logarithm of the mean likelihood ratio on locked rows over [`SHARES`] of the change that the open rows ask for.
+    /// Logarithm of the mean likelihood ratio on locked rows over four shares of the change that the open rows ask for.
     pub evidence_nats: f64,
     /// Locked rows.
     pub rows: usize,
