@@ -51,6 +51,9 @@ impl Default for Settings {
 /// the null draws understate it three to five times.
 const BEHIND_GRAIN: f64 = 0.25;
 
+/// Share of the level that is left to what the locked rows do not bear out.
+const BEYOND_DOUBT: f64 = 0.1;
+
 impl Settings {
     /// Limits for a recording whose band is limited by the grain of its encoder.
     pub(super) fn behind_grain(self) -> Self {
@@ -69,11 +72,12 @@ impl Settings {
 
     /// Whether open and locked rows together carry an effect: by its score and the evidence of the locked rows, in nats, and by
     /// its p-value on the open rows over the likelihood ratio of the locked ones. That ratio is an e-value of independent rows,
-    /// so that the quotient is a p-value (Ignatiadis, Wang and Ramdas 2024). Nothing carries what makes the locked rows clearly
-    /// worse.
+    /// so that the quotient is a p-value (Ignatiadis, Wang and Ramdas 2024). What makes the locked rows a little worse has to be
+    /// beyond doubt on the open ones, and nothing carries what makes them clearly worse.
     pub(super) fn carried(&self, score: f64, family_wise: f64, locked: &Proof) -> bool {
+        let level = if locked.gain_nats < 0.0 { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
         score + locked.evidence_nats >= self.least_score
-            && family_wise * (-locked.evidence_nats).exp() <= self.family_wise_level
+            && family_wise * (-locked.evidence_nats).exp() <= level
             && locked.gain_nats >= -self.largest_locked_loss
     }
 }
@@ -93,7 +97,7 @@ mod tests {
         assert!(!is_carried(3.0, 0.02, 0.5, 0.5), "the score is too low");
         assert!(!is_carried(6.0, 0.02, 0.5, 0.5), "the probability is too high");
         assert!(is_carried(20.0, 1e-8, -4.0, -1.5), "a strong one survives a locked row or two against it");
-        assert!(!is_carried(5.0, 1e-3, -4.0, -1.5));
+        assert!(!is_carried(8.0, 1e-3, -2.0, -0.5), "p would do, but the locked rows get worse");
         assert!(!is_carried(80.0, 1e-30, -20.0, -4.0), "nothing survives locked rows that clearly speak against it");
     }
 }
