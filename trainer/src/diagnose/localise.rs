@@ -78,7 +78,13 @@ fn interval(channel: &'static str, values: &[f64], density: &[f64]) -> Option<Re
         return None;
     }
     let mean = total / density.len() as f64;
-    let edges: Vec<usize> = (0..=BINS).map(|k| order.len() * k / BINS).collect();
+    // Equal values stay in one bin: parted they would stand in the order of time.
+    let start_of_equals = |edge: usize| match order.get(edge) {
+        Some(&row) => order.partition_point(|&i| values[i] < values[row]),
+        None => edge,
+    };
+    let mut edges: Vec<usize> = (0..=BINS).map(|k| start_of_equals(order.len() * k / BINS)).collect();
+    edges.dedup();
     let sums: Vec<f64> = edges.windows(2).map(|e| order[e[0]..e[1]].iter().map(|&i| density[i] - mean).sum()).collect();
     let best = maximal_sum(&sums);
     let (begin, end) = (edges[best.start], edges[best.end]);
@@ -149,5 +155,13 @@ mod tests {
         let region = interval("position", &values, &density).unwrap();
         assert!((region.from - 0.3).abs() < 0.03 && (region.to - 0.4).abs() < 0.03, "{region:?}");
         assert!(region.share_of_excess > 0.99 && region.share_of_samples < 0.16);
+    }
+
+    #[test]
+    fn equal_values_are_not_parted_by_time() {
+        let values: Vec<f64> = (0..1000).map(|i| if i < 900 { 0.0 } else { 0.5 }).collect();
+        let density: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i < 100))).collect();
+        let region = interval("dwell", &values, &density).unwrap();
+        assert!((region.from, region.to) == (0.0, 0.0) && region.share_of_samples == 0.9, "{region:?}");
     }
 }

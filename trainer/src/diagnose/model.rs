@@ -4,6 +4,7 @@ use super::base::{BaseKind, friction_basis};
 use super::reference::{Reference, tabulated_velocities};
 use crate::error::{Error, Result, codes};
 use crate::physics::JointState;
+use crate::samples::blocks::rests;
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
 use frikan_shared::expression::Operation;
@@ -61,10 +62,8 @@ fn measurement(state: &JointState, i: usize) -> Measurement {
 fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<f64> {
     let mut friction = vec![0.0; state.len()];
     let mut memory = FrictionState::new(&model.effects);
-    let mut end = f64::INFINITY;
-    for segment in &state.segments {
-        memory = memory.after_rest(&model.effects, (state.time[segment.start] - end) as f32);
-        end = state.time[segment.end - 1];
+    for (segment, rest) in state.segments.iter().zip(rests(&state.time, &state.segments)) {
+        memory = memory.after_rest(&model.effects, rest as f32);
         for i in segment.clone() {
             let dt = if i > segment.start { state.period as f32 } else { 0.0 };
             friction[i] = f64::from(memory.step(model, &measurement(state, i), dt).torque);

@@ -9,6 +9,7 @@ use super::outcome::{Score, Trace};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::Recording;
+use crate::samples::blocks::rests;
 use crate::samples::filter::{GaussianFilter, Order};
 use crate::samples::{Preparation, Request, Samples, prepare_every_row};
 
@@ -74,12 +75,8 @@ fn friction(model: &HostModel, samples: &Samples, channels: &[&[f64]]) -> Vec<f6
     let at = |column: Option<&[f64]>, row: usize| column.map_or(0.0, |values| values[row] as f32);
     let mut friction = Vec::with_capacity(samples.len());
     let mut state = FrictionState::new(&model.effects);
-    let mut end = None;
-    for segment in &samples.segments {
-        // Every stretch begins at rest, and cold where nothing is known of what went before.
-        let rest = samples.time.get(segment.start).zip(end).map_or(0.0, |(start, end)| start - end);
+    for (segment, rest) in samples.segments.iter().zip(rests(&samples.time, &samples.segments)) {
         state = state.after_rest(&model.effects, rest as f32);
-        end = segment.end.checked_sub(1).and_then(|last| samples.time.get(last)).copied();
         for row in segment.clone() {
             let mut measurement = Measurement {
                 velocity: at(samples.velocity.as_deref(), row),

@@ -38,6 +38,15 @@ pub struct Split {
     pub locked: Vec<Range<usize>>,
 }
 
+/// Rest before each segment, s: from the last sample of the one before to its first; 0 before the first segment and without a
+/// clock (empty `time`).
+#[must_use]
+pub fn rests(time: &[f64], segments: &[Range<usize>]) -> Vec<f64> {
+    let ends = std::iter::once(None).chain(segments.iter().map(|segment| segment.end.checked_sub(1)));
+    let rest = |(segment, end): (&Range<usize>, Option<usize>)| Some(time.get(segment.start)? - time.get(end?)?);
+    segments.iter().zip(ends).map(|pair| rest(pair).unwrap_or(0.0)).collect()
+}
+
 /// Correlation time of `values` in samples (at least one): the lag at which the autocorrelation, averaged over the
 /// segments, falls below 1/e.
 #[must_use]
@@ -125,6 +134,14 @@ mod tests {
     use rand_chacha::rand_core::RngCore;
 
     use super::*;
+
+    #[test]
+    fn a_rest_lasts_from_the_last_sample_to_the_first_of_the_next_segment() {
+        let time = [0.0, 0.1, 0.2, 5.2, 5.3, 7.3];
+        let segments = [0..3, 3..5, 5..6];
+        assert_eq!(rests(&time, &segments), [0.0, 5.0, 2.0]);
+        assert_eq!(rests(&[], &segments), [0.0; 3]);
+    }
 
     #[test]
     fn the_correlation_time_of_a_first_order_process_is_its_time_constant() {
