@@ -105,7 +105,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     if found.fitted.coefficients.is_empty() {
         return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
     }
-    let telling = found.location.regions.first().filter(|r| r.share_of_excess - r.share_of_samples > TELLING_REGION);
+    let telling = telling_region(found);
     let place = telling.map_or_else(|| "Over the whole motion".to_string(), |region| place(region, units));
     let amount = amount(diagnosis, index, telling, units);
     let name = match found.effect {
@@ -115,6 +115,15 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let figures = figures(found);
     let certainty = certainty(found);
     format!("{place} {amount}: {name}{figures}. {certainty}{}", action(found))
+}
+
+/// The region worth naming, if any: the sharpest one; of what lasts that of a channel, as it is no matter of one time.
+fn telling_region(found: &Finding) -> Option<&Region> {
+    use EffectId::{SlowDrift, TransientEvent, Unknown, WarmUp};
+    let is_telling = |region: &&Region| region.share_of_excess - region.share_of_samples > TELLING_REGION;
+    let telling = || found.location.regions.iter().filter(is_telling);
+    let has_its_time = matches!(found.effect, TransientEvent | SlowDrift | WarmUp | Unknown);
+    telling().find(|region| has_its_time || region.channel != "time").or_else(|| telling().next())
 }
 
 /// Where a region is, as the start of a sentence.

@@ -113,6 +113,18 @@ fn a_region_from_a_reversal_on_says_so() {
 }
 
 #[test]
+fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
+    let seen_at = |effect: EffectId| {
+        let regions = vec![region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
+        let location = Location { regions, when_s: Vec::new() };
+        let found = Finding { effect, location, ..presliding("time", 3.0, 4.0) };
+        finding(&diagnosis(found), 0, ROTARY)
+    };
+    assert!(seen_at(EffectId::Presliding).starts_with("Between -0.05 and 0.05 rad/s"));
+    assert!(seen_at(EffectId::TransientEvent).starts_with("Between 3 and 4 s of the recording"));
+}
+
+#[test]
 fn channels_that_cannot_be_told_apart_are_said() {
     let channels = vec![Channel::Load, Channel::Position, Channel::TimeSinceReversal];
     let unknown = Finding { effect: EffectId::Unknown, channels, ..presliding("load", 1.0, 2.0) };
