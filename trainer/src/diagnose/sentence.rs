@@ -117,13 +117,16 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     format!("{place} {amount}: {name}{figures}. {certainty}{}", action(found))
 }
 
-/// The region worth naming, if any: the sharpest one; of what lasts that of a channel, as it is no matter of one time.
+/// The region worth naming, if any: the sharpest one; of an event that in time, of what lasts that of a channel.
 fn telling_region(found: &Finding) -> Option<&Region> {
-    use EffectId::{SlowDrift, TransientEvent, Unknown, WarmUp};
     let is_telling = |region: &&Region| region.share_of_excess - region.share_of_samples > TELLING_REGION;
     let telling = || found.location.regions.iter().filter(is_telling);
-    let has_its_time = matches!(found.effect, TransientEvent | SlowDrift | WarmUp | Unknown);
-    telling().find(|region| has_its_time || region.channel != "time").or_else(|| telling().next())
+    let is_wanted = |region: &&Region| match found.effect {
+        EffectId::TransientEvent => region.channel == "time",
+        EffectId::SlowDrift | EffectId::WarmUp | EffectId::Unknown => true,
+        _ => region.channel != "time",
+    };
+    telling().find(is_wanted).or_else(|| telling().next())
 }
 
 /// Where a region is, as the start of a sentence.

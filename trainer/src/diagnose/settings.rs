@@ -73,12 +73,13 @@ impl Settings {
     /// Whether open and locked rows together carry an effect: by its score and the evidence of the locked rows, in nats, and by
     /// its p-value on the open rows over the likelihood ratio of the locked ones. That ratio is an e-value of independent rows,
     /// so that the quotient is a p-value (Ignatiadis, Wang and Ramdas 2024). What makes the locked rows a little worse has to be
-    /// beyond doubt on the open ones, and nothing carries what makes them clearly worse.
+    /// beyond doubt on the open ones, and nothing carries what makes them clearly worse, whitened and not: beside larger effects,
+    /// whose formulas err slowly, whitening may see a loss where the error falls.
     pub(super) fn carried(&self, score: f64, family_wise: f64, locked: &Proof) -> bool {
         let level = if locked.gain_nats < 0.0 { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
         score + locked.evidence_nats >= self.least_score
             && family_wise * (-locked.evidence_nats).exp() <= level
-            && locked.gain_nats >= -self.largest_locked_loss
+            && (locked.gain_nats >= -self.largest_locked_loss || locked.improved_rmse < locked.baseline_rmse)
     }
 }
 
@@ -99,5 +100,17 @@ mod tests {
         assert!(is_carried(20.0, 1e-8, -4.0, -1.5), "a strong one survives a locked row or two against it");
         assert!(!is_carried(8.0, 1e-3, -2.0, -0.5), "p would do, but the locked rows get worse");
         assert!(!is_carried(80.0, 1e-30, -20.0, -4.0), "nothing survives locked rows that clearly speak against it");
+    }
+
+    #[test]
+    fn a_loss_behind_whitening_is_none_where_the_error_falls() {
+        let locked = Proof {
+            baseline_rmse: 242.0,
+            improved_rmse: 142.0,
+            gain_nats: -20.0,
+            evidence_nats: -4.0,
+            ..Proof::default()
+        };
+        assert!(Settings::default().carried(80.0, 1e-30, &locked));
     }
 }

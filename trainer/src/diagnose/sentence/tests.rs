@@ -115,13 +115,18 @@ fn a_region_from_a_reversal_on_says_so() {
 #[test]
 fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
     let seen_at = |effect: EffectId| {
-        let regions = vec![region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
-        let location = Location { regions, when_s: Vec::new() };
-        let found = Finding { effect, location, ..presliding("time", 3.0, 4.0) };
-        finding(&diagnosis(found), 0, ROTARY)
+        let load = region("load", 1.0, 2.0);
+        let regions = vec![load, region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
+        [0, 1].map(|sharpest| {
+            let location = Location { regions: regions[sharpest..].to_vec(), when_s: Vec::new() };
+            let found = Finding { effect, location, ..presliding("time", 3.0, 4.0) };
+            finding(&diagnosis(found), 0, ROTARY)
+        })
     };
-    assert!(seen_at(EffectId::Presliding).starts_with("Between -0.05 and 0.05 rad/s"));
-    assert!(seen_at(EffectId::TransientEvent).starts_with("Between 3 and 4 s of the recording"));
+    assert!(seen_at(EffectId::Presliding)[0].starts_with("Under loads between 1 and 2 N m"));
+    assert!(seen_at(EffectId::Presliding)[1].starts_with("Between -0.05 and 0.05 rad/s"));
+    assert!(seen_at(EffectId::TransientEvent)[0].starts_with("Between 3 and 4 s of the recording"));
+    assert!(seen_at(EffectId::SlowDrift)[1].starts_with("Between 3 and 4 s of the recording"));
 }
 
 #[test]
