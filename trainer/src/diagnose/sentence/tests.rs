@@ -116,7 +116,7 @@ fn a_region_from_a_reversal_on_says_so() {
 fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
     let seen_at = |effect: EffectId| {
         let load = region("load", 1.0, 2.0);
-        let regions = vec![load, region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
+        let regions = [load, region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
         [0, 1].map(|sharpest| {
             let location = Location { regions: regions[sharpest..].to_vec(), when_s: Vec::new() };
             let found = Finding { effect, location, ..presliding("time", 3.0, 4.0) };
