@@ -15,6 +15,16 @@ pub enum Label {
     Generic(Generic),
 }
 
+impl Label {
+    /// The effect's name: `unknown` for a structure without one.
+    pub fn effect(&self) -> EffectId {
+        match self {
+            Self::Named(effect) => *effect,
+            Self::Generic(_) => EffectId::Unknown,
+        }
+    }
+}
+
 impl std::fmt::Display for Label {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -4,6 +4,7 @@ use super::channel::Channel;
 use super::conclude::{Refit, weighted};
 use super::prove::rest;
 use super::search::Search;
+use crate::physics::EffectId;
 use std::ops::Range;
 
 /// An interval of a channel with its share of the evidence and of the samples.
@@ -24,11 +25,14 @@ pub struct Region {
 /// Regions and times of one finding.
 #[derive(Clone, Debug, Default)]
 pub struct Location {
-    /// Regions, sharpest first.
+    /// Regions: first that which a sentence names, then the sharpest.
     pub regions: Vec<Region>,
     /// Stretches of time in s that hold the most evidence.
     pub when_s: Vec<[f64; 2]>,
 }
+
+/// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
+const TELLING: f64 = 0.12;
 
 /// Bins a channel for the search of the maximal interval.
 const BINS: usize = 40;
@@ -50,7 +54,32 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let mut axes = vec![("velocity", at_rows(&state.velocity))];
     axes.extend(Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))));
     let axes: Vec<(&'static str, &[f64])> = axes.iter().map(|(name, values)| (*name, values.as_slice())).collect();
-    locate_density(&axes, &at_rows(&state.time), &density)
+    let mut location = locate_density(&axes, &at_rows(&state.time), &density);
+    location.name_first(effect.label.effect());
+    location
+}
+
+impl Region {
+    /// Whether the region holds so much more of the evidence than of the samples that it is worth naming.
+    #[must_use]
+    pub fn is_telling(&self) -> bool {
+        contrast(self) > TELLING
+    }
+}
+
+impl Location {
+    /// Puts first the sharpest region that says something of the effect: of an event that in time, of what lasts that of a channel.
+    fn name_first(&mut self, effect: EffectId) {
+        let says_something = |region: &Region| match effect {
+            EffectId::TransientEvent => region.channel == "time",
+            EffectId::SlowDrift | EffectId::WarmUp | EffectId::Unknown => true,
+            _ => region.channel != "time",
+        };
+        let first = self.regions.iter().position(|region| region.is_telling() && says_something(region));
+        if let Some(first) = first {
+            self.regions[..=first].rotate_right(1);
+        }
+    }
 }
 
 /// Locates a density of evidence along time and along every axis, given as name and value a row.
@@ -163,5 +192,20 @@ mod tests {
         let density: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i < 100))).collect();
         let region = interval("dwell", &values, &density).unwrap();
         assert!((region.from, region.to) == (0.0, 0.0) && region.share_of_samples == 0.9, "{region:?}");
+    }
+
+    #[test]
+    fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
+        let region =
+            |channel, share| Region { channel, from: 0.0, to: 1.0, share_of_excess: share, share_of_samples: 0.1 };
+        let first = |effect: EffectId, of_velocity: f64| {
+            let regions = vec![region("time", 0.8), region("velocity", of_velocity), region("load", 0.6)];
+            let mut location = Location { regions, when_s: Vec::new() };
+            location.name_first(effect);
+            location.regions[0].channel
+        };
+        assert_eq!(first(EffectId::SlowDrift, 0.7), "time");
+        assert_eq!(first(EffectId::Presliding, 0.7), "velocity");
+        assert_eq!(first(EffectId::Presliding, 0.2), "load", "a region that tells nothing is passed over");
     }
 }

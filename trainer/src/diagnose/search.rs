@@ -279,10 +279,7 @@ pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
 impl Accepted {
     /// The effect's name: `unknown` for a generic rival.
     pub fn effect(&self) -> EffectId {
-        match self.label {
-            Label::Named(effect) => effect,
-            Label::Generic(_) => EffectId::Unknown,
-        }
+        self.label.effect()
     }
 
     /// The generic structure behind an `unknown`.

@@ -11,8 +11,6 @@ use crate::physics::{Action, EffectId};
 
 /// Quantile of the effect's torque that "up to" stands for.
 const UP_TO: f64 = 0.98;
-/// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
-const TELLING_REGION: f64 = 0.12;
 /// Share of the torque that has to point one way before a sentence says "more" or "less".
 const ONE_WAY: f64 = 0.5;
 
@@ -105,7 +103,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     if found.fitted.coefficients.is_empty() {
         return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
     }
-    let telling = telling_region(found);
+    let telling = found.location.regions.first().filter(|region| region.is_telling());
     let place = telling.map_or_else(|| "Over the whole motion".to_string(), |region| place(region, units));
     let amount = amount(diagnosis, index, telling, units);
     let name = match found.effect {
@@ -115,18 +113,6 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let figures = figures(found);
     let certainty = certainty(found);
     format!("{place} {amount}: {name}{figures}. {certainty}{}", action(found))
-}
-
-/// The region worth naming, if any: the sharpest one; of an event that in time, of what lasts that of a channel.
-fn telling_region(found: &Finding) -> Option<&Region> {
-    let is_telling = |region: &&Region| region.share_of_excess - region.share_of_samples > TELLING_REGION;
-    let telling = || found.location.regions.iter().filter(is_telling);
-    let is_wanted = |region: &&Region| match found.effect {
-        EffectId::TransientEvent => region.channel == "time",
-        EffectId::SlowDrift | EffectId::WarmUp | EffectId::Unknown => true,
-        _ => region.channel != "time",
-    };
-    telling().find(is_wanted).or_else(|| telling().next())
 }
 
 /// Where a region is, as the start of a sentence.

@@ -44,7 +44,7 @@ pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, 
     page.subheading("On the drive");
     page.paragraph(on_the_drive(found.effect));
     if found.effect.action() == Action::FeedForward {
-        page.paragraph("`trainer verify IMPROVED.frk --target cortex-m4f` counts the instructions of the whole image.");
+        page.paragraph("To count the instructions of the whole image: trainer verify IMPROVED.frk --target cortex-m4f");
     }
     if !found.alternatives.is_empty() {
         page.subheading("What would tell the alternatives apart");

@@ -113,23 +113,6 @@ fn a_region_from_a_reversal_on_says_so() {
 }
 
 #[test]
-fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
-    let seen_at = |effect: EffectId| {
-        let load = region("load", 1.0, 2.0);
-        let regions = [load, region("time", 3.0, 4.0), region("velocity", -0.05, 0.05)];
-        [0, 1].map(|sharpest| {
-            let location = Location { regions: regions[sharpest..].to_vec(), when_s: Vec::new() };
-            let found = Finding { effect, location, ..presliding("time", 3.0, 4.0) };
-            finding(&diagnosis(found), 0, ROTARY)
-        })
-    };
-    assert!(seen_at(EffectId::Presliding)[0].starts_with("Under loads between 1 and 2 N m"));
-    assert!(seen_at(EffectId::Presliding)[1].starts_with("Between -0.05 and 0.05 rad/s"));
-    assert!(seen_at(EffectId::TransientEvent)[0].starts_with("Between 3 and 4 s of the recording"));
-    assert!(seen_at(EffectId::SlowDrift)[1].starts_with("Between 3 and 4 s of the recording"));
-}
-
-#[test]
 fn channels_that_cannot_be_told_apart_are_said() {
     let channels = vec![Channel::Load, Channel::Position, Channel::TimeSinceReversal];
     let unknown = Finding { effect: EffectId::Unknown, channels, ..presliding("load", 1.0, 2.0) };
