@@ -157,7 +157,7 @@ fn next(page: &mut Page, plan: &Plan, units: Units) {
     let (time, position) = ((0.0, plan.duration_s()), Scale::over(plan.position.iter().copied()));
     let mut chart = Chart::new((1060.0, 240.0), time, position, ["time (s)", &axis_label("position", units)]);
     chart.line(&points, Ink::One, "position");
-    page.figure(&chart.svg(), "The motion, as `--advise FILE.csv` writes it.");
+    page.figure(&chart.svg(), "The motion, as --advise FILE.csv writes it.");
 }
 
 fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
