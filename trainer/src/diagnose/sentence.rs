@@ -3,8 +3,8 @@
 #[cfg(test)]
 mod tests;
 
-use super::localise::Region;
 use super::outcome::{Diagnosis, Finding, Verdict};
+use super::region::{Region, Side};
 use crate::figures::{digits, interval, quantity};
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
@@ -104,7 +104,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
         return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
     }
     let telling = found.location.regions.first().filter(|region| region.is_telling());
-    let place = telling.map_or_else(|| "Over the whole motion".to_string(), |region| place(region, units));
+    let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
     let amount = amount(diagnosis, index, telling, units);
     let name = match found.effect {
         EffectId::Unknown => format!("{} ({})", plain_name(found.effect), found.equation),
@@ -112,28 +112,37 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     };
     let figures = figures(found);
     let certainty = certainty(found);
-    format!("{place} {amount}: {name}{figures}. {certainty}{}", action(found))
+    format!("{} {amount}: {name}{figures}. {certainty}{}", capital(&place), action(found))
 }
 
-/// Where a region is, as the start of a sentence.
+/// Where a region is, as a sentence begins, in small letters.
 fn place(region: &Region, units: Units) -> String {
-    let unit = units.of_channel(region.channel);
-    let between = interval(region.from, region.to, &unit);
-    let from_zero = region.from.abs() < 0.03 * region.to.abs();
-    match region.channel {
-        "velocity" => format!("Between {between}"),
-        "position" => format!("At positions between {between}"),
-        "load" => format!("Under loads between {between}"),
-        "temperature" => format!("At temperatures between {between}"),
-        "acceleration" => format!("At accelerations between {between}"),
-        "time" => format!("Between {between} of the recording"),
-        "dwell" if region.to <= 0.0 => "After reversals without a stop".to_string(),
-        "dwell" => format!("After stops between {between}"),
+    let first = place_along(&region.side, units);
+    match &region.and {
+        Some(second) => format!("{first} and {}", place_along(second, units)),
+        None => first,
+    }
+}
+
+/// Where an interval is, as a sentence begins, in small letters.
+fn place_along(side: &Side, units: Units) -> String {
+    let unit = units.of_channel(side.channel);
+    let between = interval(side.from, side.to, &unit);
+    let from_zero = side.from.abs() < 0.03 * side.to.abs();
+    match side.channel {
+        "velocity" => format!("between {between}"),
+        "position" => format!("at positions between {between}"),
+        "load" => format!("under loads between {between}"),
+        "temperature" => format!("at temperatures between {between}"),
+        "acceleration" => format!("at accelerations between {between}"),
+        "time" => format!("between {between} of the recording"),
+        "dwell" if side.to <= 0.0 => "after reversals without a stop".to_string(),
+        "dwell" => format!("after stops between {between}"),
         "distance_since_reversal" | "time_since_reversal" if from_zero => {
-            format!("Within {} after each reversal", quantity(region.to, &unit))
+            format!("within {} after each reversal", quantity(side.to, &unit))
         }
-        "distance_since_reversal" | "time_since_reversal" => format!("Between {between} after each reversal"),
-        _ => format!("While the other joint moves between {between}"),
+        "distance_since_reversal" | "time_since_reversal" => format!("between {between} after each reversal"),
+        _ => format!("while the other joint moves between {between}"),
     }
 }
 
@@ -141,10 +150,13 @@ fn place(region: &Region, units: Units) -> String {
 fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: Units) -> String {
     let traces = &diagnosis.traces;
     let Some(effect) = traces.effects.get(index) else { return "the real joint differs".to_string() };
-    let inside: Vec<usize> = match region.and_then(|r| traces.channel(r.channel).map(|values| (r, values))) {
-        Some((r, values)) => (0..effect.len()).filter(|&i| values[i] >= r.from && values[i] <= r.to).collect(),
-        None => (0..effect.len()).collect(),
-    };
+    let sides: Vec<(&Side, &[f64])> = region
+        .into_iter()
+        .flat_map(|region| std::iter::once(&region.side).chain(&region.and))
+        .filter_map(|side| Some((side, traces.channel(side.channel)?)))
+        .collect();
+    let is_inside = |i: &usize| sides.iter().all(|(side, values)| (side.from..=side.to).contains(&values[*i]));
+    let inside: Vec<usize> = (0..effect.len()).filter(is_inside).collect();
     let mut sizes: Vec<f64> = inside.iter().map(|&i| effect[i].abs()).collect();
     sizes.sort_unstable_by(f64::total_cmp);
     let largest = sizes.get(((sizes.len().max(1) - 1) as f64 * UP_TO).round() as usize).copied().unwrap_or(0.0);

@@ -2,8 +2,9 @@
 
 use super::channel::Channel;
 use super::conclude::{Refit, weighted};
-use super::localise::{Region, locate_density};
+use super::localise::locate_density;
 use super::prove::rest;
+use super::region::Region;
 use super::search::Search;
 use crate::physics::quantile;
 

@@ -5,7 +5,7 @@ use super::chart::{Chart, Ink, bars};
 use super::finding::evidence;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{Story, Units, plain_name};
+use crate::diagnose::sentence::{Story, Units, capital, plain_name};
 use crate::diagnose::{Diagnosis, Finding, Label, Plan, Traces};
 use crate::figures::{digits, quantity};
 
@@ -139,7 +139,7 @@ fn second_axis(traces: &Traces, found: &Finding) -> &'static str {
         .location
         .regions
         .iter()
-        .map(|region| region.channel)
+        .map(|region| region.side.channel)
         .find(|channel| *channel != "velocity" && traces.channel(channel).is_some())
         .unwrap_or("position")
 }
@@ -151,7 +151,7 @@ pub(super) fn axis_label(channel: &str, units: Units) -> String {
 /// The motion that is proposed, over time.
 fn next(page: &mut Page, plan: &Plan, units: Units) {
     page.heading("What to record next");
-    page.paragraph(&format!("{}.", sentence_case(&plan.sentence())));
+    page.paragraph(&format!("{}.", capital(&plan.sentence())));
     let points: Vec<[f64; 2]> =
         plan.position.iter().enumerate().map(|(k, position)| [k as f64 * plan.period, *position]).collect();
     let (time, position) = ((0.0, plan.duration_s()), Scale::over(plan.position.iter().copied()));
@@ -217,7 +217,7 @@ fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     limits.sort_by(|a, b| a.torque_rms.total_cmp(&b.torque_rms));
     let rows: Vec<Vec<String>> = limits
         .iter()
-        .map(|limit| vec![sentence_case(plain_name(limit.effect)), quantity(limit.torque_rms, units.actuator)])
+        .map(|limit| vec![capital(plain_name(limit.effect)), quantity(limit.torque_rms, units.actuator)])
         .collect();
     if rows.is_empty() {
         return;
@@ -227,9 +227,4 @@ fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
         "Each of these, had its torque reached the stated root mean square, would have been found nine times in ten.",
     );
     page.table(&["effect", "torque (root mean square)"], &rows);
-}
-
-pub(super) fn sentence_case(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }

@@ -2,11 +2,11 @@
 
 use super::axis::Scale;
 use super::chart::{Chart, Ink, bars};
-use super::diagnosis::{axis_label, sentence_case};
+use super::diagnosis::axis_label;
 use super::on_the_drive::on_the_drive;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{Units, plain_name};
-use crate::diagnose::{Diagnosis, Finding, Traces};
+use crate::diagnose::sentence::{Units, capital, plain_name};
+use crate::diagnose::{Diagnosis, Finding, Region, Side, Traces};
 use crate::figures::digits;
 use crate::physics::{Action, EffectId};
 
@@ -17,8 +17,8 @@ const MOST_STANDINGS: usize = 6;
 pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
     let code = if found.effect == EffectId::Unknown { "" } else { found.effect.code() };
     let name = format!("{code} {}", found.effect.name());
-    page.heading(&format!("{}. {} ({})", index + 1, sentence_case(plain_name(found.effect)), name.trim()));
-    page.paragraph(&format!("{}.", sentence_case(&found.evidence)));
+    page.heading(&format!("{}. {} ({})", index + 1, capital(plain_name(found.effect)), name.trim()));
+    page.paragraph(&format!("{}.", capital(&found.evidence)));
     page.equation(&found.equation);
     page.table(&PARAMETER_HEADER, &parameter_rows(&found.parameters));
     figures(page, diagnosis, found, index, units);
@@ -28,11 +28,13 @@ pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, 
         .iter()
         .take(5)
         .map(|region| {
+            let sides = || std::iter::once(&region.side).chain(&region.and);
+            let joined = |text: &dyn Fn(&Side) -> String| sides().map(text).collect::<Vec<_>>().join(" and ");
             vec![
-                region.channel.replace('_', " "),
-                digits(region.from),
-                digits(region.to),
-                units.of_channel(region.channel),
+                joined(&|side| side.channel.replace('_', " ")),
+                joined(&|side| digits(side.from)),
+                joined(&|side| digits(side.to)),
+                joined(&|side| units.of_channel(side.channel)),
                 format!("{:.0} %", 100.0 * region.share_of_excess),
                 format!("{:.0} %", 100.0 * region.share_of_samples),
             ]
@@ -48,7 +50,7 @@ pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, 
     }
     if !found.alternatives.is_empty() {
         page.subheading("What would tell the alternatives apart");
-        page.paragraph(&format!("{}.", sentence_case(&found.separate_by.sentence)));
+        page.paragraph(&format!("{}.", capital(&found.separate_by.sentence)));
     }
 }
 
@@ -60,13 +62,13 @@ fn figures(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize
     let label = format!("torque ({})", units.actuator);
     let range = Scale::over(without.iter().copied());
     let mut pictures = Vec::new();
-    if let Some(region) = found.location.regions.first()
-        && let Some(values) = traces.channel(region.channel)
+    if let Some(Region { side, .. }) = found.location.regions.first()
+        && let Some(values) = traces.channel(side.channel)
     {
         let pairs = |series: &[f64]| -> Vec<[f64; 2]> { values.iter().zip(series).map(|(x, y)| [*x, *y]).collect() };
         let over = Scale::over(values.iter().copied());
-        let mut chart = Chart::new((520.0, 320.0), over, range, [&axis_label(region.channel, units), &label]);
-        chart.band(region.from, region.to);
+        let mut chart = Chart::new((520.0, 320.0), over, range, [&axis_label(side.channel, units), &label]);
+        chart.band(side.from, side.to);
         chart.dots(&pairs(&without), Ink::Data, "residual without it");
         chart.dots(&pairs(torque), Ink::Two, "its torque");
         pictures.push((

@@ -1,7 +1,7 @@
 //! A diagnosis as JSON, schema `frikan.diagnose/1`.
 
 use crate::diagnose::sentence::Story;
-use crate::diagnose::{BaseKind, Diagnosis, Finding, Plan, Region, Scored};
+use crate::diagnose::{BaseKind, Diagnosis, Finding, Plan, Region, Scored, Side};
 use serde_json::{Value, json};
 
 /// Rivals listed with a finding, nearest first.
@@ -89,14 +89,16 @@ fn finding_json((found, sentence): (&Finding, &String)) -> Value {
     })
 }
 
+/// `and` stands only where two channels together are sharper than one.
 fn region_json(region: &Region) -> Value {
-    json!({
-        "channel": region.channel,
-        "from": region.from,
-        "to": region.to,
-        "share_of_excess": region.share_of_excess,
-        "share_of_samples": region.share_of_samples,
-    })
+    let side_json = |side: &Side| json!({ "channel": side.channel, "from": side.from, "to": side.to });
+    let mut json = side_json(&region.side);
+    json["share_of_excess"] = region.share_of_excess.into();
+    json["share_of_samples"] = region.share_of_samples.into();
+    if let Some(and) = &region.and {
+        json["and"] = side_json(and);
+    }
+    json
 }
 
 fn rival_json(rival: &Scored) -> Value {

@@ -4,7 +4,7 @@ use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Label, Location, Lock, 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 
 fn region(channel: &'static str, from: f64, to: f64) -> Region {
-    Region { channel, from, to, share_of_excess: 0.9, share_of_samples: 0.1 }
+    Region { side: Side { channel, from, to }, and: None, share_of_excess: 0.9, share_of_samples: 0.1 }
 }
 
 fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
@@ -110,6 +110,14 @@ fn a_finding_reads_as_a_sentence() {
 fn a_region_from_a_reversal_on_says_so() {
     let sentence = finding(&diagnosis(presliding("distance_since_reversal", 1e-6, 0.004)), 0, ROTARY);
     assert!(sentence.starts_with("Within 4 mrad after each reversal the real joint needs up to"), "{sentence}");
+}
+
+#[test]
+fn two_channels_are_named_where_they_are_sharper_together() {
+    let mut found = presliding("velocity", -0.05, 0.05);
+    found.location.regions[0].and = Some(Side { channel: "load", from: 1.0, to: 2.0 });
+    let sentence = finding(&diagnosis(found), 0, ROTARY);
+    assert!(sentence.starts_with("Between -0.05 and 0.05 rad/s and under loads between 1 and 2 N m the real joint"));
 }
 
 #[test]
