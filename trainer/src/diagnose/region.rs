@@ -26,9 +26,11 @@ pub struct Region {
     pub share_of_samples: f64,
 }
 
-/// Least surplus of the share of evidence over the share of samples at which a region is worth naming, and by which two axes have
-/// to be sharper than one.
+/// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
 const TELLING: f64 = 0.12;
+
+/// Least rise of that surplus at which two axes are named instead of one.
+const SHARPER: f64 = 0.07;
 
 /// Bins a channel for the search of the maximal interval.
 const BINS: usize = 40;
@@ -95,7 +97,7 @@ fn conjunction(evidence: &Evidence, axes: &[Axis], regions: &[Region]) -> Option
         })
     });
     let both = pairs.max_by(|a, b| a.contrast().total_cmp(&b.contrast()))?;
-    (both.contrast() > lasting().next()?.contrast() + TELLING).then_some(both)
+    (both.contrast() > lasting().next()?.contrast() + SHARPER).then_some(both)
 }
 
 impl Evidence<'_> {
