@@ -1,5 +1,5 @@
 use crate::friction::{FrictionState, Measurement};
-use crate::test_models::coulomb_model;
+use crate::test_models::{TestModel, coulomb_model};
 use frikan_shared::effect::{Effect, Harmonic, Kind};
 
 const DT: f32 = 1.0e-3;
@@ -90,17 +90,17 @@ fn dwell_raises_the_breakaway_and_travel_takes_it_away() {
     }
 }
 
+/// A joint of 10 N m that takes 0.1 N m more for every watt that it dissipates.
+fn warming_model(time_constant: f32) -> TestModel {
+    let effect =
+        Effect::WarmUp { time_constant, coulomb: 0.1, viscous: 0.0, power_limit: 50.0, smoothing_velocity: SMOOTHING };
+    coulomb_model(10.0, &[effect])
+}
+
 #[test]
 fn warm_up_reaches_its_power_however_small_the_step() {
     // tau / dt = 1e6: increments are far below what the state resolves.
-    let effect = Effect::WarmUp {
-        time_constant: 1000.0,
-        coulomb: 0.1,
-        viscous: 0.0,
-        power_limit: 50.0,
-        smoothing_velocity: SMOOTHING,
-    };
-    let model = coulomb_model(10.0, &[effect]);
+    let model = warming_model(1000.0);
     let mut state = FrictionState::new(&model.effects);
     let mut torque = 0.0;
     let samples = if cfg!(miri) { 2_000 } else { 2_000_000 };
@@ -113,14 +113,7 @@ fn warm_up_reaches_its_power_however_small_the_step() {
 
 #[test]
 fn warmth_fades_in_a_rest_and_is_gone_after_one_of_unknown_length() {
-    let effect = Effect::WarmUp {
-        time_constant: 10.0,
-        coulomb: 0.1,
-        viscous: 0.0,
-        power_limit: 50.0,
-        smoothing_velocity: SMOOTHING,
-    };
-    let model = coulomb_model(10.0, &[effect]);
+    let model = warming_model(10.0);
     let mut warm = FrictionState::new(&model.effects);
     for _ in 0..200 {
         let _ = warm.step(&model, &at(1.0), 1.0);

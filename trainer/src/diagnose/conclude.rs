@@ -1,8 +1,7 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
 use super::candidates::{Label, ridge_of};
-use super::evidence::Bench;
-use super::linear::{dot, least_squares, residual};
+use super::linear::{dot, invert_symmetric, least_squares, residual, ridged_gram};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search};
@@ -119,17 +118,23 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
         .collect();
     // Shapes that were fitted too make every interval wider: their tangents join the normal matrix (Gauss-Newton).
     let (owners, tangents) = shape_tangents(search, &effects);
-    let wide = bench.base.iter().cloned().chain(search.whitened(&tangents, &noise)).collect();
-    let wide = Bench::new(wide, bench.target.clone(), bench.blocks.clone()).solve(&ridge);
-    let covariance = wide.map_or(covariance, |(_, wide)| wide) * long_run_variance;
+    let widened = if tangents.is_empty() {
+        None
+    } else {
+        let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(search.whitened(&tangents, &noise)).collect();
+        invert_symmetric(&ridged_gram(&all, &ridge, &runs))
+    };
+    let (covariance, owners) = match widened {
+        Some(widened) => (widened, owners),
+        None => (covariance, Vec::new()),
+    };
+    let covariance = covariance * long_run_variance;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     for (effect, place) in effects.iter_mut().zip(places) {
         effect.deviation = place.map(deviation).collect();
     }
-    if covariance.nrows() > columns.len() {
-        for (row, (index, slot)) in (columns.len()..).zip(owners) {
-            effects[index].shape_deviation[slot] = Some(deviation(row));
-        }
+    for (row, (index, slot)) in (columns.len()..).zip(owners) {
+        effects[index].shape_deviation[slot] = Some(deviation(row));
     }
     Some(Refit {
         base: solution[..base_width].to_vec(),

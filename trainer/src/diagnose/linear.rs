@@ -82,6 +82,15 @@ pub(crate) fn solve_symmetric(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Op
     Factored::new(matrix)?.solve(right)
 }
 
+/// Normal matrix of columns over runs; `ridge` is the prior precision of each over what the rows tell of it, empty for none.
+pub(crate) fn ridged_gram(columns: &[Vec<f64>], ridge: &[f64], runs: &[Range<usize>]) -> DMatrix<f64> {
+    let mut normal = gram(columns, runs);
+    for (i, share) in ridge.iter().enumerate() {
+        normal[(i, i)] *= 1.0 + share;
+    }
+    normal
+}
+
 /// Inverse of a symmetric positive matrix with the same scaling.
 pub(crate) fn invert_symmetric(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Factored::new(matrix).map(|factored| factored.inverse())

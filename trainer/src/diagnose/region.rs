@@ -39,6 +39,11 @@ const BINS: usize = 40;
 const FIRST_SIDES: usize = 3;
 
 impl Region {
+    /// Its interval, and that of the second channel if there is one.
+    pub fn sides(&self) -> impl Iterator<Item = &Side> {
+        std::iter::once(&self.side).chain(&self.and)
+    }
+
     /// Whether the region holds so much more of the evidence than of the samples that it is worth naming.
     #[must_use]
     pub fn is_telling(&self) -> bool {
@@ -88,10 +93,12 @@ fn conjunction(evidence: &Evidence, axes: &[Axis], regions: &[Region]) -> Option
     let inside = |side: &Side, values: &[f64]| -> Vec<usize> {
         (0..values.len()).filter(|&i| (side.from..=side.to).contains(&values[i])).collect()
     };
-    let pairs = lasting().take(FIRST_SIDES).flat_map(|first| {
-        axes.iter().filter(|(name, _)| *name != "time" && *name != first.side.channel).filter_map(move |second| {
-            let first_axis = axis_of(&first.side)?;
-            let (other, _) = evidence.densest(second, &inside(&first.side, first_axis.1))?;
+    let firsts = lasting().take(FIRST_SIDES).filter_map(|first| Some((&first.side, axis_of(&first.side)?)));
+    let pairs = firsts.flat_map(|(first, first_axis)| {
+        let inside_first = inside(first, first_axis.1);
+        let others = axes.iter().filter(|(name, _)| *name != "time" && *name != first.channel);
+        others.filter_map(move |second| {
+            let (other, _) = evidence.densest(second, &inside_first)?;
             let (side, rows) = evidence.densest(first_axis, &inside(&other, second.1))?;
             Some(evidence.region(side, Some(other), &rows))
         })

@@ -117,11 +117,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
 
 /// Where a region is, as a sentence begins, in small letters.
 fn place(region: &Region, units: Units) -> String {
-    let first = place_along(&region.side, units);
-    match &region.and {
-        Some(second) => format!("{first} and {}", place_along(second, units)),
-        None => first,
-    }
+    region.sides().map(|side| place_along(side, units)).collect::<Vec<_>>().join(" and ")
 }
 
 /// Where an interval is, as a sentence begins, in small letters.
@@ -152,7 +148,7 @@ fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: U
     let Some(effect) = traces.effects.get(index) else { return "the real joint differs".to_string() };
     let sides: Vec<(&Side, &[f64])> = region
         .into_iter()
-        .flat_map(|region| std::iter::once(&region.side).chain(&region.and))
+        .flat_map(Region::sides)
         .filter_map(|side| Some((side, traces.channel(side.channel)?)))
         .collect();
     let is_inside = |i: &usize| sides.iter().all(|(side, values)| (side.from..=side.to).contains(&values[*i]));

@@ -98,6 +98,8 @@ mod tests {
         assert!(!is_carried(3.0, 0.02, 0.5, 0.5), "the score is too low");
         assert!(!is_carried(6.0, 0.02, 0.5, 0.5), "the probability is too high");
         assert!(is_carried(20.0, 1e-8, -4.0, -1.5), "a strong one survives a locked row or two against it");
+        assert!(!is_carried(5.0, 1e-3, -2.0, -2.0));
+        assert!(!is_carried(12.0, 5e-6, -6.0, -2.0), "a lasting one does not survive what clearly speaks against it");
         assert!(!is_carried(8.0, 1e-3, -2.0, -0.5), "p would do, but the locked rows get worse");
         assert!(!is_carried(80.0, 1e-30, -20.0, -4.0), "nothing survives locked rows that clearly speak against it");
     }

@@ -28,8 +28,7 @@ pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, 
         .iter()
         .take(5)
         .map(|region| {
-            let sides = || std::iter::once(&region.side).chain(&region.and);
-            let joined = |text: &dyn Fn(&Side) -> String| sides().map(text).collect::<Vec<_>>().join(" and ");
+            let joined = |text: &dyn Fn(&Side) -> String| region.sides().map(text).collect::<Vec<_>>().join(" and ");
             vec![
                 joined(&|side| side.channel.replace('_', " ")),
                 joined(&|side| digits(side.from)),
