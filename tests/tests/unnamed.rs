@@ -1,20 +1,19 @@
 //! What the diagnosis says of structures without a name: where they sit, and the formula that generated them.
 
-use frikan_tests::concealed::{Case, Hidden, run};
+use frikan_tests::concealed::{Case, Hidden, Outcome, run};
 use frikan_trainer::diagnose::{BaseKind, Label};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::NoiseKind;
 
+fn diagnosed(effect: &'static str, lambda: f64, seed: u64) -> Outcome {
+    let hidden = Hidden::Effect(effect, lambda);
+    run(&Case { hidden, noise: NoiseKind::Coloured, base: BaseKind::CoulombViscous, seed }).unwrap()
+}
+
 /// Checks the numbers of the equation of an effect found at lambda 300 against what was drawn, up to their signs: an
 /// amplitude, then the shape. Each drawn parameter comes with the relative deviation that it may have.
 fn formula_holds(effect: &'static str, factor: &str, channel: &str, drawn: [(&str, f64); 3]) {
-    let case = Case {
-        hidden: Hidden::Effect(effect, 300.0),
-        noise: NoiseKind::Coloured,
-        base: BaseKind::CoulombViscous,
-        seed: 70,
-    };
-    let outcome = run(&case).unwrap();
+    let outcome = diagnosed(effect, 300.0, 70);
     assert_eq!(outcome.named(), [EffectId::Unknown]);
     assert_eq!(outcome.unknown_channels(), [channel]);
     let found = &outcome.diagnosis.findings[0];
@@ -46,4 +45,13 @@ fn a_tight_place_is_found_with_its_width() {
 fn a_step_of_viscosity_is_found_with_its_place() {
     let drawn = [("viscous_Nm_s_rad", 0.2), ("place_rad", 0.1), ("width_rad", 1.0)];
     formula_holds("unknown_position_step_viscous", "v", "position", drawn);
+}
+
+#[test]
+fn a_load_friction_that_changes_on_the_way_is_no_friction_that_depends_on_position() {
+    for seed in [71, 72, 73] {
+        let outcome = diagnosed("unknown_load_position", 150.0, seed);
+        assert_eq!(outcome.named(), [EffectId::Unknown], "seed {seed}");
+        assert_eq!(outcome.unknown_channels(), ["position"], "seed {seed}");
+    }
 }

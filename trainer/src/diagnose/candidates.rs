@@ -1,5 +1,6 @@
 //! Every hypothesis as filtered columns: the named effects of the catalogue and the generic rivals.
 
+use super::channel::Channel;
 use super::generic::{Generic, generic_rivals};
 use super::prepare::Prepared;
 use crate::physics::{EffectId, Hypothesis, Shape};
@@ -21,6 +22,14 @@ impl Label {
         match self {
             Self::Named(effect) => *effect,
             Self::Generic(_) => EffectId::Unknown,
+        }
+    }
+
+    /// The channel of a structure without a name.
+    pub(super) fn channel(&self) -> Option<Channel> {
+        match self {
+            Self::Named(_) => None,
+            Self::Generic(rival) => Some(rival.channel),
         }
     }
 }

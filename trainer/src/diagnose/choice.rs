@@ -2,7 +2,6 @@
 
 use super::candidates::Label;
 use super::channel::Channel;
-use super::generic::Generic;
 use super::linear::{dot, orthonormal, project_out};
 use super::round::{Round, Scored};
 use super::search::Accepted;
@@ -20,6 +19,7 @@ const NEARLY_AS_GOOD: f64 = 0.8;
 
 /// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
 const NEARLY_ALL: f64 = 0.01;
+const OF_ITS_KIND: f64 = 0.1;
 const ALL: f64 = 1e-6;
 
 /// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
@@ -46,19 +46,25 @@ impl Round<'_, '_> {
         let generic = table.iter().filter(|s| !is_named(s)).find(passes);
         let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
         // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
-        // much, whitened or not, is kept.
+        // much, whitened or not, is kept, unless a free function of the same channel that holds it explains less, too.
         let nearly = |generic: &Scored| {
             let is_strong = generic.score >= STRONG_NATS;
-            passing_names().find(|s| {
+            let explains = |s: &&Scored| {
                 s.explained >= NEARLY_AS_MUCH * generic.explained
                     && (is_strong || s.score >= NEARLY_AS_GOOD * generic.score)
                     || s.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise()
-            })
+            };
+            let same_channel = |s: &&Scored| s.label.channel() == generic.label.channel();
+            let errs_by_its_formula = |s: &&Scored| {
+                let of_its_kind = |own: &&Scored| self.contains(own, s, OF_ITS_KIND);
+                let own = table.iter().filter(same_channel).find(of_its_kind);
+                own.is_none_or(|own| own.score > generic.score - settings.ambiguity_margin)
+            };
+            passing_names().find(|s| explains(s) && errs_by_its_formula(s))
         };
         let best = match (named, generic) {
             (Some(named), Some(generic))
-                if generic.score > named.score + settings.ambiguity_margin
-                    && generic.evidence.held_out > held_out + settings.ambiguity_margin =>
+                if generic.score > named.score + settings.ambiguity_margin && generic.evidence.held_out > held_out =>
             {
                 nearly(generic).unwrap_or(generic)
             }
@@ -152,14 +158,12 @@ impl Round<'_, '_> {
 
 /// The channel of a structure without a name, then those of the passing structures within reach, likeliest first.
 fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach: f64) -> Vec<Channel> {
-    let Label::Generic(structure) = best.label else { return Vec::new() };
-    let mut channels = vec![structure.channel];
+    let mut channels: Vec<Channel> = best.label.channel().into_iter().collect();
+    if channels.is_empty() {
+        return channels;
+    }
     for rival in passing.filter(|rival| within_reach(best, rival, reach)) {
-        if let Label::Generic(Generic { channel, .. }) = rival.label
-            && !channels.contains(&channel)
-        {
-            channels.push(channel);
-        }
+        channels.extend(rival.label.channel().filter(|channel| !channels.contains(channel)));
     }
     channels
 }

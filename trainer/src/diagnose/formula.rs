@@ -20,6 +20,7 @@ pub(super) fn equation(search: &Search, accepted: &[Accepted], index: usize, riv
 
 fn formula(search: &Search, accepted: &[Accepted], index: usize, rival: Generic, noise: &Noise) -> Option<String> {
     let state = &search.prepared.state;
+    let range = rival.range(state)?;
     let bench = search.bench(search.base_with(others(accepted, index)), noise);
     let alone = bench.alone()?;
     let rows = bench.rows();
@@ -27,12 +28,11 @@ fn formula(search: &Search, accepted: &[Accepted], index: usize, rival: Generic,
         let label = Label::Generic(rival);
         let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
         let evidence = bench.weigh(&columns, &ridge_of(&label, shape), false)?;
-        let shape_price = if rival.form == Form::Free { 0.0 } else { 0.5 * shape.len() as f64 * rows.ln() };
+        let shape_price = 0.5 * rival.form.movable(shape, range).len() as f64 * rows.ln();
         let gain = 0.5 * rows * (alone.residual / evidence.residual).ln() - evidence.complexity - shape_price;
         Some((gain, evidence.coefficients))
     };
     let (accepted_gain, _) = weigh(rival, &accepted[index].shape)?;
-    let range = rival.range(state)?;
     let best_of = |form: Form| -> Option<(f64, Generic, Shape, Vec<f64>)> {
         let rival = Generic { form, ..rival };
         let gain = |shape: &[f64]| weigh(rival, shape).map(|(gain, _)| gain);

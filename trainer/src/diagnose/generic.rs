@@ -79,7 +79,7 @@ impl Generic {
 
     /// Whether a constant belongs to its form: where the base does not hold the factor, and it is no bump upon nothing.
     fn has_constant(self) -> bool {
-        self.factor.first_order() == 0 && matches!(self.form, Form::Quadratic | Form::Wave | Form::Step)
+        self.factor.first_order() == 0 && matches!(self.form, Form::Series | Form::Quadratic | Form::Wave | Form::Step)
     }
 
     /// Prior precision of each coefficient over what all rows tell of it: that of a smooth function for a series with a prior,
@@ -191,8 +191,10 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
         add(&all, channel, Form::Free);
     }
     add(&[Factor::VelocitySquared], Channel::Position, Form::Free);
+    add(&[Factor::Velocity], Channel::Position, Form::Series);
     if state.load.is_some() {
         add(&[Factor::LoadSign], Channel::Position, Form::Free);
+        add(&[Factor::LoadSign], Channel::Position, Form::Series);
         add(&[Factor::LoadSign], Channel::Temperature, Form::Free);
     }
     add(&[Factor::Sign, Factor::One], Channel::Speed, Form::Free);
