@@ -68,8 +68,11 @@ pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<
     let options = Options::default();
     let diagnosed = |signals: &Signals| diagnose(signals, unit, &options).map_err(|e| e.to_string());
     let found_before: Vec<&'static str> = diagnosed(&signals)?.findings.iter().map(|f| f.effect.name()).collect();
+    // Without a rigid body to be wrong its inertia is part of the base.
+    let can_be_wrong = |effect: &str| effect != "inertia_error" || signals.rigid_body.is_some();
     ADDED
         .into_iter()
+        .filter(|effect| can_be_wrong(effect))
         .map(|effect| {
             let shape = torque(effect, &state);
             let mut with = signals.clone();
@@ -104,7 +107,7 @@ fn torque(effect: &str, state: &JointState) -> Vec<f64> {
         "torque_offset" => along(&|_, _, _| 1.0),
         "spring" => along(&|q, _, _| q - low - 0.37 * span),
         "inertia_error" => along(&|_, _, i| state.acceleration[i]),
-        "slow_drift" => along(&|_, _, i| state.time[i]),
+        "slow_drift" => along(&|_, _, i| state.time[i] * state.sign[i]),
         "position_ripple" => along(&|q, _, _| (23.0 * std::f64::consts::TAU * q / span + 0.4).sin()),
         "presliding" => bristle(state, 0.004 * span),
         _ => vec![0.0; state.len()],

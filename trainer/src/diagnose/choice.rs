@@ -17,9 +17,10 @@ const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
 const STRONG_NATS: f64 = 60.0;
 const NEARLY_AS_GOOD: f64 = 0.8;
 
-/// Shares of energy outside of a wider hypothesis at which a narrower one is the same but for its formula, and a part of it.
-const NEARLY_ALL: f64 = 0.01;
+/// Shares of energy outside of a wider hypothesis at which a narrower one is of its kind, the same but for its formula, and a part
+/// of it.
 const OF_ITS_KIND: f64 = 0.1;
+const NEARLY_ALL: f64 = 0.01;
 const ALL: f64 = 1e-6;
 
 /// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
@@ -45,28 +46,11 @@ impl Round<'_, '_> {
         let named = passing_names().next();
         let generic = table.iter().filter(|s| !is_named(s)).find(passes);
         let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
-        // A free function holds more than any name does, and every formula is a little wrong: a name that explains nearly as
-        // much, whitened or not, is kept, unless a free function of the same channel that holds it explains less, too.
-        let nearly = |generic: &Scored| {
-            let is_strong = generic.score >= STRONG_NATS;
-            let explains = |s: &&Scored| {
-                s.explained >= NEARLY_AS_MUCH * generic.explained
-                    && (is_strong || s.score >= NEARLY_AS_GOOD * generic.score)
-                    || s.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise()
-            };
-            let same_channel = |s: &&Scored| s.label.channel() == generic.label.channel();
-            let errs_by_its_formula = |s: &&Scored| {
-                let of_its_kind = |own: &&Scored| self.contains(own, s, OF_ITS_KIND);
-                let own = table.iter().filter(same_channel).find(of_its_kind);
-                own.is_none_or(|own| own.score > generic.score - settings.ambiguity_margin)
-            };
-            passing_names().find(|s| explains(s) && errs_by_its_formula(s))
-        };
         let best = match (named, generic) {
             (Some(named), Some(generic))
                 if generic.score > named.score + settings.ambiguity_margin && generic.evidence.held_out > held_out =>
             {
-                nearly(generic).unwrap_or(generic)
+                passing_names().find(|name| self.stands_beside(name, generic, table)).unwrap_or(generic)
             }
             (Some(named), _) if named.label == Label::Named(EffectId::TransientEvent) => {
                 // No other block can confirm an event, so any cause that may come back goes before it on equal terms.
@@ -111,6 +95,22 @@ impl Round<'_, '_> {
             standings,
             channels: channels(best, table.iter().filter(passes), settings.ambiguity_margin),
         })
+    }
+
+    /// Whether a name is kept beside a free function that leads it. A free function holds more than any name does, and every formula
+    /// is a little wrong: what explains nearly as much, whitened or not, is good enough, unless the function leads what holds the
+    /// name among those of its channel as well. Then it is no error of the formula that the name lacks.
+    fn stands_beside(&self, name: &Scored, generic: &Scored, table: &[Scored]) -> bool {
+        let is_strong = generic.score >= STRONG_NATS;
+        let explains_as_much = name.explained >= NEARLY_AS_MUCH * generic.explained
+            && (is_strong || name.score >= NEARLY_AS_GOOD * generic.score)
+            || name.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise();
+        let errs_by_its_formula = || {
+            let mut of_the_channel = table.iter().filter(|s| s.label.channel() == generic.label.channel());
+            let own = of_the_channel.find(|own| self.contains(own, name, OF_ITS_KIND));
+            own.is_none_or(|own| own.score > generic.score - self.search.settings.ambiguity_margin)
+        };
+        explains_as_much && errs_by_its_formula()
     }
 
     /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
