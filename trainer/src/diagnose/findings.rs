@@ -8,6 +8,7 @@ use super::confidence::{alternatives, probability};
 use super::formula;
 use super::health::HealthNote;
 use super::localise::{Location, locate};
+use super::nearest::nearest;
 use super::outcome::Finding;
 use super::prove::prove_alone;
 use super::search::{Accepted, Search};
@@ -43,6 +44,7 @@ pub(super) fn finding(
         found.rivals.len(),
         if found.rivals.len() == 1 { "" } else { "s" },
     );
+    let nearest = nearest(search, &fitted, all, index);
     Finding {
         effect,
         probability: probability(found),
@@ -58,6 +60,7 @@ pub(super) fn finding(
         margin: found.margin,
         standings: found.standings.clone(),
         channels: found.channels.clone(),
+        nearest,
         locked_gain_nats: locked,
     }
 }
@@ -145,6 +148,7 @@ pub(super) fn measurement_finding(note: &HealthNote) -> Finding {
         margin: f64::INFINITY,
         standings: Vec::new(),
         channels: Vec::new(),
+        nearest: None,
         locked_gain_nats: None,
     }
 }

@@ -60,6 +60,8 @@ pub struct Finding {
     pub standings: Vec<(EffectId, f64)>,
     /// Of a structure without a name: its channel, then those that cannot be told from it. Empty for a named effect.
     pub channels: Vec<Channel>,
+    /// Of a structure without a name: the effect with a name that explains most of it, with the share of its energy, 0.5..1.
+    pub nearest: Option<(EffectId, f64)>,
     /// Gain on locked data in nats when this effect alone is left out.
     pub locked_gain_nats: Option<f64>,
 }

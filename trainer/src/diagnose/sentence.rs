@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use super::certainty::certainty;
 use super::outcome::{Diagnosis, Finding, Verdict};
 use super::region::{Region, Side};
 use crate::figures::{digits, interval, quantity};
@@ -193,31 +194,6 @@ fn figure(parameter: &Parameter) -> String {
     } else {
         format!("{name} {value}")
     }
-}
-
-fn certainty(found: &Finding) -> String {
-    let sure = format!("Probability {:.0} %", 100.0 * found.probability);
-    let others: Vec<String> = found
-        .alternatives
-        .iter()
-        .map(|(effect, probability)| format!("{} ({})", plain_name(*effect), percent(*probability)))
-        .collect();
-    let known = if others.is_empty() {
-        format!("{sure}.")
-    } else {
-        format!("{sure}; this recording cannot rule out {}.", others.join(" or "))
-    };
-    match found.channels.as_slice() {
-        [first, rest @ ..] if !rest.is_empty() => {
-            let rest: Vec<&str> = rest.iter().map(|channel| channel.plain_name()).collect();
-            format!("{known} It may hang on {} as well as on {}.", rest.join(" or "), first.plain_name())
-        }
-        _ => known,
-    }
-}
-
-fn percent(share: f64) -> String {
-    if share < 0.01 { "below 1 %".to_string() } else { format!("{:.0} %", 100.0 * share) }
 }
 
 fn action(found: &Finding) -> &'static str {

@@ -72,6 +72,7 @@ fn finding_json((found, sentence): (&Finding, &String)) -> Value {
             .map(|(effect, probability)| json!({"effect": effect, "probability": probability}))
             .collect::<Vec<_>>(),
         "channels": found.channels.iter().map(|channel| channel.name()).collect::<Vec<_>>(),
+        "nearest": found.nearest.map(|(effect, share)| json!({"effect": effect, "share": share})),
         "action": found.action,
         "equation": found.equation,
         "parameters": found.parameters,

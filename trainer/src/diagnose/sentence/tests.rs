@@ -38,6 +38,7 @@ fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
         margin: 9.0,
         standings: Vec::new(),
         channels: Vec::new(),
+        nearest: None,
         locked_gain_nats: Some(20.0),
     }
 }
