@@ -5,15 +5,14 @@ use frikan_trainer::diagnose::{BaseKind, Label};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::NoiseKind;
 
-fn diagnosed(effect: &'static str, lambda: f64, seed: u64) -> Outcome {
-    let hidden = Hidden::Effect(effect, lambda);
+fn diagnosed(hidden: Hidden, seed: u64) -> Outcome {
     run(&Case { hidden, noise: NoiseKind::Coloured, base: BaseKind::CoulombViscous, seed }).unwrap()
 }
 
 /// Checks the numbers of the equation of an effect found at lambda 300 against what was drawn, up to their signs: an
 /// amplitude, then the shape. Each drawn parameter comes with the relative deviation that it may have.
 fn formula_holds(effect: &'static str, factor: &str, channel: &str, drawn: [(&str, f64); 3]) {
-    let outcome = diagnosed(effect, 300.0, 70);
+    let outcome = diagnosed(Hidden::Effect(effect, 300.0), 70);
     assert_eq!(outcome.named(), [EffectId::Unknown]);
     assert_eq!(outcome.unknown_channels(), [channel]);
     let found = &outcome.diagnosis.findings[0];
@@ -50,8 +49,24 @@ fn a_step_of_viscosity_is_found_with_its_place() {
 #[test]
 fn a_load_friction_that_changes_on_the_way_is_no_friction_that_depends_on_position() {
     for seed in [71, 72, 73] {
-        let outcome = diagnosed("unknown_load_position", 150.0, seed);
+        let outcome = diagnosed(Hidden::Effect("unknown_load_position", 150.0), seed);
         assert_eq!(outcome.named(), [EffectId::Unknown], "seed {seed}");
         assert_eq!(outcome.unknown_channels(), ["position"], "seed {seed}");
     }
+}
+
+#[test]
+fn what_a_free_function_took_for_two_effects_is_named_once_one_of_them_is_found() {
+    for seed in [630_000_000_005, 630_000_000_008] {
+        let outcome = diagnosed(Hidden::Pair("coupling", "torque_offset", 150.0), seed);
+        assert_eq!(outcome.named(), [EffectId::TorqueOffset, EffectId::Coupling], "seed {seed}");
+    }
+}
+
+#[test]
+fn a_structure_without_a_name_tells_the_effect_that_comes_nearest() {
+    let outcome = diagnosed(Hidden::Effect("unknown_load_position", 150.0), 72);
+    let (nearest, share) = outcome.diagnosis.findings[0].nearest.unwrap();
+    assert_eq!(nearest, EffectId::PositionFriction);
+    assert!((0.8..0.999).contains(&share), "{share}");
 }

@@ -2,6 +2,7 @@
 //!
 //! e = A(L)^-1 sigma(x) w with the order of A by Akaike's information criterion and log sigma^2 linear in the state.
 
+use super::prepare::Prepared;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -160,6 +161,24 @@ fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -
     let scale = (rows.iter().map(|&i| (innovation[i] / deviation[i]).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
     deviation.iter_mut().for_each(|d| *d *= scale);
     deviation
+}
+
+/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a glitch more.
+const LARGEST_FEATURE: f64 = 20.0;
+
+/// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.
+pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    let scaled = |series: Vec<f64>| {
+        let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
+        series.iter().map(|v| (v / mean.max(f64::MIN_POSITIVE)).min(LARGEST_FEATURE)).collect::<Vec<f64>>()
+    };
+    let slow = (0.05 * state.top_speed()).max(3.0 * state.sign_velocity);
+    vec![
+        scaled(prepared.rows.iter().map(|&i| state.velocity[i].abs()).collect()),
+        scaled(prepared.rows.iter().map(|&i| state.acceleration[i].abs()).collect()),
+        prepared.rows.iter().map(|&i| (-(state.velocity[i] / slow).powi(2)).exp()).collect(),
+    ]
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use super::channel::Channel;
 use super::evidence::{Bench, GroupEvidence};
 use super::generic::Generic;
 use super::linear::residual;
-use super::noise::Noise;
+use super::noise::{Noise, noise_features};
+use super::null::NullDraws;
 use super::prepare::Prepared;
 use super::round::{Round, Scored, score_of};
 use super::settings::Settings;
@@ -132,29 +133,60 @@ impl<'a> Search<'a> {
     pub fn run(&self) -> SearchOutcome {
         let mut accepted: Vec<Accepted> = Vec::new();
         let mut null = None;
+        let mut is_reviewed = false;
         loop {
-            let round = Round::new(self, self.base_with(&accepted));
-            let mut table = round.score_table(&accepted);
-            if table.first().is_some_and(|best| best.score > self.settings.candidate_score) {
-                // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
-                let null = null.get_or_insert_with(|| round.draw_null());
-                table
-                    .iter_mut()
-                    .for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
-            }
-            let finding = round.choose(&table);
+            let (round, table, finding) = self.next_finding(&accepted, &mut null);
             match finding {
                 Some(finding)
                     if Self::kinds(&accepted) < self.settings.most_findings && accepted.len() < MOST_TERMS =>
                 {
                     accepted.push(finding);
                 }
+                _ if !is_reviewed && self.name_beside_the_others(&mut accepted, &mut null) => is_reviewed = true,
                 _ => {
                     let accepted = self.backward(accepted, &round.noise);
                     return SearchOutcome { accepted, last_round: table, noise: round.noise };
                 }
             }
         }
+    }
+
+    /// One round beside the accepted effects: its table of scores, and what it would accept.
+    fn next_finding(
+        &self,
+        accepted: &[Accepted],
+        null: &mut Option<NullDraws>,
+    ) -> (Round<'_, 'a>, Vec<Scored>, Option<Accepted>) {
+        let round = Round::new(self, self.base_with(accepted));
+        let mut table = round.score_table(accepted);
+        if table.first().is_some_and(|best| best.score > self.settings.candidate_score) {
+            // Drawn once: later rounds change the base by a few columns only, and the tails hardly.
+            let null = null.get_or_insert_with(|| round.draw_null());
+            table.iter_mut().for_each(|scored| scored.family_wise = null.family_wise(scored.group, scored.surprise));
+        }
+        let finding = round.choose(&table);
+        (round, table, finding)
+    }
+
+    /// Chooses every structure without a name again, beside all that was found after it: what that took off it may have left what
+    /// has a name. Whether any got one.
+    fn name_beside_the_others(&self, accepted: &mut [Accepted], null: &mut Option<NullDraws>) -> bool {
+        if accepted.len() < 2 {
+            return false;
+        }
+        let mut is_any_named = false;
+        for index in 0..accepted.len() {
+            if accepted[index].generic().is_none() {
+                continue;
+            }
+            let beside: Vec<Accepted> = others(accepted, index).cloned().collect();
+            let (_, _, chosen) = self.next_finding(&beside, null);
+            if let Some(named) = chosen.filter(|found| found.generic().is_none()) {
+                accepted[index] = named;
+                is_any_named = true;
+            }
+        }
+        is_any_named
     }
 
     /// Filtered columns of the base and of the accepted effects with their tangents.
@@ -256,24 +288,6 @@ impl<'a> Search<'a> {
 /// Every accepted effect but one.
 pub(crate) fn others(accepted: &[Accepted], without: usize) -> impl Iterator<Item = &Accepted> {
     accepted.iter().enumerate().filter(move |(index, _)| *index != without).map(|(_, found)| found)
-}
-
-/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a glitch more.
-const LARGEST_FEATURE: f64 = 20.0;
-
-/// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.
-pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
-    let state = &prepared.state;
-    let scaled = |series: Vec<f64>| {
-        let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
-        series.iter().map(|v| (v / mean.max(f64::MIN_POSITIVE)).min(LARGEST_FEATURE)).collect::<Vec<f64>>()
-    };
-    let slow = (0.05 * state.top_speed()).max(3.0 * state.sign_velocity);
-    vec![
-        scaled(prepared.rows.iter().map(|&i| state.velocity[i].abs()).collect()),
-        scaled(prepared.rows.iter().map(|&i| state.acceleration[i].abs()).collect()),
-        prepared.rows.iter().map(|&i| (-(state.velocity[i] / slow).powi(2)).exp()).collect(),
-    ]
 }
 
 impl Accepted {

@@ -4,10 +4,10 @@
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
 use super::linear::{least_squares, residual};
-use super::noise::Noise;
+use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
 use super::reference::{Reference, tabulated_velocities};
-use super::search::noise_features;
+
 use super::signals::Signals;
 use crate::physics::JointState;
 

@@ -4,9 +4,9 @@ use super::base::{Base, BaseKind};
 use super::blocks::Lock;
 use super::evidence::Bench;
 use super::linear::{dot, least_squares, residual};
-use super::noise::Noise;
+use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
-use super::search::noise_features;
+
 use super::signals::Signals;
 
 /// Strength of a torque that a recording conceals.
