@@ -136,18 +136,16 @@ impl<'a> Search<'a> {
         let mut is_reviewed = false;
         loop {
             let (round, table, finding) = self.next_finding(&accepted, &mut null);
-            match finding {
-                Some(finding)
-                    if Self::kinds(&accepted) < self.settings.most_findings && accepted.len() < MOST_TERMS =>
-                {
-                    accepted.push(finding);
-                }
-                _ if !is_reviewed && self.name_beside_the_others(&mut accepted, &mut null) => is_reviewed = true,
-                _ => {
-                    let accepted = self.backward(accepted, &round.noise);
-                    return SearchOutcome { accepted, last_round: table, noise: round.noise };
-                }
+            let is_full = Self::kinds(&accepted) >= self.settings.most_findings || accepted.len() >= MOST_TERMS;
+            if let Some(finding) = finding.filter(|_| !is_full) {
+                accepted.push(finding);
+                continue;
             }
+            if is_reviewed || !self.name_beside_the_others(&mut accepted, &mut null) {
+                let accepted = self.backward(accepted, &round.noise);
+                return SearchOutcome { accepted, last_round: table, noise: round.noise };
+            }
+            is_reviewed = true;
         }
     }
 
@@ -171,14 +169,12 @@ impl<'a> Search<'a> {
     /// Chooses every structure without a name again, beside all that was found after it: what that took off it may have left what
     /// has a name. Whether any got one.
     fn name_beside_the_others(&self, accepted: &mut [Accepted], null: &mut Option<NullDraws>) -> bool {
+        let unnamed: Vec<usize> = (0..accepted.len()).filter(|&index| accepted[index].generic().is_some()).collect();
         if accepted.len() < 2 {
             return false;
         }
         let mut is_any_named = false;
-        for index in 0..accepted.len() {
-            if accepted[index].generic().is_none() {
-                continue;
-            }
+        for index in unnamed {
             let beside: Vec<Accepted> = others(accepted, index).cloned().collect();
             let (_, _, chosen) = self.next_finding(&beside, null);
             if let Some(named) = chosen.filter(|found| found.generic().is_none()) {
