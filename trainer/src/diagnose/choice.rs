@@ -158,10 +158,8 @@ impl Round<'_, '_> {
 
 /// The channel of a structure without a name, then those of the passing structures within reach, likeliest first.
 fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach: f64) -> Vec<Channel> {
-    let mut channels: Vec<Channel> = best.label.channel().into_iter().collect();
-    if channels.is_empty() {
-        return channels;
-    }
+    let Some(own) = best.label.channel() else { return Vec::new() };
+    let mut channels = vec![own];
     for rival in passing.filter(|rival| within_reach(best, rival, reach)) {
         channels.extend(rival.label.channel().filter(|channel| !channels.contains(channel)));
     }
