@@ -61,8 +61,7 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
             let weigh = |shape: &[f64]| {
                 let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
                 let evidence = bench.weigh(&columns, &[], false)?;
-                let possible = !hypothesis.only_positive() || evidence.coefficients.iter().all(|c| *c > 0.0);
-                possible.then_some(evidence)
+                search.is_possible(&label, &evidence.coefficients).then_some(evidence)
             };
             if plain {
                 // The variant was chosen by what is fast in it; now by all that it explains.

@@ -4,7 +4,7 @@ use super::candidates::{Group, Label, Variant};
 use super::conclude::{Fitted, weighted};
 use super::linear::{dot, least_squares, orthonormal, project_out, residual};
 use super::search::{Accepted, Search, others};
-use crate::physics::{EffectId, Hypothesis};
+use crate::physics::EffectId;
 use rayon::prelude::*;
 
 /// Least share of the energy of the structure's torque that is told.
@@ -28,18 +28,15 @@ pub(super) fn nearest(
     };
     let torque = left_beside(&weighted(&search.filtered_columns(&fitted.label, &fitted.shape), &fitted.coefficients));
     let energy = dot(&torque, &torque, &runs);
-    let share = |columns: &[Vec<f64>], is_positive: bool| {
-        let columns: Vec<Vec<f64>> = columns.iter().map(left_beside).collect();
+    let share = |group: &Group, variant: &Variant| {
+        let columns: Vec<Vec<f64>> = search.design.columns[variant.columns.clone()].iter().map(left_beside).collect();
         let coefficients = least_squares(&columns, &torque, &runs)?;
         let rest = residual(&columns, &torque, &coefficients);
-        let is_possible = !is_positive || coefficients.iter().all(|coefficient| *coefficient > 0.0);
-        is_possible.then(|| 1.0 - dot(&rest, &rest, &runs) / energy)
+        search.is_possible(&group.label, &coefficients).then(|| 1.0 - dot(&rest, &rest, &runs) / energy)
     };
     let largest_share = |group: &Group| {
         let Label::Named(effect) = group.label else { return None };
-        let is_positive = search.hypothesis(effect).is_some_and(Hypothesis::only_positive);
-        let columns = |variant: &Variant| &search.design.columns[variant.columns.clone()];
-        let shares = group.variants.iter().filter_map(|variant| share(columns(variant), is_positive));
+        let shares = group.variants.iter().filter_map(|variant| share(group, variant));
         Some((effect, shares.fold(0.0, f64::max)))
     };
     let shares: Vec<(EffectId, f64)> = search.design.groups.par_iter().filter_map(largest_share).collect();

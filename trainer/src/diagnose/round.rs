@@ -8,7 +8,7 @@ use super::null::{Directions, Family, NullDraws, chi_square_surprise};
 use super::refine::refine;
 use super::search::{Accepted, Search};
 use super::settings::Settings;
-use crate::physics::{EffectId, Hypothesis, Shape};
+use crate::physics::{EffectId, Shape};
 use rayon::prelude::*;
 
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
@@ -130,11 +130,8 @@ impl<'s, 'a> Round<'s, 'a> {
 
     /// The variants of a group whose coefficients have a possible sign.
     fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
-        let positive = match self.search.design.groups[group].label {
-            Label::Named(effect) => self.search.hypothesis(effect).is_some_and(Hypothesis::only_positive),
-            Label::Generic(_) => false,
-        };
-        let possible = |e: &VariantEvidence| !positive || e.coefficients.iter().all(|c| *c > 0.0);
+        let label = &self.search.design.groups[group].label;
+        let possible = |e: &VariantEvidence| self.search.is_possible(label, &e.coefficients);
         self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
     }
 
@@ -153,10 +150,9 @@ impl<'s, 'a> Round<'s, 'a> {
             let state = &self.search.prepared.state;
             let weigh = |shape: &[f64]| {
                 let columns = self.search.filtered_columns(&scored.label, shape);
-                self.bench.evidence(&self.search.whitened(&columns, &self.noise))
+                let evidence = self.bench.evidence(&self.search.whitened(&columns, &self.noise))?;
+                self.search.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
             };
-            let positive = hypothesis.only_positive();
-            let weigh = |shape: &[f64]| weigh(shape).filter(|e| !positive || e.coefficients.iter().all(|c| *c > 0.0));
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.grid_size(scored.group);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {

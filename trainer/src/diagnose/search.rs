@@ -4,7 +4,6 @@ use super::base::Base;
 use super::candidates::{Design, Label, ridge_of};
 use super::channel::Channel;
 use super::evidence::{Bench, GroupEvidence};
-use super::generic::Generic;
 use super::linear::residual;
 use super::noise::{Noise, noise_features};
 use super::null::NullDraws;
@@ -109,6 +108,15 @@ impl<'a> Search<'a> {
         self.hypotheses.iter().find(|h| h.id() == effect).map(|h| h.as_ref() as &dyn Hypothesis)
     }
 
+    /// Whether a label can have these coefficients: all positive, where an effect cannot turn its sign.
+    pub(crate) fn is_possible(&self, label: &Label, coefficients: &[f64]) -> bool {
+        let only_positive = match label {
+            Label::Named(effect) => self.hypothesis(*effect).is_some_and(Hypothesis::only_positive),
+            Label::Generic(_) => false,
+        };
+        !only_positive || coefficients.iter().all(|c| *c > 0.0)
+    }
+
     /// Unfiltered columns of a label and shape.
     pub(crate) fn raw_columns(&self, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
         match label {
@@ -169,15 +177,17 @@ impl<'a> Search<'a> {
     /// Chooses every structure without a name again, beside all that was found after it: what that took off it may have left what
     /// has a name. Whether any got one.
     fn name_beside_the_others(&self, accepted: &mut [Accepted], null: &mut Option<NullDraws>) -> bool {
-        let unnamed: Vec<usize> = (0..accepted.len()).filter(|&index| accepted[index].generic().is_some()).collect();
-        if accepted.len() < 2 {
-            return false;
-        }
+        let unnamed: Vec<usize> =
+            (0..accepted.len()).filter(|&index| accepted[index].label.channel().is_some()).collect();
         let mut is_any_named = false;
         for index in unnamed {
+            // What came last was chosen beside all the others as they stand.
+            if index + 1 == accepted.len() && !is_any_named {
+                break;
+            }
             let beside: Vec<Accepted> = others(accepted, index).cloned().collect();
             let (_, _, chosen) = self.next_finding(&beside, null);
-            if let Some(named) = chosen.filter(|found| found.generic().is_none()) {
+            if let Some(named) = chosen.filter(|found| found.label.channel().is_none()) {
                 accepted[index] = named;
                 is_any_named = true;
             }
@@ -290,13 +300,5 @@ impl Accepted {
     /// The effect's name: `unknown` for a generic rival.
     pub fn effect(&self) -> EffectId {
         self.label.effect()
-    }
-
-    /// The generic structure behind an `unknown`.
-    pub fn generic(&self) -> Option<Generic> {
-        match self.label {
-            Label::Named(_) => None,
-            Label::Generic(rival) => Some(rival),
-        }
     }
 }

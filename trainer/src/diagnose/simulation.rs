@@ -7,7 +7,6 @@ use super::linear::{least_squares, residual};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
 use super::reference::{Reference, tabulated_velocities};
-
 use super::signals::Signals;
 use crate::physics::JointState;
 

@@ -6,7 +6,6 @@ use super::evidence::Bench;
 use super::linear::{dot, least_squares, residual};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
-
 use super::signals::Signals;
 
 /// Strength of a torque that a recording conceals.
