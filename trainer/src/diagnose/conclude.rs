@@ -77,6 +77,10 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
     }
 }
 
+/// Standard deviations of the parameters over those of linear theory, found on simulated recordings of other seeds than the
+/// report's: what choosing the effect and its shape by the same rows adds.
+const BEYOND_THEORY: f64 = 1.08;
+
 /// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left
 /// (plain ones where whitening costs too much of the fit); the shapes' uncertainty by Gauss-Newton. `None` where the system
 /// is singular.
@@ -127,7 +131,7 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
         Some(widened) => (widened, owners),
         None => (covariance, Vec::new()),
     };
-    let covariance = covariance * long_run_variance;
+    let covariance = covariance * long_run_variance * BEYOND_THEORY * BEYOND_THEORY;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     for (effect, place) in effects.iter_mut().zip(places) {
         effect.deviation = place.map(deviation).collect();
