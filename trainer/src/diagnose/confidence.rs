@@ -11,7 +11,7 @@ const NARROWLY_ALONE: f64 = 0.91;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
 const BESIDE_FAR_RIVALS: f64 = 0.81;
 /// The same beside a nearer rival.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.69;
+const BESIDE_A_NEAR_RIVAL: f64 = 0.63;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
 /// Distance in nats from which a rival was seldom the truth.
