@@ -184,8 +184,7 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
         let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
         let unproven = lasting.filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
-            let Accepted { score, family_wise, .. } = accepted[i];
-            (!search.settings.carried(score, family_wise, &proof)).then_some((i, proof.gain_nats))
+            (!search.settings.carried(accepted[i].family_wise, &proof)).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());

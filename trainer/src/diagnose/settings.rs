@@ -1,13 +1,14 @@
 //! Limits of the search, fixed on one set of seeds and reported on another.
 
 use super::prove::Proof;
+use statrs::function::erf::erfc_inv;
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Family-wise probability below which an effect is a finding, locked rows included.
     pub family_wise_level: f64,
-    /// Least score in nats, locked rows included.
+    /// Least score in nats of an effect that the open rows prove, and beside all the others that were found.
     pub least_score: f64,
     /// Family-wise probability on the open rows below which the locked rows are asked about an effect.
     pub candidate_level: f64,
@@ -32,9 +33,9 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            family_wise_level: 0.004,
+            family_wise_level: 0.005,
             least_score: 4.0,
-            candidate_level: 0.05,
+            candidate_level: 0.1,
             candidate_score: 2.0,
             unconfirmed_level: 2e-5,
             unconfirmed_score: 6.0,
@@ -51,8 +52,8 @@ impl Default for Settings {
 /// the null draws understate it three to five times.
 const BEHIND_GRAIN: f64 = 0.25;
 
-/// Share of the level that is left to what the locked rows do not bear out.
-const BEYOND_DOUBT: f64 = 0.1;
+/// Share of the level that is left to what the locked rows ask for the opposite of.
+const BEYOND_DOUBT: f64 = 0.01;
 
 impl Settings {
     /// Limits for a recording whose band is limited by the grain of its encoder.
@@ -70,38 +71,56 @@ impl Settings {
         }
     }
 
-    /// Whether open and locked rows together carry an effect: by its score and the evidence of the locked rows, in nats, and by
-    /// its p-value on the open rows over the likelihood ratio of the locked ones. That ratio is an e-value of independent rows,
-    /// so that the quotient is a p-value (Ignatiadis, Wang and Ramdas 2024). What makes the locked rows a little worse has to be
-    /// beyond doubt on the open ones, and nothing carries what makes them clearly worse, whitened and not: beside larger effects,
-    /// whose formulas err slowly, whitening may see a loss where the error falls.
-    pub(super) fn carried(&self, score: f64, family_wise: f64, locked: &Proof) -> bool {
-        let level = if locked.gain_nats < 0.0 { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
-        score + locked.evidence_nats >= self.least_score
-            && family_wise * (-locked.evidence_nats).exp() <= level
+    /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
+    /// (Liptak 1958), nearly that of a test of all rows with the effect chosen beforehand. What the locked rows ask for the opposite
+    /// of has to be beyond doubt on the open ones, and nothing carries what makes the locked rows clearly worse, whitened and not:
+    /// beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls.
+    pub(super) fn carried(&self, family_wise: f64, locked: &Proof) -> bool {
+        let together = (1.0 - locked.locked_share).sqrt() * deviations_of(family_wise)
+            + locked.locked_share.sqrt() * locked.locked_deviations;
+        let level = if locked.locked_deviations < 0.0 { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
+        together >= deviations_of(level)
             && (locked.gain_nats >= -self.largest_locked_loss || locked.improved_rmse < locked.baseline_rmse)
     }
+}
+
+/// Standard deviations that a normal variable exceeds with a probability.
+fn deviations_of(probability: f64) -> f64 {
+    std::f64::consts::SQRT_2 * erfc_inv(2.0 * probability.max(f64::MIN_POSITIVE))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn is_carried(score: f64, family_wise: f64, gain_nats: f64, evidence_nats: f64) -> bool {
-        let locked = Proof { gain_nats, evidence_nats, ..Proof::default() };
-        Settings::default().carried(score, family_wise, &locked)
+    fn is_carried(family_wise: f64, locked_deviations: f64, gain_nats: f64) -> bool {
+        let locked = Proof { gain_nats, locked_deviations, locked_share: 0.2, ..Proof::default() };
+        Settings::default().carried(family_wise, &locked)
     }
 
     #[test]
     fn locked_rows_decide_about_a_weak_candidate() {
-        assert!(is_carried(3.0, 0.02, 4.5, 4.0));
-        assert!(!is_carried(3.0, 0.02, 0.5, 0.5), "the score is too low");
-        assert!(!is_carried(6.0, 0.02, 0.5, 0.5), "the probability is too high");
-        assert!(is_carried(20.0, 1e-8, -4.0, -1.5), "a strong one survives a locked row or two against it");
-        assert!(!is_carried(5.0, 1e-3, -2.0, -2.0));
-        assert!(!is_carried(12.0, 5e-6, -6.0, -2.0), "a lasting one does not survive what clearly speaks against it");
-        assert!(!is_carried(8.0, 1e-3, -2.0, -0.5), "p would do, but the locked rows get worse");
-        assert!(!is_carried(80.0, 1e-30, -20.0, -4.0), "nothing survives locked rows that clearly speak against it");
+        assert!(is_carried(0.03, 2.8, 3.0));
+        assert!(!is_carried(0.03, 0.5, 0.0), "the locked rows hardly ask for it");
+        assert!(is_carried(3e-4, 0.0, -2.0), "what is clear on the open rows stands");
+        assert!(!is_carried(3e-3, 0.0, -2.0));
+        assert!(!is_carried(1e-4, -0.2, -3.0), "the locked rows ask for the opposite");
+        assert!(is_carried(1e-8, -0.2, -3.0), "beyond doubt on the open rows");
+        assert!(!is_carried(1e-30, -2.0, -20.0), "nothing survives locked rows that clearly speak against it");
+    }
+
+    #[test]
+    fn deviations_belong_to_their_probability() {
+        assert!((deviations_of(0.025) - 1.959_964).abs() < 1e-5);
+        assert!((deviations_of(0.5)).abs() < 1e-12);
+        assert!(deviations_of(0.0) > 37.0 && deviations_of(0.0).is_finite());
+    }
+
+    #[test]
+    fn what_the_locked_rows_cannot_show_needs_the_open_ones_alone() {
+        let blind = Proof::default();
+        let level = Settings::default().family_wise_level;
+        assert!(Settings::default().carried(0.9 * level, &blind) && !Settings::default().carried(1.1 * level, &blind));
     }
 
     #[test]
@@ -110,9 +129,10 @@ mod tests {
             baseline_rmse: 242.0,
             improved_rmse: 142.0,
             gain_nats: -20.0,
-            evidence_nats: -4.0,
+            locked_deviations: -2.0,
+            locked_share: 0.2,
             ..Proof::default()
         };
-        assert!(Settings::default().carried(80.0, 1e-30, &locked));
+        assert!(Settings::default().carried(1e-30, &locked));
     }
 }
