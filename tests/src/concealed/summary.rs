@@ -53,6 +53,11 @@ impl Row {
         }
     }
 
+    /// Whether an effect was hidden at a non-centrality of 50 or more: as wanted, for a fault of the measurement has none.
+    pub fn is_strong(&self) -> bool {
+        matches!(self.case.hidden, Hidden::Effect(_, wanted) | Hidden::Pair(_, _, wanted) if wanted >= 50.0)
+    }
+
     /// Whether the first name is the hidden effect.
     pub fn first_is_right(&self) -> bool {
         self.findings.first().is_some_and(|(effect, _, _)| self.truths().first().is_some_and(|t| *t == effect.name()))

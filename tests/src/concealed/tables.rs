@@ -126,7 +126,7 @@ fn removed(rows: &[Row], text: &mut String) {
 /// How often the 90 % intervals hold the truth, by parameter.
 fn intervals(rows: &[Row], text: &mut String) {
     let mut table: BTreeMap<&str, Vec<&Held>> = BTreeMap::new();
-    for held in rows.iter().filter(|r| r.lambda >= 50.0).flat_map(|r| &r.held) {
+    for held in rows.iter().filter(|r| r.is_strong()).flat_map(|r| &r.held) {
         table.entry(&held.parameter).or_default().push(held);
     }
     let _ = writeln!(
@@ -148,11 +148,8 @@ fn by_effect(rows: &[Row], text: &mut String) {
         "\n## By effect, lambda of 50 and more\n\n| effect | first name right | in set |\n|---|---|---|"
     );
     for effect in EffectId::ALL {
-        let own: Vec<&Row> = singles(rows)
-            .filter(
-                |r| matches!(r.case.hidden, Hidden::Effect(name, wanted) if name == effect.name() && wanted >= 50.0),
-            )
-            .collect();
+        let is_of = |r: &&Row| matches!(r.case.hidden, Hidden::Effect(name, _) if name == effect.name());
+        let own: Vec<&Row> = singles(rows).filter(is_of).filter(|r| r.is_strong()).collect();
         if !own.is_empty() {
             let right = own.iter().filter(|r| r.first_is_right()).count();
             let inside = own.iter().filter(|r| r.in_set()).count();
@@ -165,8 +162,8 @@ fn confusions(rows: &[Row], text: &mut String) {
     let _ = writeln!(text, "\n## Confusions, lambda of 50 and more\n\n| hidden | named first (runs) |\n|---|---|");
     let mut table: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
     for row in singles(rows) {
-        if let Hidden::Effect(name, wanted) = row.case.hidden
-            && wanted >= 50.0
+        if let Hidden::Effect(name, _) = row.case.hidden
+            && row.is_strong()
         {
             let named = row.findings.first().map_or("nothing", |(effect, _, _)| effect.name());
             *table.entry(name).or_default().entry(named).or_default() += 1;
@@ -251,7 +248,8 @@ fn pairs(rows: &[Row], text: &mut String) {
 }
 
 fn misses(rows: &[Row], text: &mut String) {
-    let missed: Vec<&Row> = rows.iter().filter(|r| !r.in_set() && r.lambda >= 50.0).collect();
+    let pairs = rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Pair(..)));
+    let missed: Vec<&Row> = singles(rows).chain(pairs).filter(|r| !r.in_set() && r.is_strong()).collect();
     if missed.is_empty() {
         return;
     }
