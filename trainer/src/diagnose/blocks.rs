@@ -46,12 +46,14 @@ pub(super) fn rows_and_blocks(
     let mut rows = Vec::new();
     let mut blocks = Vec::new();
     let mut before = 0;
+    let mut last = None;
     for (index, piece) in pieces.into_iter().enumerate() {
         let mut open = Block { runs: Vec::new(), locked: false };
         let mut shut = Block { runs: Vec::new(), locked: true };
         for (part, locked) in split_for_lock(&piece, index, before, duration, lock) {
-            // What the filter sees across the border of a locked part belongs to neither side.
-            let inner = part.start + if part.start > piece.start { reach } else { 0 }..part.end;
+            // What the filter sees across a border between open and locked samples belongs to neither side.
+            let is_border = last.replace((part.end, locked)) == Some((part.start, !locked));
+            let inner = part.start + if is_border { reach } else { 0 }..part.end;
             let runs = runs_of_motion(state, stuck, reach, inner.step_by(step), &mut rows);
             if locked { &mut shut } else { &mut open }.runs.extend(runs);
         }
