@@ -39,8 +39,8 @@ pub struct Scored {
     pub(crate) explained: f64,
 }
 
-/// Score: the mean of held-out gain and Bayesian criterion for a named effect; held-out gain for a generic rival;
-/// the criterion with a scan penalty for a one-off event, which no other block can confirm.
+/// Score: the mean of held-out gain and Bayesian criterion; the criterion with a scan penalty for a one-off event, which no other
+/// block can confirm.
 pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
     match label {
         Label::Named(EffectId::TransientEvent) => evidence.criterion - 0.5 * grid_size.ln(),
@@ -71,10 +71,12 @@ impl<'s, 'a> Round<'s, 'a> {
         for _ in 0..2 {
             let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
             if explained.is_empty() {
-                let largest = |tested: &Vec<Option<VariantEvidence>>| {
-                    tested.iter().flatten().map(|v| v.statistic).fold(0.0, f64::max)
+                let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
+                    let possible =
+                        tested.iter().flatten().filter(|v| search.is_possible(&group.label, &v.coefficients));
+                    possible.map(|v| v.statistic).fold(0.0, f64::max)
                 };
-                explained = variants.iter().map(largest).collect();
+                explained = search.design.groups.iter().zip(&variants).map(largest).collect();
             }
             let mut generous = base.clone();
             generous.extend(best_two(search, &variants, bench.rows(), f64::NEG_INFINITY));
@@ -102,10 +104,11 @@ impl<'s, 'a> Round<'s, 'a> {
             .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
             .filter_map(|(index, group)| {
                 let grid = self.search.grid_size(index);
-                let evidence = GroupEvidence::weigh(alone, &self.admissible(index), rows, grid)?;
+                let admissible = self.admissible(index);
+                let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.scanned_beyond(index);
                 // A prior adds no direction: what it weighs is calibrated by the free series.
-                let free = group.variants.iter().zip(&self.variants[index]);
+                let free = group.variants.iter().zip(&admissible);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
                     .filter_map(|(_, evidence)| evidence.as_ref())
