@@ -76,11 +76,14 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let as_recorded = diagnose_aligned(signals, actuator, options)?;
     let Some(mut misaligned) = misalignment(&as_recorded).cloned() else { return Ok(as_recorded) };
     let mut delay = misaligned.fitted.coefficients[0];
-    let mut aligned = diagnose_aligned(&signals.realigned(delay), actuator, options)?;
+    let Ok(mut aligned) = diagnose_aligned(&signals.realigned(delay), actuator, options) else {
+        return Ok(as_recorded);
+    };
     for _ in 0..MOST_REALIGNMENTS {
         let Some(rest) = misalignment(&aligned) else { break };
-        delay += rest.fitted.coefficients[0];
-        aligned = diagnose_aligned(&signals.realigned(delay), actuator, options)?;
+        let longer = delay + rest.fitted.coefficients[0];
+        let Ok(again) = diagnose_aligned(&signals.realigned(longer), actuator, options) else { break };
+        (delay, aligned) = (longer, again);
     }
     let moved = delay - misaligned.fitted.coefficients[0];
     misaligned.fitted.coefficients[0] = delay;
@@ -88,13 +91,16 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
         parameter.value += moved;
         parameter.ci95 = parameter.ci95.map(|end| end + moved);
     }
-    aligned.findings.retain(|finding| finding.effect != EffectId::TimeMisalignment);
-    aligned.findings.insert(0, misaligned);
     let rows = aligned.traces.time.len();
-    aligned.traces.effects.insert(0, vec![0.0; rows]);
+    let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
+    let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
+    (aligned.findings, aligned.traces.effects) =
+        std::iter::once((misaligned, vec![0.0; rows])).chain(physics.collect::<Vec<_>>()).unzip();
     aligned.verdict = verdict(&aligned.findings, false);
     aligned.baseline = as_recorded.baseline;
     if let (Some(proof), Some(before)) = (&mut aligned.proof, &as_recorded.proof) {
+        let larger = before.baseline_rmse / proof.baseline_rmse;
+        proof.ratio_ci95 = proof.ratio_ci95.map(|end| end / larger);
         proof.baseline_rmse = before.baseline_rmse;
     }
     Ok(aligned)
@@ -113,7 +119,7 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
         return Ok(first);
     }
     let elsewhere = Options { lock: Lock::SpreadElsewhere, ..*options };
-    let second = diagnose_locked(signals, actuator, &elsewhere)?;
+    let Ok(second) = diagnose_locked(signals, actuator, &elsewhere) else { return Ok(first) };
     let events = |diagnosis: &Diagnosis| {
         diagnosis.findings.iter().filter(|finding| finding.effect == EffectId::TransientEvent).count()
     };
@@ -184,7 +190,8 @@ fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<Effec
         let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
         let unproven = lasting.filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
-            (!search.settings.carried(accepted[i].family_wise, &proof)).then_some((i, proof.gain_nats))
+            let Accepted { label, family_wise, .. } = &accepted[i];
+            (!search.settings.carried(label, *family_wise, &proof)).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());

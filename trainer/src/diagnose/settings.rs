@@ -1,5 +1,6 @@
 //! Limits of the search, fixed on one set of seeds and reported on another.
 
+use super::candidates::Label;
 use super::prove::Proof;
 use statrs::function::erf::erfc_inv;
 
@@ -74,13 +75,16 @@ impl Settings {
     /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
     /// (Liptak 1958), nearly that of a test of all rows with the effect chosen beforehand. What the locked rows ask for the opposite
     /// of has to be beyond doubt on the open ones, and nothing carries what makes the locked rows clearly worse, whitened and not:
-    /// beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls.
-    pub(super) fn carried(&self, family_wise: f64, locked: &Proof) -> bool {
+    /// beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls. A structure without a name
+    /// is not compensated: of it the locked rows may ask for less.
+    pub(super) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
         let together = (1.0 - locked.locked_share).sqrt() * deviations_of(family_wise)
             + locked.locked_share.sqrt() * locked.locked_deviations;
-        let level = if locked.locked_deviations < 0.0 { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
-        together >= deviations_of(level)
-            && (locked.gain_nats >= -self.largest_locked_loss || locked.improved_rmse < locked.baseline_rmse)
+        let is_contradicted = locked.locked_deviations < 0.0;
+        let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
+        let is_worse = locked.gain_nats < -self.largest_locked_loss && locked.improved_rmse >= locked.baseline_rmse;
+        let is_to_be_compensated = matches!(label, Label::Named(_));
+        together >= deviations_of(level) && !(is_worse && (is_contradicted || is_to_be_compensated))
     }
 }
 
@@ -92,10 +96,16 @@ fn deviations_of(probability: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::channel::Channel;
+    use crate::diagnose::form::Form;
+    use crate::diagnose::generic::{Factor, Generic};
+    use crate::physics::EffectId;
+
+    const NAMED: Label = Label::Named(EffectId::Stribeck);
 
     fn is_carried(family_wise: f64, locked_deviations: f64, gain_nats: f64) -> bool {
         let locked = Proof { gain_nats, locked_deviations, locked_share: 0.2, ..Proof::default() };
-        Settings::default().carried(family_wise, &locked)
+        Settings::default().carried(&NAMED, family_wise, &locked)
     }
 
     #[test]
@@ -120,7 +130,10 @@ mod tests {
     fn what_the_locked_rows_cannot_show_needs_the_open_ones_alone() {
         let blind = Proof::default();
         let level = Settings::default().family_wise_level;
-        assert!(Settings::default().carried(0.9 * level, &blind) && !Settings::default().carried(1.1 * level, &blind));
+        assert!(
+            Settings::default().carried(&NAMED, 0.9 * level, &blind)
+                && !Settings::default().carried(&NAMED, 1.1 * level, &blind)
+        );
     }
 
     #[test]
@@ -133,6 +146,17 @@ mod tests {
             locked_share: 0.2,
             ..Proof::default()
         };
-        assert!(Settings::default().carried(1e-30, &locked));
+        assert!(Settings::default().carried(&NAMED, 1e-30, &locked));
+    }
+
+    #[test]
+    fn of_a_structure_without_a_name_the_locked_rows_may_ask_for_less() {
+        let unnamed = Label::Generic(Generic { factor: Factor::Sign, channel: Channel::Position, form: Form::Free });
+        let less = Proof { gain_nats: -6.0, locked_deviations: 1.9, locked_share: 0.2, ..Proof::default() };
+        assert!(
+            Settings::default().carried(&unnamed, 1e-20, &less) && !Settings::default().carried(&NAMED, 1e-20, &less)
+        );
+        let opposite = Proof { locked_deviations: -0.5, ..less };
+        assert!(!Settings::default().carried(&unnamed, 1e-20, &opposite));
     }
 }
