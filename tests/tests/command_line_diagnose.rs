@@ -83,6 +83,37 @@ fn a_simulation_that_is_right_leaves_nothing_to_find() {
     }
 }
 
+/// A model that was improved keeps its effects where it is improved again, whatever its law is: what comes of it leaves what the
+/// second diagnosis leaves.
+#[test]
+fn an_improved_model_is_improved_again() {
+    let folder = bench();
+    let at = folder.path();
+    simulate(at, "joint.toml --effect position_friction=1 --duration 60 --seed 4 -o first.csv");
+    simulate(
+        at,
+        "joint.toml --effect position_friction=1 --effect torque_offset=1 --duration 60 --seed 5 -o second.csv",
+    );
+    let told = |arguments: &str| -> Value {
+        let told = diagnose(at, &format!("{arguments} --joint joint.toml --json -"));
+        assert!(told.status <= 1 && told.messages.is_empty(), "{arguments}: {}{}", told.output, told.messages);
+        serde_json::from_str(&told.output).unwrap()
+    };
+    let names = |told: &Value, effect: &str| told["findings"].as_array().unwrap().iter().any(|f| f["effect"] == effect);
+    let left = |told: &Value, model: &str| told["fit"][model]["rmse"].as_f64().unwrap();
+    assert!(names(&told("first.csv -o table.frk"), "position_friction"));
+    let fitted = run(at, &["fit", "--quiet", "first.csv", "--joint", "joint.toml", "-o", "law.frk"]);
+    assert_eq!(fitted.status, 0, "{}", fitted.messages);
+    assert!(names(&told("first.csv --model law.frk -o formula.frk"), "position_friction"));
+    for model in ["table", "formula"] {
+        let second = told(&format!("second.csv --model {model}.frk -o again.frk"));
+        assert!(names(&second, "torque_offset"), "{model}: {second}");
+        let third = told("second.csv --model again.frk");
+        let (before, after) = (left(&second, "improved"), left(&third, "baseline"));
+        assert!(after < 1.15 * before, "{model}: the diagnosis leaves {before}, the image {after}");
+    }
+}
+
 #[test]
 fn missing_channels_rest_and_two_seconds_are_answered_clearly() {
     let folder = bench();

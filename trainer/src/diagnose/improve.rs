@@ -3,7 +3,7 @@
 use super::base::{BaseKind, friction_basis};
 use super::candidates::Label;
 use super::conclude::Refit;
-use super::model::{hats, is_odd, moved};
+use super::model::{Movement, hats, is_odd, law_at, mean_measurement, moved, movement, moving_constants};
 use super::outcome::Diagnosis;
 use super::sentence::plain_name;
 use super::signals::Signals;
@@ -15,11 +15,10 @@ use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::compile_layout;
 use crate::fit::HostModel;
 use crate::physics::JointState;
-use frikan_runtime::evaluate::evaluate;
 use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, RigidBody};
 use frikan_shared::pool::Pool;
-use frikan_shared::table::{Geometric, GeometricShape, Symmetry, Table};
+use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
 
 /// Where the base law comes from.
@@ -50,14 +49,11 @@ const OUTPUT_ROOM: f64 = 2.0;
 /// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
-    let top_speed = state.top_speed();
-    let friction_after = |refit: &Refit, velocity: f64| {
-        refitted_friction(diagnosis.base, refit, origin, velocity, state.sign_velocity, top_speed)
-    };
-    let friction = |velocity: f64| friction_after(&diagnosis.improved_refit, velocity);
+    let [before, friction] = [&diagnosis.baseline_refit, &diagnosis.improved_refit]
+        .map(|refit| refitted_friction(diagnosis.base, refit, origin, &state));
     let dissipated =
-        |refit: &Refit| state.velocity.iter().map(|v| (friction_after(refit, *v) * v).abs()).collect::<Vec<f64>>();
-    let [measured, evaluated] = [&diagnosis.baseline_refit, &diagnosis.improved_refit].map(dissipated);
+        |friction: &Friction<'_>| -> Vec<f64> { state.velocity.iter().map(|v| (friction(*v) * v).abs()).collect() };
+    let [measured, evaluated] = [&before, &friction].map(dissipated);
     let context = Context {
         smoothing_velocity: state.sign_velocity,
         load_scale: quantile_of_load(&state),
@@ -66,31 +62,21 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
         power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
         duration: state.time.last()? - state.time.first()?,
     };
-    let kept = match origin {
-        Origin::Model(model) if !matches!(model.law, Law::Geometric(_) | Law::Uniform(_)) => Some(model),
-        _ => None,
-    };
     let mut terms = Terms { rigid_body: rigid_body(diagnosis, signals, origin), ..Terms::default() };
-    let law_table = velocity_table(&friction, 1.1 * fastest(&state), state.sign_velocity);
-    terms.first_cell = kept.map_or(law_table.cells.len(), |model| model.cells.len()) as u16;
     if let Origin::Model(model) = origin {
         terms.effects.extend(model.effects.iter().cloned());
     }
-    let remarks = write_findings(diagnosis, &mut terms, &context);
-    let mut model = match kept {
-        Some(model) => moved_law(diagnosis, model, &mut terms, &state)?,
-        None => Box::new(HostModel {
-            law: Law::from(law_table.table),
-            cells: Pool::from_slice(&law_table.cells).ok()?,
-            inputs: heapless::Vec::from_slice(&[velocity_input(&state)]).ok()?,
-            output_unit: unit,
-            output_limit: 1.0,
-            rigid_body: RigidBody::default(),
-            effects: heapless::Vec::new(),
-        }),
+    let (mut model, mut cells) = match origin {
+        Origin::Model(model) if movement(model) != Movement::Curve => {
+            (moved_law(diagnosis, model, &mut terms, &state)?, model.cells.to_vec())
+        }
+        _ => table_model(&friction, origin, &state, unit),
     };
+    terms.first_cell = cells.len() as u16;
+    let remarks = write_findings(diagnosis, &mut terms, &context);
     model.rigid_body = terms.rigid_body;
-    terms.cells.iter().try_for_each(|cell| model.cells.push(*cell)).ok()?;
+    cells.extend(&terms.cells);
+    model.cells = Pool::from_slice(&cells).ok()?;
     model.effects = terms.effects.iter().cloned().collect();
     add_channels(&mut model, &terms.channels, &state)?;
     let largest = signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
@@ -115,16 +101,30 @@ fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -
         .collect()
 }
 
+/// Friction over velocity.
+type Friction<'a> = Box<dyn Fn(f64) -> f64 + Sync + 'a>;
+
 /// Friction of the base over velocity after a refit.
-fn refitted_friction(base: BaseKind, refit: &Refit, origin: Origin<'_>, velocity: f64, eps: f64, top: f64) -> f64 {
+fn refitted_friction<'a>(base: BaseKind, refit: &'a Refit, origin: Origin<'a>, state: &JointState) -> Friction<'a> {
+    let (eps, top) = (state.sign_velocity, state.top_speed());
+    let sign = move |velocity: f64| (velocity / eps).tanh();
     let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(&refit.base).map(|(b, c)| b * c).sum() };
-    match origin {
-        Origin::Recording(_) => sum(friction_basis(base, velocity, (velocity / eps).tanh(), top)),
-        Origin::Simulation(law) => law.friction(velocity) + sum(vec![(velocity / eps).tanh(), velocity]),
-        Origin::Model(model) => {
-            let inputs = [velocity as f32, 0.0, 0.0, 0.0];
-            f64::from(evaluate(model, &inputs)) + sum(hats(velocity, eps, top, is_odd(&model.law)))
+    let model = match origin {
+        Origin::Recording(_) => return Box::new(move |v| sum(friction_basis(base, v, sign(v), top))),
+        Origin::Simulation(law) => return Box::new(move |v| law.friction(v) + sum(vec![sign(v), v])),
+        Origin::Model(model) => model,
+    };
+    let mean = mean_measurement(state);
+    match movement(model) {
+        Movement::Constants => {
+            let law = moved_constants(model, &refit.base, state).unwrap_or_else(|| Box::new(model.clone()));
+            Box::new(move |v| law_at(&law, &mean, v))
         }
+        Movement::Curve => {
+            let is_odd = is_odd(&model.law);
+            Box::new(move |v| law_at(model, &mean, v) + sum(hats(v, eps, top, is_odd)))
+        }
+        Movement::Beside => Box::new(move |v| law_at(model, &mean, v) + sum(vec![sign(v), v])),
     }
 }
 
@@ -153,20 +153,51 @@ fn moved_law(
     state: &JointState,
 ) -> Option<Box<HostModel>> {
     let refitted = &diagnosis.improved_refit.base;
-    let mut improved = Box::new(model.clone());
-    match &model.law {
-        Law::Expression(_) => {
-            for (place, by) in super::model::moving_constants(model, state).into_iter().zip(refitted) {
-                *improved = moved(*improved, place, *by)?;
-            }
-        }
-        _ => terms.effects.push(Effect::Coulomb {
-            coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
-            viscous: refitted.get(1).copied().unwrap_or(0.0) as f32,
-            smoothing_velocity: state.sign_velocity as f32,
-        }),
+    if movement(model) == Movement::Constants {
+        return moved_constants(model, refitted, state);
     }
-    Some(improved)
+    terms.effects.push(Effect::Coulomb {
+        coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
+        viscous: refitted.get(1).copied().unwrap_or(0.0) as f32,
+        smoothing_velocity: state.sign_velocity as f32,
+    });
+    Some(Box::new(model.clone()))
+}
+
+/// A formula with its constants moved; `None` where that is no model.
+fn moved_constants(model: &HostModel, by: &[f64], state: &JointState) -> Option<Box<HostModel>> {
+    let places = moving_constants(model, state).into_iter().zip(by);
+    places.into_iter().try_fold(Box::new(model.clone()), |law, (place, by)| moved(*law, place, *by).map(Box::new))
+}
+
+/// A model whose law is a table of the refitted friction, without effects, and the cells of its pool. Behind the table it reads
+/// what the effects of its origin read; their tables stay where they are.
+fn table_model(
+    friction: &Friction<'_>,
+    origin: Origin<'_>,
+    state: &JointState,
+    unit: Unit,
+) -> (Box<HostModel>, Vec<Cell>) {
+    let (inputs, cells) = match origin {
+        Origin::Model(model) => (&model.inputs[..], &model.cells[..]),
+        _ => (&[][..], &[][..]),
+    };
+    let has_table = |effect: &Effect| matches!(effect, Effect::PositionTable { .. });
+    let is_read = matches!(origin, Origin::Model(model) if model.effects.iter().any(has_table));
+    let mut cells = if is_read { cells.to_vec() } else { Vec::new() };
+    let law = velocity_table(friction, 1.1 * fastest(state), state.sign_velocity, cells.len() as u16);
+    cells.extend(&law.cells);
+    let others = inputs.iter().filter(|input| input.quantity != Quantity::Velocity).cloned();
+    let model = Box::new(HostModel {
+        law: Law::from(law.table),
+        cells: Pool::default(),
+        inputs: std::iter::once(velocity_input(state)).chain(others).collect(),
+        output_unit: unit,
+        output_limit: 1.0,
+        rigid_body: RigidBody::default(),
+        effects: heapless::Vec::new(),
+    });
+    (model, cells)
 }
 
 /// Adds the channels that the terms read; a table and a formula go on reading theirs, a network reads all.
@@ -208,18 +239,19 @@ fn quantile_of_load(state: &JointState) -> f64 {
     state.load.as_ref().map_or(0.0, |load| crate::physics::quantile(load.iter().map(|l| l.abs()), 0.9))
 }
 
-/// Friction over velocity as a table whose cells grow with speed, the finest a quarter of the smoothed sign's width.
+/// Friction over velocity as a table whose cells grow with speed, the finest an eighth of the smoothed sign's width at most.
 fn velocity_table(
-    friction: &(dyn Fn(f64) -> f64 + Sync),
+    friction: &Friction<'_>,
     reach: f64,
     sign_velocity: f64,
+    first_cell: u16,
 ) -> crate::compile::tables::CompiledTable {
     let odd = [0.01, 0.1, 0.5, 1.0].iter().all(|share| {
         let (up, down) = (friction(share * reach), friction(-share * reach));
         (up + down).abs() <= 1e-9 * (up.abs() + down.abs())
     });
     let layout = GeometricShape {
-        first_cell: 0,
+        first_cell,
         offset_exponent: sign_velocity.log2().floor() as i8,
         octave_cells_log2: OCTAVE_CELLS_LOG2,
         symmetry: if odd { Symmetry::Odd } else { Symmetry::Sided },

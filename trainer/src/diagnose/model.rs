@@ -8,7 +8,7 @@ use crate::samples::blocks::rests;
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
 use frikan_shared::expression::Operation;
-use frikan_shared::model::{Input, Law, Model};
+use frikan_shared::model::{Law, Model};
 use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
@@ -72,35 +72,63 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
     friction
 }
 
-/// The static law over velocity, other channels at their mean.
+/// The channels of a recording at their mean; at no speed.
 #[allow(clippy::field_reassign_with_default)]
-fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f64, f64)> {
+pub(crate) fn mean_measurement(state: &JointState) -> Measurement {
     let mean = |series: &[f64]| (series.iter().sum::<f64>() / series.len().max(1) as f64) as f32;
     let mut measurement = Measurement::default();
     measurement.position = mean(&state.position);
     measurement.load = state.load.as_deref().map_or(0.0, mean);
     measurement.temperature = state.temperature.as_deref().map_or(0.0, mean);
-    let mut curve = Vec::new();
-    for velocity in tabulated_velocities(1.2 * state.top_speed()) {
-        measurement.velocity = velocity as f32;
-        curve.push((velocity, f64::from(evaluate(model, &measurement.channels(&model.inputs)))));
-    }
-    curve
+    measurement
 }
 
-/// What may move when an effect is added: every constant of a formula, local hats over a table of velocity, Coulomb and
-/// viscous friction beside anything else.
-fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<Vec<f64>> {
-    let by_velocity = |input: Option<&Input>| input.is_some_and(|input| input.quantity == Quantity::Velocity);
+/// The static law at a velocity, other channels as they are in `at`.
+pub(crate) fn law_at<const CELLS: usize>(model: &Model<CELLS>, at: &Measurement, velocity: f64) -> f64 {
+    let mut measurement = at.clone();
+    measurement.velocity = velocity as f32;
+    f64::from(evaluate(model, &measurement.channels(&model.inputs)))
+}
+
+/// The static law over velocity, other channels at their mean.
+fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f64, f64)> {
+    let mean = mean_measurement(state);
+    let velocities = tabulated_velocities(1.2 * state.top_speed());
+    velocities.into_iter().map(|velocity| (velocity, law_at(model, &mean, velocity))).collect()
+}
+
+/// What of a law may move when an effect is added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Movement {
+    /// Every constant of a formula.
+    Constants,
+    /// A table of velocity, by local hats over it.
+    Curve,
+    /// Coulomb and viscous friction beside anything else.
+    Beside,
+}
+
+/// What of a model's law may move.
+pub(crate) fn movement<const CELLS: usize>(model: &Model<CELLS>) -> Movement {
+    let is_by_velocity = model.inputs.first().is_some_and(|input| input.quantity == Quantity::Velocity);
     match &model.law {
-        Law::Expression(_) => moving_columns(model, state).into_iter().map(|(_, column)| column).collect(),
-        Law::Geometric(_) | Law::Uniform(_) | Law::IntegerTable(_) if by_velocity(model.inputs.first()) => {
+        Law::Expression(_) => Movement::Constants,
+        Law::Geometric(_) | Law::Uniform(_) if is_by_velocity => Movement::Curve,
+        _ => Movement::Beside,
+    }
+}
+
+/// Change of the torque with everything that may move.
+fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<Vec<f64>> {
+    match movement(model) {
+        Movement::Constants => moving_columns(model, state).into_iter().map(|(_, column)| column).collect(),
+        Movement::Curve => {
             let odd = is_odd(&model.law);
             let top = state.top_speed();
             let rows: Vec<Vec<f64>> = state.velocity.iter().map(|v| hats(*v, state.sign_velocity, top, odd)).collect();
             (0..hats(0.0, 1.0, 1.0, odd).len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
         }
-        _ => vec![state.sign.clone(), state.velocity.clone()],
+        Movement::Beside => vec![state.sign.clone(), state.velocity.clone()],
     }
 }
 
@@ -134,13 +162,9 @@ pub(crate) fn hats(velocity: f64, sign_velocity: f64, top_speed: f64, odd: bool)
     hats
 }
 
-/// Whether a law is odd in velocity by its layout.
+/// Whether a table is odd in velocity by its layout.
 pub(crate) fn is_odd(law: &Law) -> bool {
-    match law {
-        Law::Geometric(layout) => layout.shape().symmetry == Symmetry::Odd,
-        Law::IntegerTable(_) => true,
-        _ => false,
-    }
+    matches!(law, Law::Geometric(layout) if layout.shape().symmetry == Symmetry::Odd)
 }
 
 fn constant(operation: Operation) -> Option<f32> {
