@@ -101,7 +101,7 @@ pub fn run(case: &Confounded, seed: u64) -> Result<Advised, String> {
         Ok::<_, String>((signals, diagnosis))
     };
     let (signals, before) = diagnosed(&joint)?;
-    let question = Question { signals: &signals, diagnosis: &before, options, limits: LIMITS, reference: None };
+    let question = Question { signals: &signals, diagnosis: &before, limits: LIMITS, reference: None };
     let Some(plan) = plan(&question) else { return Ok(Advised { before, plan: None, after: None }) };
     let recorded_s = joint.campaign.duration_s();
     joint.campaign.trajectories.push(following(&plan, case));

@@ -42,7 +42,7 @@ pub struct Diagnose {
     /// Description of the joint
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
-    /// What is locked away for the proof: `spread` (every fifth block), `tail:SHARE` or `none`
+    /// What is locked away for the proof: `spread` (a fifth of every block), `tail:SHARE` or `none`
     #[arg(long, value_name = "BLOCKS", default_value = "spread", value_parser = parse_lock)]
     pub lock: Lock,
     /// Improved model to write
@@ -97,7 +97,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     reporter.say("weighing every effect against the noise");
     let mut diagnosis = diagnose(&signals, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
     reporter.say("choosing what to record next");
-    let advice = advice(&signals, &diagnosis, options, &joint, (&compared, real));
+    let advice = advice(&signals, &diagnosis, &joint, (&compared, real));
     if let Some(plan) = &advice {
         heed(&mut diagnosis, plan);
     }
@@ -153,7 +153,6 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
 fn advice(
     signals: &Signals,
     diagnosis: &Diagnosis,
-    options: Options,
     joint: &Joint,
     (compared, real): (&Compared, &Recording),
 ) -> Option<Plan> {
@@ -165,7 +164,7 @@ fn advice(
     };
     let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
     let at = |state: &JointState| compared.at(state, recorded_body);
-    plan(&Question { signals, diagnosis, options, limits, reference: Some(&at) })
+    plan(&Question { signals, diagnosis, limits, reference: Some(&at) })
 }
 
 /// Puts the plan before the general advice of every finding that it concerns.

@@ -1,7 +1,8 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
-use super::linear::{least_squares, residual};
+use super::linear::least_squares;
 use super::prepare::Prepared;
+use super::reference::tabulated_velocities;
 use super::signals::Signals;
 use crate::physics::JointState;
 
@@ -29,8 +30,6 @@ pub struct Base {
     pub delay: f64,
     /// Whether the delay is small enough to be the sampling's own and is carried as a nuisance.
     pub delay_is_nuisance: bool,
-    /// Coefficients of the ordinary fit.
-    pub coefficients: Vec<f64>,
 }
 
 /// Coefficients of the spline base.
@@ -83,18 +82,10 @@ impl Base {
         let delay = with_delay[columns.len() - 1];
         // The drive holds its torque over a sample while the position is read at one edge of it.
         let delay_is_nuisance = delay.abs() <= 1.25 * prepared.state.period;
-        let coefficients = if delay_is_nuisance {
-            with_delay
-        } else {
+        if !delay_is_nuisance {
             columns.pop();
-            coefficients
-        };
-        Some(Self { columns, names, target, delay, delay_is_nuisance, coefficients })
-    }
-
-    /// What the ordinary fit leaves at every working row.
-    pub fn residual(&self) -> Vec<f64> {
-        residual(&self.columns, &self.target, &self.coefficients)
+        }
+        Some(Self { columns, names, target, delay, delay_is_nuisance })
     }
 }
 
@@ -138,7 +129,7 @@ fn predict(
     coefficients: &[f64],
 ) {
     let state = &mut prepared.state;
-    let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+    let known = signals.known_torque();
     let mut predicted = known.cloned().unwrap_or_else(|| vec![0.0; state.len()]);
     for ((_, column), coefficient) in raw.iter().zip(coefficients) {
         predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
@@ -146,12 +137,8 @@ fn predict(
     state.predicted = predicted;
     let top_speed = state.top_speed();
     state.base_friction = if signals.reference_friction.is_empty() {
-        let reach = 1.2 * top_speed;
-        (-120..=120)
-            .map(|k| {
-                // Finer steps towards zero, where the sign turns.
-                let x = f64::from(k) / 120.0;
-                let velocity = reach * x * x.abs() * x.abs();
+        tabulated_velocities(1.2 * top_speed)
+            .map(|velocity| {
                 let basis = friction_basis(kind, velocity, (velocity / state.sign_velocity).tanh(), top_speed);
                 (velocity, basis.iter().zip(coefficients).map(|(b, c)| b * c).sum())
             })

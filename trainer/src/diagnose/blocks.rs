@@ -10,7 +10,7 @@ const ROWS_PER_CUT_OFF: f64 = 2.5;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 
-/// Which blocks are locked away from all fitting and choosing.
+/// Which rows are locked away from all fitting and naming.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lock {
     /// A fifth of every block, spread over the recording.

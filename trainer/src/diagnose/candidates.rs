@@ -10,7 +10,7 @@ use std::ops::Range;
 /// What a group of columns stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
-    /// An effect of the catalogue, by its place in it.
+    /// An effect of the catalogue.
     Named(EffectId),
     /// An unnamed structure: a factor of velocity times a function of a channel.
     Generic(Generic),

@@ -24,7 +24,7 @@ pub enum Channel {
     /// Length of the stop before the present motion.
     Dwell,
     /// Velocity of another joint.
-    OtherJoint(usize),
+    OtherVelocity(usize),
     /// Position of another joint.
     OtherPosition(usize),
 }
@@ -42,7 +42,7 @@ impl Channel {
             Channel::DistanceSinceReversal => "distance_since_reversal",
             Channel::TimeSinceReversal => "time_since_reversal",
             Channel::Dwell => "dwell",
-            Channel::OtherJoint(_) => "other_velocity",
+            Channel::OtherVelocity(_) => "other_velocity",
             Channel::OtherPosition(_) => "other_position",
         }
     }
@@ -54,7 +54,7 @@ impl Channel {
             Channel::DistanceSinceReversal => "the distance since the last reversal",
             Channel::TimeSinceReversal => "the time since the last reversal",
             Channel::Dwell => "the stop before the motion",
-            Channel::OtherJoint(_) => "the other joint's velocity",
+            Channel::OtherVelocity(_) => "the other joint's velocity",
             Channel::OtherPosition(_) => "the other joint's position",
             _ => self.name(),
         }
@@ -72,7 +72,7 @@ impl Channel {
             Channel::Dwell,
             Channel::Time,
         ];
-        axes.extend((0..state.other_joints.len()).map(Channel::OtherJoint));
+        axes.extend((0..state.other_joints.len()).map(Channel::OtherVelocity));
         axes
     }
 
@@ -88,7 +88,7 @@ impl Channel {
             Channel::DistanceSinceReversal => Some(state.memory.distance.clone()),
             Channel::TimeSinceReversal => Some(state.memory.elapsed.clone()),
             Channel::Dwell => Some(state.memory.dwell.clone()),
-            Channel::OtherJoint(joint) => state.other_joints.get(joint).map(|other| other.velocity.clone()),
+            Channel::OtherVelocity(joint) => state.other_joints.get(joint).map(|other| other.velocity.clone()),
             Channel::OtherPosition(joint) => state.other_joints.get(joint).map(|other| other.position.clone()),
         }
     }

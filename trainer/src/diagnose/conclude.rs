@@ -1,10 +1,10 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
 use super::candidates::{Label, ridge_of};
-use super::linear::{dot, invert_symmetric, least_squares, residual, ridged_gram};
+use super::linear::{dot, invert_symmetric, least_squares, residual, ridged_gram, weighted};
 use super::noise::Noise;
 use super::refine::refine;
-use super::search::{Accepted, Search};
+use super::search::{Accepted, Search, others};
 use crate::physics::{Dimension, Shape};
 use std::ops::Range;
 
@@ -56,7 +56,7 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
         for index in 0..accepted.len() {
             let Label::Named(effect) = accepted[index].label else { continue };
             let Some(hypothesis) = search.hypothesis(effect) else { continue };
-            let bench = search.bench(columns_without(search, accepted, index), noise);
+            let bench = search.bench(columns_with(search, others(accepted, index)), noise);
             let label = accepted[index].label.clone();
             let weigh = |shape: &[f64]| {
                 let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
@@ -164,12 +164,10 @@ fn long_run_variance(white: &[f64], runs: &[Range<usize>]) -> f64 {
     (1.0 + slow / lagged(0).max(f64::MIN_POSITIVE)).max(1.0)
 }
 
-/// Filtered base columns with every accepted effect but one, shapes as they stand, without tangents.
-fn columns_without(search: &Search, accepted: &[Accepted], without: usize) -> Vec<Vec<f64>> {
+/// Filtered base columns with those of accepted effects, shapes as they stand, without tangents.
+fn columns_with<'f>(search: &Search, accepted: impl Iterator<Item = &'f Accepted>) -> Vec<Vec<f64>> {
     let mut columns = search.base.columns.clone();
-    for (_, effect) in accepted.iter().enumerate().filter(|(index, _)| *index != without) {
-        columns.extend(search.filtered_columns(&effect.label, &effect.shape));
-    }
+    columns.extend(accepted.flat_map(|effect| search.filtered_columns(&effect.label, &effect.shape)));
     columns
 }
 
@@ -180,15 +178,6 @@ fn shape_tangents(search: &Search, effects: &[Fitted]) -> (Vec<(usize, usize)>, 
         of_columns.map(move |(slot, columns)| ((index, slot), weighted(&columns, &effect.coefficients)))
     });
     tangents.unzip()
-}
-
-/// Sum of columns weighted by coefficients.
-pub(crate) fn weighted(columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
-    for (column, coefficient) in columns.iter().zip(coefficients) {
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
-    }
-    sum
 }
 
 /// Text of a dimension's unit for an axis and an actuator unit ("N m", "N" or "A").

@@ -16,7 +16,7 @@ const LANES: usize = 4;
 
 impl ZeroPhase {
     /// A filter with the given half-amplitude frequency for samples of `period` s. The transition ends at about
-    /// twice the cut-off.
+    /// one and a half times the cut-off.
     pub fn new(cut_off_hz: f64, period: f64) -> Self {
         let half = ((1.65 / (cut_off_hz * period)).round() as usize).max(1);
         let mut taps: Vec<f64> = (0..=2 * half)

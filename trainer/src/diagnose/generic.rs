@@ -201,7 +201,7 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
     add(&[Factor::Sign], Channel::DistanceSinceReversal, Form::Free);
     add(&[Factor::Sign], Channel::TimeSinceReversal, Form::Free);
     for joint in 0..state.other_joints.len() {
-        add(&all, Channel::OtherJoint(joint), Form::Free);
+        add(&all, Channel::OtherVelocity(joint), Form::Free);
         add(&all, Channel::OtherPosition(joint), Form::Free);
     }
     add(&[Factor::Sign, Factor::Velocity], Channel::Load, Form::Quadratic);

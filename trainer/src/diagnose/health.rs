@@ -118,7 +118,7 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
         .collect();
     // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
     let smooth = |series: &[f64]| filter.over(series, segments);
-    let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+    let known = signals.known_torque();
     let mut bodies: Vec<(&str, Vec<f64>)> =
         match (known, signals.load.as_ref().filter(|_| signals.rigid_body.is_some())) {
             (Some(body), Some(load)) => {

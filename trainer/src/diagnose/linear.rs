@@ -8,6 +8,15 @@ pub(crate) fn dot(a: &[f64], b: &[f64], runs: &[Range<usize>]) -> f64 {
     runs.iter().map(|run| dot_slices(&a[run.clone()], &b[run.clone()])).sum()
 }
 
+/// Sum of columns weighted by coefficients.
+pub(crate) fn weighted(columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
+    }
+    sum
+}
+
 /// Inner product with four partial sums in a fixed order, so that it vectorises and always rounds alike.
 fn dot_slices(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];

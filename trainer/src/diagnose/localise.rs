@@ -1,7 +1,7 @@
 //! Where a finding sits: evidence density along time and every channel, and the interval that holds most of it.
 
 use super::channel::Channel;
-use super::conclude::{Refit, weighted};
+use super::conclude::Refit;
 use super::prove::rest;
 use super::region::{Axis, Region, maximal_sum, regions};
 use super::search::Search;
@@ -22,7 +22,7 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let runs = search.prepared.open_runs();
     let with = rest(search, refit);
     let effect = &refit.effects[index];
-    let torque = weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients);
+    let torque = search.torque_of(effect);
     let mut white_with = with.clone();
     let mut white_without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
     refit.noise.whiten(&mut white_with, &runs);

@@ -85,7 +85,7 @@ pub(crate) fn mean_measurement(state: &JointState) -> Measurement {
 
 /// The static law at a velocity, other channels as they are in `at`.
 pub(crate) fn law_at<const CELLS: usize>(model: &Model<CELLS>, at: &Measurement, velocity: f64) -> f64 {
-    let mut measurement = at.clone();
+    let mut measurement = *at;
     measurement.velocity = velocity as f32;
     f64::from(evaluate(model, &measurement.channels(&model.inputs)))
 }

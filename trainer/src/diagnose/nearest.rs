@@ -1,7 +1,7 @@
 //! The effect with a name that comes nearest to a structure without one.
 
 use super::candidates::{Group, Label, Variant};
-use super::conclude::{Fitted, weighted};
+use super::conclude::Fitted;
 use super::linear::{dot, least_squares, orthonormal, project_out, residual};
 use super::search::{Accepted, Search, others};
 use crate::physics::EffectId;
@@ -26,7 +26,7 @@ pub(super) fn nearest(
         project_out(&mut left, &beside, &runs);
         left
     };
-    let torque = left_beside(&weighted(&search.filtered_columns(&fitted.label, &fitted.shape), &fitted.coefficients));
+    let torque = left_beside(&search.torque_of(fitted));
     let energy = dot(&torque, &torque, &runs);
     let share = |group: &Group, variant: &Variant| {
         let columns: Vec<Vec<f64>> = search.design.columns[variant.columns.clone()].iter().map(left_beside).collect();

@@ -13,7 +13,7 @@ use std::ops::Range;
 /// leaves.
 const BLOCK_ROWS: usize = 256;
 
-/// One null draw of every hypothesis.
+/// The tails of every hypothesis' statistic where nothing is missing, fitted to the null draws.
 #[derive(Clone, Debug)]
 pub struct NullDraws {
     /// For each group, location and scale of the Gumbel tail of its statistic in -log p.

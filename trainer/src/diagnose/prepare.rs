@@ -117,7 +117,7 @@ impl Prepared {
         state.sign = state.averaged_sign(&state.velocity, state.sign_velocity);
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
-        let known = signals.reference_torque.as_ref().or(signals.rigid_body.as_ref());
+        let known = signals.known_torque();
         let friction_torque = match known {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),

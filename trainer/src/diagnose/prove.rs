@@ -1,11 +1,12 @@
-//! The proof: blocks locked away from all fitting and choosing are opened once.
+//! The proof: rows locked away from all fitting and naming are opened at the end. They may withdraw a finding, and nothing else.
 
-use super::conclude::{Refit, refit, weighted};
+use super::conclude::{Refit, refit};
 use super::linear::{dot, residual};
 use super::search::{Accepted, Search, others};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
-/// Error before and after on rows that took no part in the fit.
+/// Error before and after on rows that no fit has seen.
 #[derive(Clone, Debug, Default)]
 pub struct Proof {
     /// Root mean square of what the refitted base leaves on locked rows.
@@ -70,7 +71,7 @@ pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize, 
 pub(crate) fn rest(search: &Search, refit: &Refit) -> Vec<f64> {
     let mut rest = residual(&search.base.columns, &search.base.target, &refit.base);
     for effect in &refit.effects {
-        let torque = weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients);
+        let torque = search.torque_of(effect);
         rest.iter_mut().zip(&torque).for_each(|(r, t)| *r -= t);
     }
     rest
@@ -79,28 +80,13 @@ pub(crate) fn rest(search: &Search, refit: &Refit) -> Vec<f64> {
 /// Interval of a ratio of summed energies by the delta method over blocks.
 fn ratio_interval(pairs: &[(f64, f64)], ratio: f64) -> [f64; 2] {
     let count = pairs.len() as f64;
-    if pairs.len() < 2 {
-        return [0.0, f64::INFINITY];
-    }
+    let Some(student) = StudentsT::new(0.0, 1.0, count - 1.0).ok() else { return [0.0, f64::INFINITY] };
+    let student_95 = student.inverse_cdf(0.975);
     let mean = pairs.iter().map(|p| p.0).sum::<f64>() / count;
     // Linearised: d(log ratio^2) = (after - ratio^2 before) / (ratio^2 mean).
     let square = ratio * ratio;
     let variance =
         pairs.iter().map(|(b, a)| ((a - square * b) / (square * mean)).powi(2)).sum::<f64>() / (count * (count - 1.0));
-    let half = 0.5 * student_95(pairs.len() - 1) * variance.sqrt();
+    let half = 0.5 * student_95 * variance.sqrt();
     [ratio * (-half).exp(), ratio * half.exp()]
-}
-
-/// Two-sided 95 % quantile of Student's t (Cornish-Fisher expansion, good to 1 % from three degrees on).
-fn student_95(degrees: usize) -> f64 {
-    const Z: f64 = 1.959_964;
-    let n = degrees.max(1) as f64;
-    if degrees == 1 {
-        return 12.706;
-    }
-    let z3 = Z.powi(3);
-    let z5 = Z.powi(5);
-    Z + (z3 + Z) / (4.0 * n)
-        + (5.0 * z5 + 16.0 * z3 + 3.0 * Z) / (96.0 * n * n)
-        + (3.0 * Z.powi(7) + 19.0 * z5 + 17.0 * z3 - 15.0 * Z) / (384.0 * n.powi(3))
 }

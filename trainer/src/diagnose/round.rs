@@ -89,7 +89,42 @@ impl<'s, 'a> Round<'s, 'a> {
 
     pub(crate) fn draw_null(&self) -> NullDraws {
         let best = best_two(self.search, &self.variants, self.bench.rows(), CLEAR_NATS);
-        draw_null(self.search, &self.bench, &self.white, &self.variants, &self.search.whitened(&best, &self.noise))
+        let runs = self.bench.runs();
+        let base_directions = orthonormal(&self.bench.base, &runs);
+        let directions: Directions = self
+            .search
+            .design
+            .groups
+            .par_iter()
+            .zip(&self.variants)
+            .map(|(group, tested)| {
+                group
+                    .variants
+                    .iter()
+                    .zip(tested)
+                    .filter(|(variant, evidence)| {
+                        evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty()
+                    })
+                    .map(|(variant, _)| {
+                        let mut columns = self.white[variant.columns.clone()].to_vec();
+                        columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
+                        orthonormal(&columns, &runs)
+                    })
+                    .collect()
+            })
+            .collect();
+        let mut rest = self.bench.target.clone();
+        project_out(&mut rest, &base_directions, &runs);
+        let mut extended = base_directions.clone();
+        extended.extend(self.search.whitened(&best, &self.noise));
+        project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
+        let family = |group: &Group| match group.label {
+            Label::Named(_) => Family::Named,
+            Label::Generic(_) => Family::Generic,
+        };
+        let families = self.search.design.groups.iter().map(family).collect();
+        let Settings { null_draws, seed, .. } = self.search.settings;
+        NullDraws::draw(&directions, families, &rest, &runs, null_draws, seed)
     }
 
     pub(crate) fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
@@ -212,46 +247,4 @@ fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Ve
             search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
         })
         .collect()
-}
-
-fn draw_null(
-    search: &Search,
-    bench: &Bench,
-    white: &[Vec<f64>],
-    variants: &[Vec<Option<VariantEvidence>>],
-    best: &[Vec<f64>],
-) -> NullDraws {
-    let runs = bench.runs();
-    let base_directions = orthonormal(&bench.base, &runs);
-    let directions: Directions = search
-        .design
-        .groups
-        .par_iter()
-        .zip(variants)
-        .map(|(group, tested)| {
-            group
-                .variants
-                .iter()
-                .zip(tested)
-                .filter(|(variant, evidence)| evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty())
-                .map(|(variant, _)| {
-                    let mut columns = white[variant.columns.clone()].to_vec();
-                    columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
-                    orthonormal(&columns, &runs)
-                })
-                .collect()
-        })
-        .collect();
-    let mut rest = bench.target.clone();
-    project_out(&mut rest, &base_directions, &runs);
-    let mut extended = base_directions.clone();
-    extended.extend(best.to_vec());
-    project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
-    let family = |group: &Group| match group.label {
-        Label::Named(_) => Family::Named,
-        Label::Generic(_) => Family::Generic,
-    };
-    let families = search.design.groups.iter().map(family).collect();
-    let Settings { null_draws, seed, .. } = search.settings;
-    NullDraws::draw(&directions, families, &rest, &runs, null_draws, seed)
 }

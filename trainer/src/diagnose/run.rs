@@ -259,7 +259,6 @@ fn score(search: &Search, refit: &Refit) -> Score {
 /// Torque of each effect that was not found at which it would have been found nine times in ten.
 fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = search.bench(search.base.columns.clone(), &refit.noise);
-    let Some(alone) = bench.alone() else { return Vec::new() };
     table
         .iter()
         .filter_map(|scored| {
@@ -273,6 +272,6 @@ fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimi
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
             Some(DetectionLimit { effect, torque_rms: amplitude * rms })
         })
-        .filter(|limit| limit.torque_rms.is_finite() && alone.residual > 0.0)
+        .filter(|limit| limit.torque_rms.is_finite())
         .collect()
 }

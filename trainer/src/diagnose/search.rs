@@ -3,8 +3,9 @@
 use super::base::Base;
 use super::candidates::{Design, Label, ridge_of};
 use super::channel::Channel;
+use super::conclude::Fitted;
 use super::evidence::{Bench, GroupEvidence};
-use super::linear::residual;
+use super::linear::{residual, weighted};
 use super::noise::{Noise, noise_features};
 use super::null::NullDraws;
 use super::prepare::Prepared;
@@ -23,7 +24,7 @@ pub struct Accepted {
     pub label: Label,
     /// Shape parameters.
     pub shape: Shape,
-    /// Score, probability and evidence when it was accepted.
+    /// Score in nats when it was accepted.
     pub score: f64,
     /// Family-wise probability under the null when it was accepted.
     pub family_wise: f64,
@@ -225,6 +226,11 @@ impl<'a> Search<'a> {
             (index, shifted(step).into_iter().zip(shifted(-step)).map(difference).collect())
         })
         .collect()
+    }
+
+    /// Filtered torque of a fitted effect at every working row.
+    pub(crate) fn torque_of(&self, fitted: &Fitted) -> Vec<f64> {
+        weighted(&self.filtered_columns(&fitted.label, &fitted.shape), &fitted.coefficients)
     }
 
     /// Whether the open rows alone carry an effect.

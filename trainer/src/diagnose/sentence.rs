@@ -30,8 +30,8 @@ impl Units {
     pub fn of_channel(self, channel: &str) -> String {
         let position = if self.rotary { "rad" } else { "m" };
         match channel {
-            "velocity" | "other_joint" => format!("{position}/s"),
-            "position" | "distance_since_reversal" => position.to_string(),
+            "velocity" | "other_velocity" => format!("{position}/s"),
+            "position" | "other_position" | "distance_since_reversal" => position.to_string(),
             "acceleration" => format!("{position}/s2"),
             "load" => self.actuator.to_string(),
             "temperature" => "degC".to_string(),
@@ -103,6 +103,15 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let found = &diagnosis.findings[index];
     if found.fitted.coefficients.is_empty() {
         return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
+    }
+    if found.effect == EffectId::TimeMisalignment {
+        return format!(
+            "{}{}. {}{}",
+            capital(plain_name(found.effect)),
+            figures(found),
+            certainty(found),
+            action(found)
+        );
     }
     let telling = found.location.regions.first().filter(|region| region.is_telling());
     let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
@@ -181,7 +190,8 @@ fn figures(found: &Finding) -> String {
 fn telling_parameters(found: &Finding) -> Vec<&Parameter> {
     let linear = found.fitted.coefficients.len().min(found.parameters.len());
     let (amplitudes, shapes) = found.parameters.split_at(linear);
-    let shapes: Vec<&Parameter> = shapes.iter().take(2).collect();
+    // Which joint it is says nothing of how much.
+    let shapes: Vec<&Parameter> = shapes.iter().filter(|shape| shape.name != "other_joint").take(2).collect();
     if shapes.is_empty() && linear <= 3 { amplitudes.iter().take(2).collect() } else { shapes }
 }
 
@@ -218,7 +228,7 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
         String::new()
     };
     Some(format!(
-        "Held-out error {} -> {} on {} rows that took no part in fitting or choosing (ratio {}{interval}).",
+        "Held-out error {} -> {} on {} rows that took no part in fitting and could only withdraw a finding (ratio {}{interval}).",
         digits(proof.baseline_rmse),
         quantity(proof.improved_rmse, units.actuator),
         proof.rows,

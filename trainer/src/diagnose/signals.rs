@@ -47,6 +47,11 @@ pub struct Signals {
 }
 
 impl Signals {
+    /// The torque that needs no identification: the reference's, or the rigid body's.
+    pub(super) fn known_torque(&self) -> Option<&Vec<f64>> {
+        self.reference_torque.as_ref().or(self.rigid_body.as_ref())
+    }
+
     /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque
     /// where the recording carries none.
     ///

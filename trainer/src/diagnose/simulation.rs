@@ -3,7 +3,7 @@
 
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
-use super::linear::{least_squares, residual};
+use super::linear::{least_squares, residual, weighted};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
 use super::reference::{Reference, tabulated_velocities};
@@ -103,7 +103,7 @@ impl InverseLaw {
         let mut columns: Vec<Vec<f64>> = raw.iter().map(|column| prepared.filtered(column)).collect();
         columns.extend(nuisances(prepared));
         let mut coefficients = least_squares(&columns, &target, &runs)?;
-        let late = state.rate_of(&super::conclude::weighted(&raw, &coefficients[..raw.len()]));
+        let late = state.rate_of(&weighted(&raw, &coefficients[..raw.len()]));
         columns.push(prepared.filtered(&late));
         coefficients = least_squares(&columns, &target, &runs)?;
         let rest = residual(&columns, &target, &coefficients);
@@ -164,13 +164,7 @@ impl InverseLaw {
     #[must_use]
     pub fn at(&self, state: &JointState) -> Reference {
         let columns = self.columns(state);
-        let sum = |from: usize| {
-            let mut torque = vec![0.0; state.len()];
-            for (column, coefficient) in columns.iter().zip(&self.coefficients).skip(from) {
-                torque.iter_mut().zip(column).for_each(|(t, c)| *t += coefficient * c);
-            }
-            torque
-        };
+        let sum = |from: usize| weighted(&columns[from..], &self.coefficients[from..]);
         Reference {
             torque: sum(0),
             rigid_body: sum(self.friction_width()),

@@ -15,8 +15,6 @@ pub struct Strength {
     pub lambda: f64,
     /// Root mean square of that torque over that of the noise, both behind the common filter.
     pub effect_to_noise: f64,
-    /// Share of the torque's energy that the base absorbs.
-    pub absorbed: f64,
     /// What the base leaves at every working row once that torque is taken off: the least that a diagnosis can leave.
     pub rest_without: Vec<f64>,
     /// The noise behind the common filter at every working row.
@@ -48,13 +46,11 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
     let rows: usize = runs.iter().map(|run| run.len()).sum();
-    let energy = dot(&filtered, &filtered, &runs);
     let noise = prepared.filtered(noise);
     let noise_rms = (dot(&noise, &noise, &runs) / rows as f64).sqrt();
     Some(Strength {
         lambda,
         effect_to_noise: (kept / rows as f64).sqrt() / noise_rms.max(f64::MIN_POSITIVE),
-        absorbed: 1.0 - kept / energy.max(f64::MIN_POSITIVE),
         rest_without,
         noise,
     })

@@ -1,7 +1,7 @@
 //! What a report draws: torque, residuals before and after, the torque of each effect and every channel, at working rows.
 
 use super::channel::Channel;
-use super::conclude::{Refit, weighted};
+use super::conclude::Refit;
 use super::localise::locate_density;
 use super::prove::rest;
 use super::region::Region;
@@ -48,11 +48,7 @@ impl Traces {
             }
         }
         run_starts.sort_unstable();
-        let effects = improved
-            .effects
-            .iter()
-            .map(|effect| weighted(&search.filtered_columns(&effect.label, &effect.shape), &effect.coefficients))
-            .collect();
+        let effects = improved.effects.iter().map(|effect| search.torque_of(effect)).collect();
         let channels = Channel::axes(state)
             .into_iter()
             .filter_map(|channel| Some((channel.name(), prepared.at_rows(&channel.series(state)?))))

@@ -192,7 +192,7 @@ fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     };
     let mut rows = vec![row("all rows", diagnosis.baseline.rmse, diagnosis.improved.rmse, diagnosis.traces.len())];
     if let Some(proof) = &diagnosis.proof {
-        rows.push(row("locked rows, opened once", proof.baseline_rmse, proof.improved_rmse, proof.rows));
+        rows.push(row("locked rows, which no fit has seen", proof.baseline_rmse, proof.improved_rmse, proof.rows));
     }
     page.table(&["rows", "before", "after", "number"], &rows);
     if let Some(rollout) = &diagnosis.rollout {

@@ -1,7 +1,7 @@
 //! The recording with a planned motion behind it: what every channel would show, as far as the recording itself tells.
 
 use super::super::filter::{first_derivative, second_derivative};
-use super::super::linear::least_squares;
+use super::super::linear::{least_squares, weighted};
 use super::super::signals::Signals;
 use super::Candidate;
 use crate::physics::JointState;
@@ -179,10 +179,6 @@ fn body_columns(position: &[f64], acceleration: &[f64], load: Option<&[f64]>, ro
         }
     }
     columns
-}
-
-fn weighted(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
-    super::super::conclude::weighted(columns, weights)
 }
 
 /// Time constant in s of an exponential approach, by a scan over constants; `None` where the series does not change.

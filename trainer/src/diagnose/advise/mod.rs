@@ -18,7 +18,6 @@ use super::filter::{first_derivative, second_derivative};
 use super::outcome::{Diagnosis, Finding};
 use super::prepare::Prepared;
 use super::reference::Reference;
-use super::run::Options;
 use super::sentence::plain_name;
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState, quantile};
@@ -43,8 +42,6 @@ pub struct Question<'a> {
     pub signals: &'a Signals,
     /// What came of it.
     pub diagnosis: &'a Diagnosis,
-    /// How it was diagnosed.
-    pub options: Options,
     /// Within which the joint may move.
     pub limits: Limits,
     /// The reference of [`super::BaseKind::Reference`] at other states.

@@ -2,9 +2,9 @@
 
 use super::super::base::{Base, BaseKind};
 use super::super::candidates::Label;
-use super::super::conclude::{Fitted, weighted};
+use super::super::conclude::Fitted;
 use super::super::evidence::Bench;
-use super::super::linear::{least_squares, residual};
+use super::super::linear::{least_squares, residual, weighted};
 use super::super::noise::Noise;
 use super::super::prepare::Prepared;
 use super::super::refine::refine;
@@ -18,7 +18,7 @@ pub(super) struct Outlook {
     prepared: Prepared,
     hypotheses: Vec<Box<dyn Hypothesis + Send>>,
     noise: Noise,
-    /// Filtered base columns, then those of every finding.
+    /// Filtered base columns, then those of every finding that has a name.
     columns: Vec<Vec<f64>>,
     /// Place of each finding's columns.
     places: Vec<(EffectId, Range<usize>)>,
@@ -34,11 +34,11 @@ impl Outlook {
     pub(super) fn new(question: &Question, mut signals: Signals) -> Option<Self> {
         let (cut_off, lock) = (question.diagnosis.cut_off_hz, question.diagnosis.lock);
         let mut prepared = Prepared::at_cut_off(&signals, cut_off, lock);
-        if question.options.base == BaseKind::Reference && signals.reference_torque.is_none() {
+        if question.diagnosis.base == BaseKind::Reference && signals.reference_torque.is_none() {
             signals.compare_with(question.reference?(&prepared.state)?);
             prepared = Prepared::at_cut_off(&signals, cut_off, lock);
         }
-        let base = Base::fit(&mut prepared, &signals, question.options.base)?;
+        let base = Base::fit(&mut prepared, &signals, question.diagnosis.base)?;
         let recorded = question.signals.time.len();
         let open = prepared.open_runs();
         let made: Vec<Range<usize>> = open.iter().filter(|run| prepared.rows[run.start] < recorded).cloned().collect();
@@ -70,17 +70,17 @@ impl Outlook {
         let Label::Named(effect) = found.label else { return None };
         let torque = self.white(&weighted(&self.filtered(effect, &found.shape)?, &found.coefficients));
         let base = self.base_without(effect);
-        let energy =
+        let bench =
             |torque: &[f64], runs: &[Range<usize>]| Bench::new(base.clone(), torque.to_vec(), vec![runs.to_vec()]);
-        let made = energy(&torque, &self.made);
+        let made = bench(&torque, &self.made);
         let Some((shape, coefficients)) = self.imitate(&made, rival, None, false).map(|best| (best.1, best.2)) else {
             // The recording has no room for the rival at all.
-            return energy(&torque, &self.open).alone().map(|alone| 0.5 * alone.residual);
+            return bench(&torque, &self.open).alone().map(|alone| 0.5 * alone.residual);
         };
-        let both = energy(&torque, &self.open);
+        let both = bench(&torque, &self.open);
         let against_rival = self.imitate(&both, rival, Some(&shape), refined)?.0;
         let imitation = self.white(&weighted(&self.filtered(rival, &shape)?, &coefficients));
-        let against_found = self.imitate(&energy(&imitation, &self.open), effect, Some(&found.shape), refined)?.0;
+        let against_found = self.imitate(&bench(&imitation, &self.open), effect, Some(&found.shape), refined)?.0;
         Some(0.5 * against_rival.min(against_found))
     }
 
@@ -114,7 +114,7 @@ impl Outlook {
         Some((evidence.residual, shape, evidence.coefficients))
     }
 
-    /// Whitened columns of the base and of every finding but one.
+    /// Whitened columns of the base and of every finding but those of one effect.
     fn base_without(&self, effect: EffectId) -> Vec<Vec<f64>> {
         let taken = |i: usize| self.places.iter().any(|(id, place)| *id == effect && place.contains(&i));
         let kept = self.columns.iter().enumerate().filter(|(i, _)| !taken(*i));
