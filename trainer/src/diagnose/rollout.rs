@@ -1,8 +1,9 @@
 //! The open-loop rollout: the recorded torque drives the model from a recorded state; how far does its position stray?
 //!
 //! It is worked out as a deviation from the recorded motion: `J dv/dt = r - (f(v_rec + v) - f(v_rec))`, `dq/dt = v`, where
-//! `r` is the torque that the model leaves at the recorded state and `f` its friction over velocity. For a static law this
-//! is the rollout itself; memories and gravity are taken at the recorded motion, which holds over short horizons.
+//! `r` is the torque that the model leaves at the recorded state. `f` is the friction of the base over velocity as it was before
+//! any effect, for both models, and `J` that of a given rigid body where there is one: what the findings change of either is felt
+//! through `r` alone. Memories and gravity are taken at the recorded motion too, which holds over short horizons.
 
 use super::conclude::Refit;
 use super::linear::least_squares;
