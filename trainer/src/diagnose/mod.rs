@@ -1,6 +1,6 @@
 //! Which physics is missing: noise, evidence, calibration, naming, localising, proving, advising.
 //!
-//! Data flow: [`Signals`] -> [`Prepared`] (one filter for all) -> [`Base`] (what is already fitted) -> [`Search`]
+//! Data flow: [`Signals`] -> [`Prepared`] (one filter for all) -> `Base` (what is already fitted) -> `Search`
 //! (evidence for every hypothesis of [`crate::physics`], calibrated against null draws) -> findings.
 
 mod advise;
