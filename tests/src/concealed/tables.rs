@@ -66,6 +66,10 @@ fn singles(rows: &[Row]) -> impl Iterator<Item = &Row> {
     rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Effect(name, _) if EffectId::from_name(name).is_some()))
 }
 
+fn doubles(rows: &[Row]) -> impl Iterator<Item = &Row> {
+    rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Pair(..)))
+}
+
 fn by_strength(rows: &[Row], base: BaseKind, text: &mut String) {
     let own: Vec<&Row> = singles(rows).filter(|row| row.case.base == base).collect();
     if own.is_empty() {
@@ -233,7 +237,7 @@ fn outside(rows: &[Row], text: &mut String) {
 }
 
 fn pairs(rows: &[Row], text: &mut String) {
-    let pairs: Vec<&Row> = rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Pair(..))).collect();
+    let pairs: Vec<&Row> = doubles(rows).collect();
     if pairs.is_empty() {
         return;
     }
@@ -248,8 +252,7 @@ fn pairs(rows: &[Row], text: &mut String) {
 }
 
 fn misses(rows: &[Row], text: &mut String) {
-    let pairs = rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Pair(..)));
-    let missed: Vec<&Row> = singles(rows).chain(pairs).filter(|r| !r.in_set() && r.is_strong()).collect();
+    let missed: Vec<&Row> = singles(rows).chain(doubles(rows)).filter(|r| !r.in_set() && r.is_strong()).collect();
     if missed.is_empty() {
         return;
     }

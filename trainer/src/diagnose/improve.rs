@@ -49,8 +49,9 @@ const OUTPUT_ROOM: f64 = 2.0;
 /// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
 pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = signals.states();
+    let places = if let Origin::Model(model) = origin { moving_constants(model, &state) } else { Vec::new() };
     let [before, friction] = [&diagnosis.baseline_refit, &diagnosis.improved_refit]
-        .map(|refit| refitted_friction(diagnosis.base, refit, origin, &state));
+        .map(|refit| refitted_friction(diagnosis.base, refit, (origin, &places), &state));
     let dissipated =
         |friction: &Friction<'_>| -> Vec<f64> { state.velocity.iter().map(|v| (friction(*v) * v).abs()).collect() };
     let [measured, evaluated] = [&before, &friction].map(dissipated);
@@ -68,7 +69,7 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
     }
     let (mut model, mut cells) = match origin {
         Origin::Model(model) if movement(model) != Movement::Curve => {
-            (moved_law(diagnosis, model, &mut terms, &state)?, model.cells.to_vec())
+            (moved_law(diagnosis, (model, &places), &mut terms, &state)?, model.cells.to_vec())
         }
         _ => table_model(&friction, origin, &state, unit),
     };
@@ -104,8 +105,13 @@ fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -
 /// Friction over velocity.
 type Friction<'a> = Box<dyn Fn(f64) -> f64 + Sync + 'a>;
 
-/// Friction of the base over velocity after a refit.
-fn refitted_friction<'a>(base: BaseKind, refit: &'a Refit, origin: Origin<'a>, state: &JointState) -> Friction<'a> {
+/// Friction of the base over velocity after a refit; `places` are those of a formula's constants that move.
+fn refitted_friction<'a>(
+    base: BaseKind,
+    refit: &'a Refit,
+    (origin, places): (Origin<'a>, &[usize]),
+    state: &JointState,
+) -> Friction<'a> {
     let (eps, top) = (state.sign_velocity, state.top_speed());
     let sign = move |velocity: f64| (velocity / eps).tanh();
     let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(&refit.base).map(|(b, c)| b * c).sum() };
@@ -117,7 +123,7 @@ fn refitted_friction<'a>(base: BaseKind, refit: &'a Refit, origin: Origin<'a>, s
     let mean = mean_measurement(state);
     match movement(model) {
         Movement::Constants => {
-            let law = moved_constants(model, &refit.base, state).unwrap_or_else(|| Box::new(model.clone()));
+            let law = moved_constants(model, places, &refit.base).unwrap_or_else(|| Box::new(model.clone()));
             Box::new(move |v| law_at(&law, &mean, v))
         }
         Movement::Curve => {
@@ -148,13 +154,13 @@ fn rigid_body(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>) -> R
 /// The law of a formula or a network with its parameters where the refit moved them.
 fn moved_law(
     diagnosis: &Diagnosis,
-    model: &HostModel,
+    (model, places): (&HostModel, &[usize]),
     terms: &mut Terms,
     state: &JointState,
 ) -> Option<Box<HostModel>> {
     let refitted = &diagnosis.improved_refit.base;
     if movement(model) == Movement::Constants {
-        return moved_constants(model, refitted, state);
+        return moved_constants(model, places, refitted);
     }
     terms.effects.push(Effect::Coulomb {
         coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
@@ -165,9 +171,9 @@ fn moved_law(
 }
 
 /// A formula with its constants moved; `None` where that is no model.
-fn moved_constants(model: &HostModel, by: &[f64], state: &JointState) -> Option<Box<HostModel>> {
-    let places = moving_constants(model, state).into_iter().zip(by);
-    places.into_iter().try_fold(Box::new(model.clone()), |law, (place, by)| moved(*law, place, *by).map(Box::new))
+fn moved_constants(model: &HostModel, places: &[usize], by: &[f64]) -> Option<Box<HostModel>> {
+    let mut constants = places.iter().zip(by);
+    constants.try_fold(Box::new(model.clone()), |law, (place, by)| moved(*law, *place, *by).map(Box::new))
 }
 
 /// A model whose law is a table of the refitted friction, without effects, and the cells of its pool. Behind the table it reads
@@ -178,13 +184,12 @@ fn table_model(
     state: &JointState,
     unit: Unit,
 ) -> (Box<HostModel>, Vec<Cell>) {
-    let (inputs, cells) = match origin {
-        Origin::Model(model) => (&model.inputs[..], &model.cells[..]),
-        _ => (&[][..], &[][..]),
-    };
     let has_table = |effect: &Effect| matches!(effect, Effect::PositionTable { .. });
-    let is_read = matches!(origin, Origin::Model(model) if model.effects.iter().any(has_table));
-    let mut cells = if is_read { cells.to_vec() } else { Vec::new() };
+    let (inputs, mut cells) = match origin {
+        Origin::Model(model) if model.effects.iter().any(has_table) => (&model.inputs[..], model.cells.to_vec()),
+        Origin::Model(model) => (&model.inputs[..], Vec::new()),
+        _ => (&[][..], Vec::new()),
+    };
     let law = velocity_table(friction, 1.1 * fastest(state), state.sign_velocity, cells.len() as u16);
     cells.extend(&law.cells);
     let others = inputs.iter().filter(|input| input.quantity != Quantity::Velocity).cloned();

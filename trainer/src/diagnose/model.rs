@@ -93,8 +93,7 @@ pub(crate) fn law_at<const CELLS: usize>(model: &Model<CELLS>, at: &Measurement,
 /// The static law over velocity, other channels at their mean.
 fn curve<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(f64, f64)> {
     let mean = mean_measurement(state);
-    let velocities = tabulated_velocities(1.2 * state.top_speed());
-    velocities.into_iter().map(|velocity| (velocity, law_at(model, &mean, velocity))).collect()
+    tabulated_velocities(1.2 * state.top_speed()).map(|velocity| (velocity, law_at(model, &mean, velocity))).collect()
 }
 
 /// What of a law may move when an effect is added.

@@ -80,7 +80,7 @@ pub(crate) fn rest(search: &Search, refit: &Refit) -> Vec<f64> {
 /// Interval of a ratio of summed energies by the delta method over blocks.
 fn ratio_interval(pairs: &[(f64, f64)], ratio: f64) -> [f64; 2] {
     let count = pairs.len() as f64;
-    let Some(student) = StudentsT::new(0.0, 1.0, count - 1.0).ok() else { return [0.0, f64::INFINITY] };
+    let Ok(student) = StudentsT::new(0.0, 1.0, count - 1.0) else { return [0.0, f64::INFINITY] };
     let student_95 = student.inverse_cdf(0.975);
     let mean = pairs.iter().map(|p| p.0).sum::<f64>() / count;
     // Linearised: d(log ratio^2) = (after - ratio^2 before) / (ratio^2 mean).

@@ -94,8 +94,7 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let rows = aligned.traces.time.len();
     let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
     let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
-    (aligned.findings, aligned.traces.effects) =
-        std::iter::once((misaligned, vec![0.0; rows])).chain(physics.collect::<Vec<_>>()).unzip();
+    (aligned.findings, aligned.traces.effects) = std::iter::once((misaligned, vec![0.0; rows])).chain(physics).unzip();
     aligned.verdict = verdict(&aligned.findings, false);
     aligned.baseline = as_recorded.baseline;
     if let (Some(proof), Some(before)) = (&mut aligned.proof, &as_recorded.proof) {

@@ -101,17 +101,10 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
 #[must_use]
 pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let found = &diagnosis.findings[index];
-    if found.fitted.coefficients.is_empty() {
-        return format!("{}. {}{}", capital(plain_name(found.effect)), certainty(found), action(found));
-    }
-    if found.effect == EffectId::TimeMisalignment {
-        return format!(
-            "{}{}. {}{}",
-            capital(plain_name(found.effect)),
-            figures(found),
-            certainty(found),
-            action(found)
-        );
+    // A fault of the measurement adds no torque of which to say where and how much.
+    if found.fitted.coefficients.is_empty() || found.effect == EffectId::TimeMisalignment {
+        let name = capital(plain_name(found.effect));
+        return format!("{name}{}. {}{}", figures(found), certainty(found), action(found));
     }
     let telling = found.location.regions.first().filter(|region| region.is_telling());
     let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
@@ -228,7 +221,8 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
         String::new()
     };
     Some(format!(
-        "Held-out error {} -> {} on {} rows that took no part in fitting and could only withdraw a finding (ratio {}{interval}).",
+        "Held-out error {} -> {} on {} rows that took no part in fitting and could only withdraw a finding \
+         (ratio {}{interval}).",
         digits(proof.baseline_rmse),
         quantity(proof.improved_rmse, units.actuator),
         proof.rows,

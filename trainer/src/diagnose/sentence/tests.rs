@@ -101,8 +101,8 @@ fn a_finding_reads_as_a_sentence() {
     );
     assert_eq!(
         story.proof.unwrap(),
-        "Held-out error 0.92 -> 0.41 N m on 300 rows that took no part in fitting and could only withdraw a finding (ratio 0.446, 95 % \
-         interval 0.4 to 0.5)."
+        "Held-out error 0.92 -> 0.41 N m on 300 rows that took no part in fitting and could only withdraw a finding \
+         (ratio 0.446, 95 % interval 0.4 to 0.5)."
     );
     assert!(story.withdrawn.unwrap().contains("spring"));
     assert!(story.minor.unwrap().contains("4.2 %"));
