@@ -4,7 +4,7 @@ use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::linear::{least_squares, residual};
 use super::prepare::Prepared;
 use super::signals::Signals;
-use crate::physics::EffectId;
+use crate::physics::{EffectId, quantile};
 use serde::Serialize;
 
 /// A note on the measurement chain.
@@ -48,14 +48,13 @@ pub fn examine(signals: &Signals) -> Vec<HealthNote> {
 
 /// Torque steps of more than the noise hide what happens between them.
 fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
-    let mut steps: Vec<f64> =
+    let steps: Vec<f64> =
         signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
-    let changes = steps.len();
-    let typical = median(&mut steps)?;
+    let typical = quantile(steps.iter().copied(), 0.5);
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
-    let spread = crate::physics::quantile(signals.torque.iter().map(|t| t.abs()), 0.9);
+    let spread = quantile(signals.torque.iter().map(|t| t.abs()), 0.9);
     // Most changes are a single step, and the step is a sizeable share of the torque.
-    let coarse = typical < 1.5 * smallest && smallest > COARSE_TORQUE_SHARE * spread && changes > 20;
+    let coarse = typical < 1.5 * smallest && smallest > COARSE_TORQUE_SHARE * spread && steps.len() > 20;
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,
@@ -77,11 +76,6 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
     })
 }
 
-fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
 fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
     let top = signals.torque.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let at_top = signals.torque.iter().filter(|t| t.abs() >= top * (1.0 - 1e-6)).count();
@@ -96,7 +90,7 @@ fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
 /// Fits scale x rigid body (or inertia) with Coulomb, viscous and offset: friction that drives the joint, a negative
 /// inertia or a scale near a unit's factor betray a wrong sign or unit.
 fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
-    if signals.velocity.is_some() || signals.period <= 0.0 {
+    if signals.period <= 0.0 {
         return None;
     }
     let cut_off = (0.05 / signals.period).min(15.0);

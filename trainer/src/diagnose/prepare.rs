@@ -171,14 +171,8 @@ impl Motion {
     fn behind(filter: &ZeroPhase, signals: &Signals) -> Self {
         let (period, segments) = (signals.period, &signals.segments);
         let position = filter.over(&signals.position, segments);
-        let (velocity, acceleration) = match &signals.velocity {
-            Some(recorded) => {
-                let velocity = filter.over(recorded, segments);
-                let acceleration = first_derivative(&velocity, segments, period);
-                (velocity, acceleration)
-            }
-            None => (first_derivative(&position, segments, period), second_derivative(&position, segments, period)),
-        };
+        let velocity = first_derivative(&position, segments, period);
+        let acceleration = second_derivative(&position, segments, period);
         Self { position, velocity, acceleration }
     }
 }
@@ -237,7 +231,7 @@ fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
 
 /// Whether encoder noise, through the inertia, stays small against what the simplest model leaves.
 fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
-    if signals.position_resolution <= 0.0 || signals.velocity.is_some() {
+    if signals.position_resolution <= 0.0 {
         return true;
     }
     let state = &prepared.state;

@@ -16,8 +16,6 @@ pub struct Signals {
     pub time: Vec<f64>,
     /// Position in rad or m.
     pub position: Vec<f64>,
-    /// Recorded velocity, where the recording has no position.
-    pub velocity: Option<Vec<f64>>,
     /// Actuator torque (N m, N or A).
     pub torque: Vec<f64>,
     /// Torque of the nominal rigid body, where one is given.

@@ -138,7 +138,6 @@ impl<'a> Future<'a> {
                 series.extend_from_slice(with);
             }
         };
-        extend(&mut signals.velocity, &velocity);
         extend(&mut signals.rigid_body, &body);
         extend(&mut signals.load, &load);
         extend(&mut signals.link_position, position);
