@@ -1,12 +1,12 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
 use super::candidates::{Label, ridge_of};
-use super::linear::{dot, invert_symmetric, least_squares, residual, ridged_gram, weighted};
+use super::covariance;
+use super::linear::{dot, least_squares, residual, weighted};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search, others};
 use crate::physics::{Dimension, Shape};
-use std::ops::Range;
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -77,13 +77,9 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
     }
 }
 
-/// Standard deviations of the parameters over those of linear theory, found on simulated recordings of other seeds than the
-/// report's: what choosing the effect and its shape by the same rows adds.
-const BEYOND_THEORY: f64 = 1.08;
-
 /// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left
-/// (plain ones where whitening costs too much of the fit); the shapes' uncertainty by Gauss-Newton. `None` where the system
-/// is singular.
+/// (plain ones where whitening costs too much of the fit, with intervals from block to block); the shapes' uncertainty by
+/// Gauss-Newton. `None` where the system is singular.
 pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let base_width = search.base.columns.len();
     let mut columns = search.base.columns.clone();
@@ -98,15 +94,15 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     }
     let noise = search.noise_after(&columns);
     let bench = search.bench(columns.clone(), &noise);
-    let (mut solution, covariance) = bench.solve(&ridge)?;
+    let runs = bench.runs();
+    let mut solution = bench.solve(&ridge)?;
     let white = residual(&bench.base, &bench.target, &solution);
-    let long_run_variance = long_run_variance(&white, &bench.runs());
-    let runs = search.prepared.open_runs();
-    let left = residual(&columns, &search.base.target, &solution);
+    let mut left = residual(&columns, &search.base.target, &solution);
     let rows: usize = runs.iter().map(|run| run.len()).sum();
     let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > WHITENING_COSTS * noise.rms;
     if plain {
         solution = least_squares(&columns, &search.base.target, &runs)?;
+        left = residual(&columns, &search.base.target, &solution);
     }
     let mut effects: Vec<Fitted> = accepted
         .iter()
@@ -119,19 +115,21 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
             deviation: Vec::new(),
         })
         .collect();
+    let covariance_with = |tangents: &[Vec<f64>]| {
+        if plain {
+            let all: Vec<Vec<f64>> = columns.iter().chain(tangents).cloned().collect();
+            covariance::of_blocks(&all, &left, &bench.blocks)
+        } else {
+            let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(search.whitened(tangents, &noise)).collect();
+            covariance::of_whitened(&all, &white, &ridge, &runs)
+        }
+    };
     // Shapes that were fitted too make every interval wider: their tangents join the normal matrix (Gauss-Newton).
     let (owners, tangents) = shape_tangents(search, &effects);
-    let widened = if tangents.is_empty() {
-        None
-    } else {
-        let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(search.whitened(&tangents, &noise)).collect();
-        invert_symmetric(&ridged_gram(&all, &ridge, &runs))
-    };
-    let (covariance, owners) = match widened {
+    let (covariance, owners) = match covariance_with(&tangents) {
         Some(widened) => (widened, owners),
-        None => (covariance, Vec::new()),
+        None => (covariance_with(&[])?, Vec::new()),
     };
-    let covariance = covariance * long_run_variance * BEYOND_THEORY * BEYOND_THEORY;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     for (effect, place) in effects.iter_mut().zip(places) {
         effect.deviation = place.map(deviation).collect();
@@ -146,22 +144,6 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
         noise,
         plain,
     })
-}
-
-/// Variance of a slow sum of what whitening leaves over that of as many independent rows (Newey and West 1987), at least one:
-/// the slow colour that it does not remove.
-fn long_run_variance(white: &[f64], runs: &[Range<usize>]) -> f64 {
-    const LAGS: usize = 16;
-    let lagged = |lag: usize| -> f64 {
-        runs.iter()
-            .map(|run| &white[run.clone()])
-            .flat_map(|run| run.iter().zip(run.iter().skip(lag)))
-            .map(|(a, b)| a * b)
-            .sum()
-    };
-    let weight = |lag: usize| 2.0 * (1.0 - lag as f64 / (LAGS + 1) as f64);
-    let slow: f64 = (1..=LAGS).map(|lag| weight(lag) * lagged(lag)).sum();
-    (1.0 + slow / lagged(0).max(f64::MIN_POSITIVE)).max(1.0)
 }
 
 /// Filtered base columns with those of accepted effects, shapes as they stand, without tangents.
@@ -208,28 +190,5 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
         Dimension::TorquePerVelocitySquared => format!("{actuator} s2/{position}2"),
         Dimension::Order => if rotary { "1/turn" } else { "rad/m" }.to_string(),
         Dimension::One => "1".to_string(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::random::normal;
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::SeedableRng;
-
-    #[test]
-    fn slow_colour_widens_the_intervals_and_white_noise_does_not() {
-        let mut random = ChaCha8Rng::seed_from_u64(4);
-        let (runs, mut last) = ([0..6_000, 6_000..20_000], 0.0);
-        let white: Vec<f64> = (0..20_000).map(|_| normal(&mut random)).collect();
-        let colour = |e: &f64| {
-            last = 0.3 * last + e;
-            last
-        };
-        let coloured: Vec<f64> = white.iter().map(colour).collect();
-        assert!(long_run_variance(&white, &runs) < 1.1);
-        let expected = (1.0 + 0.3) / (1.0 - 0.3);
-        assert!((long_run_variance(&coloured, &runs) / expected - 1.0).abs() < 0.15);
     }
 }

@@ -7,7 +7,7 @@ use crate::physics::EffectId;
 /// report's.
 const ALONE: f64 = 0.98;
 /// The same where the next name stands closer than [`CLEAR_NATS`].
-const NARROWLY_ALONE: f64 = 0.91;
+const NARROWLY_ALONE: f64 = 0.95;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
 const BESIDE_FAR_RIVALS: f64 = 0.81;
 /// The same beside a nearer rival.

@@ -1,6 +1,6 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
-use super::linear::{Factored, dot, gram, invert_symmetric, ridged_gram, solve_symmetric, unit_diagonal};
+use super::linear::{Factored, dot, gram, ridged_gram, solve_symmetric, unit_diagonal};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -175,14 +175,12 @@ impl Bench {
         (energy > 0.0).then_some(energy)
     }
 
-    /// Coefficients of the base with their covariance. `ridge` as in [`Self::weigh`], one a base column.
-    pub fn solve(&self, ridge: &[f64]) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    /// Coefficients of the base. `ridge` as in [`Self::weigh`], one a base column.
+    pub fn solve(&self, ridge: &[f64]) -> Option<Vec<f64>> {
         let runs = self.runs();
         let normal = ridged_gram(&self.base, ridge, &runs);
         let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, &self.target, &runs)));
-        let solution = solve_symmetric(&normal, &right)?;
-        let covariance = invert_symmetric(&normal)?;
-        Some((solution.iter().copied().collect(), covariance))
+        Some(solve_symmetric(&normal, &right)?.iter().copied().collect())
     }
 }
 

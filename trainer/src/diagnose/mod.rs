@@ -12,6 +12,7 @@ mod channel;
 mod choice;
 mod conclude;
 mod confidence;
+mod covariance;
 mod evidence;
 mod filter;
 mod findings;

@@ -42,7 +42,7 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
     let bare: Vec<f64> = base.target.iter().zip(&filtered).map(|(t, f)| t - f).collect();
     let without = Bench::new(whitened.base.clone(), white(&bare), whitened.blocks.clone());
-    let rest_without = residual(&base.columns, &bare, &without.solve(&[])?.0);
+    let rest_without = residual(&base.columns, &bare, &without.solve(&[])?);
     let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
     let rows: usize = runs.iter().map(|run| run.len()).sum();
