@@ -44,8 +44,15 @@ impl Family {
     }
 }
 
-/// Orthonormal directions of each variant of each group, with the base projected out.
-pub(crate) type Directions = Vec<Vec<Vec<Vec<f64>>>>;
+/// What the null draws know of a hypothesis.
+pub(crate) struct NullGroup {
+    /// Its family.
+    pub family: Family,
+    /// Whether its coefficients may only be positive.
+    pub only_positive: bool,
+    /// Orthonormal directions of each of its variants, with the base projected out; that of a single column has its sign.
+    pub variants: Vec<Vec<Vec<f64>>>,
+}
 
 /// -log of the upper tail of chi-square.
 pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
@@ -63,16 +70,8 @@ pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
 }
 
 impl NullDraws {
-    /// Draws the null `count` times; `families` and `directions` have one entry a group. `residual` is whitened, what the base and
-    /// the clear candidates leave.
-    pub fn draw(
-        directions: &Directions,
-        families: Vec<Family>,
-        residual: &[f64],
-        runs: &[Range<usize>],
-        count: usize,
-        seed: u64,
-    ) -> Self {
+    /// Draws the null `count` times. `residual` is whitened, what the base and the clear candidates leave.
+    pub(crate) fn draw(groups: &[NullGroup], residual: &[f64], runs: &[Range<usize>], count: usize, seed: u64) -> Self {
         let rows: usize = runs.iter().map(|run| run.len()).sum();
         let gather =
             |column: &[f64]| -> Vec<f64> { runs.iter().flat_map(|run| column[run.clone()].iter().copied()).collect() };
@@ -83,10 +82,9 @@ impl NullDraws {
             .map(|_| (0..rows.div_ceil(BLOCK_ROWS)).map(|_| Block::draw(&mut random, rows)).collect())
             .collect();
         // One group after the other, so that only one group's directions and draws are held at a time.
-        let surprises: Vec<Vec<f64>> = directions
+        let surprises: Vec<Vec<f64>> = groups
             .par_iter()
-            .zip(&families)
-            .map(|(variants, family)| {
+            .map(|NullGroup { family, only_positive, variants }| {
                 let variants: Vec<Vec<Vec<f64>>> =
                     variants.iter().map(|variant| variant.iter().map(|d| gather(d)).collect()).collect();
                 // What a named effect explains is its evidence and no measure of its chance (ter Braak 1992). A series of a dozen
@@ -101,9 +99,10 @@ impl NullDraws {
                 }
                 // The directions are free of the base, so that what a draw has of it does not count.
                 let values = draws.iter().flat_map(|blocks| resample(&pool, blocks)).collect();
-                largest_surprises(&variants, &DMatrix::from_vec(rows, count, values))
+                largest_surprises(&variants, *only_positive, &DMatrix::from_vec(rows, count, values))
             })
             .collect();
+        let families: Vec<Family> = groups.iter().map(|group| group.family).collect();
         let tails: Vec<(f64, f64)> = surprises.iter().map(|values| gumbel(values)).collect();
         // min-p over a family: 1 - (1 - p)^K with K fitted to the draws.
         let effective = [Family::Named, Family::Generic].map(|family| {
@@ -159,16 +158,21 @@ fn strongest<'v>(variants: &'v [Vec<Vec<f64>>], residual: &[f64]) -> Option<&'v 
     surprising.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, variant)| variant)
 }
 
-/// The largest surprise among the variants of a group, for each draw (a column).
-fn largest_surprises(variants: &[Vec<Vec<f64>>], draws: &DMatrix<f64>) -> Vec<f64> {
+/// The largest surprise among the variants of a group, for each draw (a column). A single coefficient of an impossible sign is none;
+/// several count with any sign, which errs on the side of caution.
+fn largest_surprises(variants: &[Vec<Vec<f64>>], only_positive: bool, draws: &DMatrix<f64>) -> Vec<f64> {
     let flat: Vec<&Vec<f64>> = variants.iter().flatten().collect();
     let shares = DMatrix::from_fn(flat.len(), draws.nrows(), |i, j| flat[i][j]) * draws;
     let largest = |draw: usize| {
         let mut row = 0;
         let mut largest = 0.0f64;
         for variant in variants {
-            let energy: f64 = (row..row + variant.len()).map(|i| shares[(i, draw)].powi(2)).sum();
+            let of_variant = shares.view((row, draw), (variant.len(), 1));
             row += variant.len();
+            if only_positive && variant.len() == 1 && of_variant[0] < 0.0 {
+                continue;
+            }
+            let energy = of_variant.norm_squared();
             largest = largest.max(chi_square_surprise(energy, variant.len()));
         }
         largest
@@ -195,6 +199,25 @@ mod tests {
     use super::*;
     use crate::diagnose::random::normal;
 
+    fn named(direction: &[f64], only_positive: bool) -> NullGroup {
+        NullGroup { family: Family::Named, only_positive, variants: vec![vec![direction.to_vec()]] }
+    }
+
+    #[test]
+    fn what_can_have_one_sign_alone_is_half_as_likely_by_chance() {
+        let rows = 4_000;
+        let mut random = ChaCha8Rng::seed_from_u64(8);
+        let noise: Vec<f64> = (0..rows).map(|_| normal(&mut random)).collect();
+        let direction = vec![(rows as f64).powf(-0.5); rows];
+        let runs = std::iter::once(0..rows).collect::<Vec<_>>();
+        let chance = |only_positive: bool| {
+            let null = NullDraws::draw(&[named(&direction, only_positive)], &noise, &runs, 400, 1);
+            null.family_wise(0, chi_square_surprise(12.0, 1))
+        };
+        let ratio = chance(true) / chance(false);
+        assert!((0.35..0.7).contains(&ratio), "{ratio}");
+    }
+
     #[test]
     fn what_a_direction_explains_does_not_widen_its_own_null() {
         let rows = 2_000;
@@ -203,9 +226,9 @@ mod tests {
         let direction = vec![(rows as f64).powf(-0.5); rows];
         let chance = |effect: f64| {
             let residual: Vec<f64> = noise.iter().zip(&direction).map(|(e, d)| e + effect * d).collect();
-            let directions = vec![vec![vec![direction.clone()]]];
+            let group = named(&direction, false);
             let runs = std::iter::once(0..rows).collect::<Vec<_>>();
-            let null = NullDraws::draw(&directions, vec![Family::Named], &residual, &runs, 200, 1);
+            let null = NullDraws::draw(&[group], &residual, &runs, 200, 1);
             null.family_wise(0, chi_square_surprise(25.0, 1))
         };
         let (with, without) = (chance(5.0), chance(0.0));
@@ -232,8 +255,8 @@ mod tests {
                 })
                 .collect();
             let energy: f64 = series.iter().map(|d| dot(d, &noise, &runs).powi(2)).sum();
-            let directions = vec![vec![series.clone()]];
-            let null = NullDraws::draw(&directions, vec![Family::Generic], &noise, &runs, 60, seed);
+            let group = NullGroup { family: Family::Generic, only_positive: false, variants: vec![series.clone()] };
+            let null = NullDraws::draw(&[group], &noise, &runs, 60, seed);
             tail_probability(chi_square_surprise(energy, series.len()), null.tails[0]) < 0.03
         };
         let alarms = (0..40).filter(|seed| is_surprising(*seed)).count();

@@ -1,10 +1,10 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
-use super::candidates::{Group, Label, ridge_of};
+use super::candidates::{Group, Label, Variant, ridge_of};
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};
 use super::linear::{orthonormal, project_out};
 use super::noise::Noise;
-use super::null::{Directions, Family, NullDraws, chi_square_surprise};
+use super::null::{Family, NullDraws, NullGroup, chi_square_surprise};
 use super::refine::refine;
 use super::search::{Accepted, Search};
 use super::settings::Settings;
@@ -91,40 +91,34 @@ impl<'s, 'a> Round<'s, 'a> {
         let best = best_two(self.search, &self.variants, self.bench.rows(), CLEAR_NATS);
         let runs = self.bench.runs();
         let base_directions = orthonormal(&self.bench.base, &runs);
-        let directions: Directions = self
-            .search
-            .design
-            .groups
-            .par_iter()
-            .zip(&self.variants)
-            .map(|(group, tested)| {
-                group
-                    .variants
-                    .iter()
-                    .zip(tested)
-                    .filter(|(variant, evidence)| {
-                        evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty()
-                    })
-                    .map(|(variant, _)| {
-                        let mut columns = self.white[variant.columns.clone()].to_vec();
-                        columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
-                        orthonormal(&columns, &runs)
-                    })
-                    .collect()
-            })
-            .collect();
+        let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
+            let weighed =
+                group.variants.iter().zip(evidence).filter(|(variant, evidence)| {
+                    evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty()
+                });
+            let directions = |variant: &Variant| {
+                let mut columns = self.white[variant.columns.clone()].to_vec();
+                columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
+                orthonormal(&columns, &runs)
+            };
+            NullGroup {
+                family: match group.label {
+                    Label::Named(_) => Family::Named,
+                    Label::Generic(_) => Family::Generic,
+                },
+                only_positive: self.search.only_positive(&group.label),
+                variants: weighed.map(|(variant, _)| directions(variant)).collect(),
+            }
+        };
+        let groups: Vec<NullGroup> =
+            self.search.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
         let mut rest = self.bench.target.clone();
         project_out(&mut rest, &base_directions, &runs);
         let mut extended = base_directions.clone();
         extended.extend(self.search.whitened(&best, &self.noise));
         project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
-        let family = |group: &Group| match group.label {
-            Label::Named(_) => Family::Named,
-            Label::Generic(_) => Family::Generic,
-        };
-        let families = self.search.design.groups.iter().map(family).collect();
         let Settings { null_draws, seed, .. } = self.search.settings;
-        NullDraws::draw(&directions, families, &rest, &runs, null_draws, seed)
+        NullDraws::draw(&groups, &rest, &runs, null_draws, seed)
     }
 
     pub(crate) fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {

@@ -109,13 +109,17 @@ impl<'a> Search<'a> {
         self.hypotheses.iter().find(|h| h.id() == effect).map(|h| h.as_ref() as &dyn Hypothesis)
     }
 
-    /// Whether a label can have these coefficients: all positive, where an effect cannot turn its sign.
-    pub(crate) fn is_possible(&self, label: &Label, coefficients: &[f64]) -> bool {
-        let only_positive = match label {
+    /// Whether the coefficients of a label may only be positive, because the effect cannot turn its sign.
+    pub(crate) fn only_positive(&self, label: &Label) -> bool {
+        match label {
             Label::Named(effect) => self.hypothesis(*effect).is_some_and(Hypothesis::only_positive),
             Label::Generic(_) => false,
-        };
-        !only_positive || coefficients.iter().all(|c| *c > 0.0)
+        }
+    }
+
+    /// Whether a label can have these coefficients.
+    pub(crate) fn is_possible(&self, label: &Label, coefficients: &[f64]) -> bool {
+        !self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)
     }
 
     /// Unfiltered columns of a label and shape.
