@@ -58,6 +58,11 @@ impl Row {
         matches!(self.case.hidden, Hidden::Effect(_, wanted) | Hidden::Pair(_, _, wanted) if wanted >= 50.0)
     }
 
+    /// Whether a one-off event was hidden.
+    pub fn is_one_off(&self) -> bool {
+        matches!(self.case.hidden, Hidden::Effect("transient_event", _))
+    }
+
     /// Whether the first name is the hidden effect.
     pub fn first_is_right(&self) -> bool {
         self.findings.first().is_some_and(|(effect, _, _)| self.truths().first().is_some_and(|t| *t == effect.name()))
