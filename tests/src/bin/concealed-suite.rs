@@ -35,10 +35,12 @@ struct Arguments {
     /// Only effects of these names.
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Runs of each effect when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law; at the last
-    /// strength.
+    /// Runs of each effect when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law.
     #[arg(long, default_value_t = 0)]
     bases: u64,
+    /// Non-centralities of those.
+    #[arg(long, value_delimiter = ',', default_value = "80")]
+    base_strengths: Vec<f64>,
     /// Seeds of the other trajectories of the same joint; the confounded and the real recordings go with them.
     #[arg(long, default_value_t = 0)]
     afterwards: u64,
@@ -124,9 +126,9 @@ fn cases(arguments: &Arguments) -> Vec<Case> {
         cases.extend((0..count).map(|_| Case { hidden: hidden.clone(), noise, base, seed: 0 }));
     };
     let plain = BaseKind::CoulombViscous;
-    let last = *arguments.strengths.last().unwrap_or(&80.0);
     let to_conceal = arguments.strengths.iter().map(|strength| (plain, *strength, arguments.seeds));
-    let other_bases = [BaseKind::Spline, BaseKind::Reference].map(|base| (base, last, arguments.bases));
+    let of_base = |base| arguments.base_strengths.iter().map(move |strength| (base, *strength, arguments.bases));
+    let other_bases = [BaseKind::Spline, BaseKind::Reference].into_iter().flat_map(of_base);
     for (base, strength, count) in to_conceal.chain(other_bases) {
         let effects = CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
         // A base that holds the effect misses nothing.
