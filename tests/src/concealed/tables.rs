@@ -70,6 +70,9 @@ fn doubles(rows: &[Row]) -> impl Iterator<Item = &Row> {
     rows.iter().filter(|r| matches!(r.case.hidden, Hidden::Pair(..)))
 }
 
+/// Non-centralities of a weak effect.
+const WEAK: (f64, f64) = (15.0, 30.0);
+
 fn by_strength(rows: &[Row], base: BaseKind, text: &mut String) {
     let own: Vec<&Row> = singles(rows).filter(|row| row.case.base == base).collect();
     if own.is_empty() {
@@ -103,11 +106,12 @@ fn by_strength(rows: &[Row], base: BaseKind, text: &mut String) {
             share(count(&Row::wrongly_named), bin.len()),
         );
     };
-    for (low, high) in [(0.0, 15.0), (15.0, 30.0), (30.0, 50.0), (50.0, 120.0), (120.0, 1e9), (50.0, 1e9)] {
+    for (low, high) in [(0.0, 15.0), WEAK, (30.0, 50.0), (50.0, 120.0), (120.0, 1e9), (50.0, 1e9)] {
         let end = if high > 1e8 { String::new() } else { format!("{high:.0}") };
-        line(format!("{low:.0}-{end}"), within(low, high).copied().collect());
-        if low == 15.0 {
-            line("15-30, what lasts".into(), within(low, high).filter(|r| !r.is_one_off()).copied().collect());
+        let name = format!("{low:.0}-{end}");
+        line(name.clone(), within(low, high).copied().collect());
+        if (low, high) == WEAK {
+            line(format!("{name}, what lasts"), within(low, high).filter(|r| !r.is_one_off()).copied().collect());
         }
     }
 }

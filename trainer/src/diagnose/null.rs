@@ -203,12 +203,16 @@ mod tests {
         NullGroup { family: Family::Named, only_positive, variants: vec![vec![direction.to_vec()]] }
     }
 
+    /// White noise, and a constant direction of as many rows.
+    fn noise_and_direction(rows: usize, seed: u64) -> (Vec<f64>, Vec<f64>) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        ((0..rows).map(|_| normal(&mut random)).collect(), vec![(rows as f64).powf(-0.5); rows])
+    }
+
     #[test]
     fn what_can_have_one_sign_alone_is_half_as_likely_by_chance() {
         let rows = 4_000;
-        let mut random = ChaCha8Rng::seed_from_u64(8);
-        let noise: Vec<f64> = (0..rows).map(|_| normal(&mut random)).collect();
-        let direction = vec![(rows as f64).powf(-0.5); rows];
+        let (noise, direction) = noise_and_direction(rows, 8);
         let runs = std::iter::once(0..rows).collect::<Vec<_>>();
         let chance = |only_positive: bool| {
             let null = NullDraws::draw(&[named(&direction, only_positive)], &noise, &runs, 400, 1);
@@ -221,9 +225,7 @@ mod tests {
     #[test]
     fn what_a_direction_explains_does_not_widen_its_own_null() {
         let rows = 2_000;
-        let mut random = ChaCha8Rng::seed_from_u64(3);
-        let noise: Vec<f64> = (0..rows).map(|_| normal(&mut random)).collect();
-        let direction = vec![(rows as f64).powf(-0.5); rows];
+        let (noise, direction) = noise_and_direction(rows, 3);
         let chance = |effect: f64| {
             let residual: Vec<f64> = noise.iter().zip(&direction).map(|(e, d)| e + effect * d).collect();
             let group = named(&direction, false);
