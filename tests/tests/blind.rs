@@ -78,6 +78,21 @@ fn where_nothing_is_missing_nothing_is_named() {
 }
 
 /// A power of the velocity near one takes the place of viscous friction: its free exponent leaves the coefficient open.
+/// The spline was once straight in the root of the speed, and a law as sharp as a step missed every reversal by a sample.
+#[test]
+fn the_form_of_a_base_is_not_taken_for_physics() {
+    let [spline, law] = [BaseKind::Spline, BaseKind::Reference];
+    for (noise, base, seed) in [
+        (NoiseKind::White, spline, 68_000_012),
+        (NoiseKind::CoarseEncoder, spline, 68_000_062),
+        (NoiseKind::White, law, 68_000_007),
+        (NoiseKind::Coloured, law, 68_000_016),
+    ] {
+        let outcome = run(&Case { base, ..control(noise, seed) }).unwrap();
+        assert_eq!(outcome.named(), [], "{base:?} {seed}");
+    }
+}
+
 #[test]
 fn a_base_parameter_has_the_uncertainty_of_the_shape_that_it_trades_with() {
     let held = held(&hidden("viscous_nonlinearity", 80.0, 73_000_002));

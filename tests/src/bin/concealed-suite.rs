@@ -17,6 +17,9 @@ struct Arguments {
     /// Controls of each of the five kinds.
     #[arg(long, default_value_t = 4)]
     controls: u64,
+    /// Controls of each kind when the diagnosis starts from a spline of nine coefficients, and from a Stribeck law.
+    #[arg(long, default_value_t = 0)]
+    base_controls: u64,
     /// Runs of each effect and strength.
     #[arg(long, default_value_t = 1)]
     seeds: u64,
@@ -128,16 +131,17 @@ fn cases(arguments: &Arguments) -> Vec<Case> {
     let plain = BaseKind::CoulombViscous;
     let to_conceal = arguments.strengths.iter().map(|strength| (plain, *strength, arguments.seeds));
     let of_base = |base| arguments.base_strengths.iter().map(move |strength| (base, *strength, arguments.bases));
-    let other_bases = [BaseKind::Spline, BaseKind::Reference].into_iter().flat_map(of_base);
-    for (base, strength, count) in to_conceal.chain(other_bases) {
+    let others = [BaseKind::Spline, BaseKind::Reference];
+    for (base, strength, count) in to_conceal.chain(others.into_iter().flat_map(of_base)) {
         let effects = CATALOGUE.iter().filter(|entry| entry.name != "clock_gaps" && wanted(entry.name));
         // A base that holds the effect misses nothing.
         for entry in effects.filter(|entry| base == plain || entry.name != "stribeck") {
             add(Hidden::Effect(entry.name, strength), NoiseKind::Coloured, base, count);
         }
     }
-    for noise in NoiseKind::ALL {
-        add(Hidden::Nothing, noise, plain, arguments.controls);
+    let of_others = others.map(|base| (base, arguments.base_controls));
+    for (base, count) in std::iter::once((plain, arguments.controls)).chain(of_others) {
+        NoiseKind::ALL.into_iter().for_each(|noise| add(Hidden::Nothing, noise, base, count));
     }
     for entry in OUTSIDE.iter().filter(|entry| wanted(entry.name)) {
         add(Hidden::Effect(entry.name, 80.0), NoiseKind::Coloured, plain, arguments.outside);

@@ -4,6 +4,7 @@
 
 pub mod advised;
 pub mod afterwards;
+pub mod false_alarms;
 pub mod intervals;
 pub mod semi_real;
 pub mod summary;

@@ -5,6 +5,18 @@ use super::{Case, Hidden, Outcome};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::physics::EffectId;
 
+/// The models that a diagnosis may start from.
+pub const BASES: [BaseKind; 3] = [BaseKind::CoulombViscous, BaseKind::Spline, BaseKind::Reference];
+
+/// A base model in words.
+pub fn base_name(base: BaseKind) -> &'static str {
+    match base {
+        BaseKind::CoulombViscous => "Coulomb and viscous friction",
+        BaseKind::Spline => "a spline of nine coefficients",
+        BaseKind::Reference => "a Stribeck law fitted to the recording",
+    }
+}
+
 /// What is kept of an outcome.
 #[derive(Clone, Debug)]
 pub struct Row {

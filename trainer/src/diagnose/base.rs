@@ -47,18 +47,18 @@ pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed
     }
 }
 
-/// Hat functions over speed as a share of the top speed, knots by a square law: dense at low speed, where friction
-/// bends. The last two continue beyond the top speed, which only most samples stay below.
+/// Hat functions over speed as a share of the top speed, linear between knots by a square law: dense at low speed, where
+/// friction bends, and exact for Coulomb and viscous friction. The last two continue beyond the top speed, which only most
+/// samples stay below.
 pub(super) fn speed_hats(share: f64, knots: usize) -> impl Iterator<Item = f64> {
-    let last = (knots - 1) as f64;
-    let place = share.sqrt() * last;
-    (0..knots).map(move |j| {
-        let distance = place - j as f64;
-        match (place > last, knots - j) {
-            (true, 1) => 1.0 + distance,
-            (true, 2) => 1.0 - distance,
-            _ => (1.0 - distance.abs()).max(0.0),
-        }
+    let last = knots - 1;
+    let knot = move |j: usize| (j as f64 / last as f64).powi(2);
+    let after = ((share.sqrt() * last as f64) as usize + 1).min(last);
+    let rise = (share - knot(after - 1)) / (knot(after) - knot(after - 1));
+    (0..knots).map(move |j| match after.checked_sub(j) {
+        Some(0) => rise,
+        Some(1) => 1.0 - rise,
+        _ => 0.0,
     })
 }
 
@@ -72,6 +72,9 @@ impl Base {
         let runs = prepared.open_runs();
         let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
         columns.extend(nuisances(prepared));
+        if kind == BaseKind::Reference {
+            columns.push(sharpness(prepared));
+        }
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, signals, kind, &raw, &coefficients);
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
@@ -121,6 +124,13 @@ pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }
 
+/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
+/// between its sign and the smoothed one is a nuisance too.
+fn sharpness(prepared: &Prepared) -> Vec<f64> {
+    let state = &prepared.state;
+    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
+}
+
 fn predict(
     prepared: &mut Prepared,
     signals: &Signals,
@@ -146,4 +156,19 @@ fn predict(
     } else {
         signals.reference_friction.clone()
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spline_holds_coulomb_and_viscous_friction_exactly() {
+        let (knots, top_speed) = (9, 3.0);
+        let at_knots: Vec<f64> = (0..knots).map(|j| 2.0 + 1.2 * top_speed * (j as f64 / 8.0).powi(2)).collect();
+        for speed in [0.0, 1e-9, 0.02, 0.4, 0.75, 2.9, 3.0, 3.3, 9.0] {
+            let torque: f64 = speed_hats(speed / top_speed, knots).zip(&at_knots).map(|(hat, f)| hat * f).sum();
+            assert!((torque - (2.0 + 1.2 * speed)).abs() < 1e-9, "{torque} at {speed}");
+        }
+    }
 }
