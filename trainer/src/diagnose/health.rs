@@ -87,7 +87,7 @@ fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
     })
 }
 
-/// Fits scale x rigid body (or inertia) with Coulomb, viscous and offset: friction that drives the joint, a negative
+/// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a negative
 /// inertia or a scale near a unit's factor betray a wrong sign or unit.
 fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     if signals.period <= 0.0 {
@@ -112,18 +112,18 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
         .collect();
     // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
     let smooth = |series: &[f64]| filter.over(series, segments);
-    let known = signals.known_torque();
     let mut bodies: Vec<(&str, Vec<f64>)> =
-        match (known, signals.load.as_ref().filter(|_| signals.rigid_body.is_some())) {
-            (Some(body), Some(load)) => {
+        match (signals.reference_torque.as_ref(), signals.rigid_body.as_ref(), signals.load.as_ref()) {
+            (Some(reference), _, _) => vec![("torque of the model", smooth(reference))],
+            (None, Some(body), Some(load)) => {
                 let inertial: Vec<f64> = body.iter().zip(load).map(|(b, l)| b - l).collect();
                 vec![("inertial torque", smooth(&inertial)), ("load torque", smooth(load))]
             }
-            (Some(body), None) => vec![("rigid-body torque", smooth(body))],
-            (None, _) => vec![("acceleration", acceleration)],
+            (None, Some(body), None) => vec![("rigid-body torque", smooth(body))],
+            (None, None, _) => vec![("acceleration", acceleration)],
         };
     bodies.retain(|(_, column)| column.iter().any(|v| *v != 0.0));
-    let given = known.is_some();
+    let given = signals.known_torque().is_some();
     let mut columns: Vec<Vec<f64>> = bodies.iter().map(|(_, column)| column.clone()).collect();
     let friction = columns.len();
     columns.extend([sign, velocity, vec![1.0; position.len()]]);
@@ -136,7 +136,9 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     }
     let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
     let wrong = |sentence: String| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, sentence });
-    if coefficients[friction] < 0.0 && share(friction) > 0.1 {
+    // A reference holds friction of its own, and what it has too much of comes out negative.
+    let drives = signals.reference_torque.is_none() && coefficients[friction] < 0.0;
+    if drives && share(friction) > 0.1 {
         return wrong("friction comes out as driving the joint: torque and motion have opposite signs".into());
     }
     for (column, (name, _)) in bodies.iter().enumerate().filter(|(column, _)| share(*column) > 0.1) {
