@@ -2,7 +2,8 @@
 
 use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, run, set_of, signals};
-use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
+use frikan_trainer::diagnose::simulation::learn;
+use frikan_trainer::diagnose::{BaseKind, Lock, Options, Settings, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
 use rayon::prelude::*;
@@ -77,7 +78,28 @@ fn where_nothing_is_missing_nothing_is_named() {
     });
 }
 
-/// A power of the velocity near one takes the place of viscous friction: its free exponent leaves the coefficient open.
+/// What the noise of a simulation left uncertain in its law is the law's error and nothing that the real joint has.
+#[test]
+fn a_noisy_simulation_is_not_taken_at_its_word() {
+    let seeds = [
+        (NoiseKind::Coloured, 71_100_018),
+        (NoiseKind::StateDependent, 71_100_022),
+        (NoiseKind::CoarseEncoder, 71_100_039),
+    ];
+    for (noise, seed) in seeds {
+        let real = conceal(&control(noise, seed)).unwrap();
+        let simulated = conceal(&control(noise, seed + 5_000_000)).unwrap();
+        let [mut real, simulated] = [real, simulated].map(|made| signals(&made.recording, &made.joint));
+        let law = learn(&simulated, true).unwrap();
+        real.compare_with(law.at(&real.states()));
+        let settings = Settings { seed, ..Settings::default() };
+        let options = Options { base: BaseKind::Reference, settings, ..Options::default() };
+        let named: Vec<EffectId> =
+            diagnose(&real, "N m", &options).unwrap().findings.iter().map(|finding| finding.effect).collect();
+        assert_eq!(named, [], "{noise:?}, seed {seed}");
+    }
+}
+
 /// The spline was once straight in the root of the speed, and a law as sharp as a step missed every reversal by a sample.
 #[test]
 fn the_form_of_a_base_is_not_taken_for_physics() {
@@ -93,6 +115,7 @@ fn the_form_of_a_base_is_not_taken_for_physics() {
     }
 }
 
+/// A power of the velocity near one takes the place of viscous friction: its free exponent leaves the coefficient open.
 #[test]
 fn a_base_parameter_has_the_uncertainty_of_the_shape_that_it_trades_with() {
     let held = held(&hidden("viscous_nonlinearity", 80.0, 73_000_002));

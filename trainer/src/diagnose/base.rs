@@ -26,6 +26,8 @@ pub struct Base {
     pub names: Vec<&'static str>,
     /// Filtered target: recorded torque less the nominal rigid body or reference.
     pub target: Vec<f64>,
+    /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
+    pub doubt: Vec<Vec<f64>>,
     /// Delay of the torque against the position that the fit found, in s.
     pub delay: f64,
     /// Whether the delay is small enough to be the sampling's own and is carried as a nuisance.
@@ -88,7 +90,8 @@ impl Base {
         if !delay_is_nuisance {
             columns.pop();
         }
-        Some(Self { columns, names, target, delay, delay_is_nuisance })
+        let doubt = signals.reference_doubt.iter().map(|torque| prepared.filtered(torque)).collect();
+        Some(Self { doubt, columns, names, target, delay, delay_is_nuisance })
     }
 }
 

@@ -13,6 +13,7 @@ mod choice;
 mod conclude;
 mod confidence;
 mod covariance;
+mod doubt;
 mod evidence;
 mod filter;
 mod findings;

@@ -42,6 +42,7 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
         torque: friction.iter().zip(&rigid_body).map(|(f, b)| f + b).collect(),
         rigid_body,
         jacobian: jacobian(model, state),
+        doubt: Vec::new(),
         friction: curve(model, state),
     })
 }

@@ -14,6 +14,8 @@ pub struct Reference {
     pub rigid_body: Vec<f64>,
     /// Change of the torque with each parameter that may move.
     pub jacobian: Vec<Vec<f64>>,
+    /// Torque of each direction in which the law is not sure of itself, at one standard deviation.
+    pub doubt: Vec<Vec<f64>>,
     /// Its friction as pairs (velocity, torque) in ascending velocity.
     pub friction: Vec<(f64, f64)>,
 }
@@ -32,6 +34,7 @@ impl Signals {
         }
         self.reference_torque = Some(reference.torque);
         self.reference_jacobian = reference.jacobian;
+        self.reference_doubt = reference.doubt;
         self.reference_friction = reference.friction;
     }
 }

@@ -1,6 +1,7 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
 use super::candidates::{Group, Label, Variant, ridge_of};
+use super::doubt::Doubt;
 use super::evidence::{Bench, GroupEvidence, VariantEvidence};
 use super::linear::{orthonormal, project_out};
 use super::noise::Noise;
@@ -56,6 +57,7 @@ pub(crate) struct Round<'s, 'a> {
     pub(crate) noise: Noise,
     pub(super) bench: Bench,
     alone: Option<VariantEvidence>,
+    doubt: Doubt,
     variants: Tested,
     white: Vec<Vec<f64>>,
     /// Largest energy that each group explains before whitening.
@@ -84,7 +86,8 @@ impl<'s, 'a> Round<'s, 'a> {
         }
         let (white, bench, variants) = weigh_all(search, base, &noise, true);
         let alone = bench.alone();
-        Self { search, noise, bench, alone, variants, white, explained }
+        let doubt = search.doubt(&bench, &noise);
+        Self { search, noise, bench, alone, doubt, variants, white, explained }
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
@@ -137,16 +140,17 @@ impl<'s, 'a> Round<'s, 'a> {
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.scanned_beyond(index);
                 // A prior adds no direction: what it weighs is calibrated by the free series.
+                let trust = |variant: &Variant| self.doubt.trust(&self.white[variant.columns.clone()]);
                 let free = group.variants.iter().zip(&admissible);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
-                    .filter_map(|(_, evidence)| evidence.as_ref())
-                    .map(|v| chi_square_surprise(v.statistic, v.degrees) - scanned)
+                    .filter_map(|(variant, evidence)| Some((trust(variant), evidence.as_ref()?)))
+                    .map(|(trust, v)| chi_square_surprise(trust * v.statistic, v.degrees) - scanned)
                     .fold(0.0, f64::max);
                 Some(Scored {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
-                    score: score_of(&group.label, &evidence, grid),
+                    score: trust(&group.variants[evidence.best]) * score_of(&group.label, &evidence, grid),
                     family_wise: 1.0,
                     evidence,
                     group: index,
@@ -180,19 +184,21 @@ impl<'s, 'a> Round<'s, 'a> {
                 return;
             }
             let state = &self.search.prepared.state;
+            let white =
+                |shape: &[f64]| self.search.whitened(&self.search.filtered_columns(&scored.label, shape), &self.noise);
             let weigh = |shape: &[f64]| {
-                let columns = self.search.filtered_columns(&scored.label, shape);
-                let evidence = self.bench.evidence(&self.search.whitened(&columns, &self.noise))?;
+                let evidence = self.bench.evidence(&white(shape))?;
                 self.search.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.grid_size(scored.group);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
-                let score = score_of(&scored.label, &evidence, grid);
+                let trust = self.doubt.trust(&white(&shape));
+                let score = trust * score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
                     let looked_at = PLACES_LOOKED_AT.ln() * free as f64 + self.search.scanned_beyond(scored.group);
-                    let refined = chi_square_surprise(evidence.statistic, evidence.degrees) - looked_at;
+                    let refined = chi_square_surprise(trust * evidence.statistic, evidence.degrees) - looked_at;
                     scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;
                     scored.score = score;

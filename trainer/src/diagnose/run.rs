@@ -258,6 +258,7 @@ fn score(search: &Search, refit: &Refit) -> Score {
 /// Torque of each effect that was not found at which it would have been found nine times in ten.
 fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = search.bench(search.base.columns.clone(), &refit.noise);
+    let doubt = search.doubt(&bench, &refit.noise);
     table
         .iter()
         .filter_map(|scored| {
@@ -266,7 +267,7 @@ fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimi
             let first = columns.first()?;
             // The statistic of the column itself as target: its non-centrality per squared amplitude.
             let white = search.whitened(&columns[..1], &refit.noise);
-            let visible = bench.visible_energy(&white[0])?;
+            let visible = doubt.trust(&white) * bench.visible_energy(&white[0])?;
             let amplitude = (FOUND_WITH_NINETY_PERCENT / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
             Some(DetectionLimit { effect, torque_rms: amplitude * rms })

@@ -4,6 +4,7 @@ use super::base::Base;
 use super::candidates::{Design, Label, ridge_of};
 use super::channel::Channel;
 use super::conclude::Fitted;
+use super::doubt::Doubt;
 use super::evidence::{Bench, GroupEvidence};
 use super::linear::{residual, weighted};
 use super::noise::{Noise, noise_features};
@@ -287,6 +288,11 @@ impl<'a> Search<'a> {
             self.prepared.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect();
         let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
         Bench::new(self.whitened(&base, noise), target, blocks)
+    }
+
+    /// Doubts of the reference beside the base of a bench.
+    pub(crate) fn doubt(&self, bench: &Bench, noise: &Noise) -> Doubt {
+        Doubt::beside(&bench.base, self.whitened(&self.base.doubt, noise), bench.runs())
     }
 
     /// Noise of what the columns leave after an ordinary least-squares fit: one that is whitened first may leave slow

@@ -32,6 +32,8 @@ pub struct Signals {
     pub reference_torque: Option<Vec<f64>>,
     /// Change of the reference torque with each parameter that may move.
     pub reference_jacobian: Vec<Vec<f64>>,
+    /// Torque of each direction in which the reference is not sure of itself, at one standard deviation.
+    pub reference_doubt: Vec<Vec<f64>>,
     /// Friction of the reference as pairs (velocity, torque) in ascending velocity.
     pub reference_friction: Vec<(f64, f64)>,
     /// Stretches of uninterrupted motion (trajectories, or pieces between gaps).

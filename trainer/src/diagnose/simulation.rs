@@ -3,6 +3,7 @@
 
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
+use super::covariance::of_whitened;
 use super::linear::{least_squares, residual, weighted};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
@@ -42,6 +43,8 @@ pub struct InverseLaw {
     knots: usize,
     /// Weights of the friction columns, then of the rigid body's.
     coefficients: Vec<f64>,
+    /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
+    doubt: Vec<Vec<f64>>,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
 }
@@ -69,6 +72,7 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
                 gravity,
                 given: given && simulation.rigid_body.is_some(),
                 coefficients: Vec::new(),
+                doubt: Vec::new(),
                 rmse: 0.0,
             };
             law.fitted(&prepared)
@@ -85,11 +89,17 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
         2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
     };
     let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
-    best.map(|(law, _)| law.clone()).ok_or(Unlearnable::Undetermined)
+    let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
+    law.doubt = law.doubts(&prepared, &rest, &noise);
+    Ok(law)
 }
 
 fn root_mean_square(series: &[f64]) -> f64 {
     (series.iter().map(|value| value * value).sum::<f64>() / series.len() as f64).sqrt()
+}
+
+fn filtered_with_nuisances(prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    raw.iter().map(|column| prepared.filtered(column)).chain(nuisances(prepared)).collect()
 }
 
 impl InverseLaw {
@@ -100,8 +110,7 @@ impl InverseLaw {
         let raw = self.columns(state);
         let runs = prepared.open_runs();
         let target = prepared.filtered(&prepared.torque);
-        let mut columns: Vec<Vec<f64>> = raw.iter().map(|column| prepared.filtered(column)).collect();
-        columns.extend(nuisances(prepared));
+        let mut columns = filtered_with_nuisances(prepared, &raw);
         let mut coefficients = least_squares(&columns, &target, &runs)?;
         let late = state.rate_of(&weighted(&raw, &coefficients[..raw.len()]));
         columns.push(prepared.filtered(&late));
@@ -111,6 +120,24 @@ impl InverseLaw {
         coefficients.truncate(raw.len());
         self.coefficients = coefficients;
         Some((self, rest))
+    }
+
+    /// Weights of each direction in which the law is not sure of itself, at one standard deviation: the axes of their
+    /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
+    fn doubts(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
+        let runs = prepared.open_runs();
+        let white = |mut column: Vec<f64>| {
+            noise.whiten(&mut column, &runs);
+            column
+        };
+        let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
+        let columns: Vec<Vec<f64>> = columns.into_iter().map(white).collect();
+        let Some(all) = of_whitened(&columns, &white(rest.to_vec()), &[], &runs) else { return Vec::new() };
+        let width = self.coefficients.len();
+        let axes = all.view((0, 0), (width, width)).clone_owned().symmetric_eigen();
+        let deviations = axes.eigenvalues.iter().map(|variance| variance.max(0.0).sqrt());
+        let directions = axes.eigenvectors.column_iter().zip(deviations);
+        directions.map(|(axis, deviation)| axis.iter().map(|weight| weight * deviation).collect()).collect()
     }
 
     /// Friction columns at one velocity with its smoothed sign: odd hats over speed, dense at low speed where friction
@@ -169,6 +196,7 @@ impl InverseLaw {
             torque: sum(0),
             rigid_body: sum(self.friction_width()),
             jacobian: vec![state.sign.clone(), state.velocity.clone()],
+            doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
             friction: tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect(),
         }
     }
