@@ -91,7 +91,7 @@ impl Base {
             columns.pop();
         }
         let doubt = signals.reference_doubt.iter().map(|torque| prepared.filtered(torque)).collect();
-        Some(Self { doubt, columns, names, target, delay, delay_is_nuisance })
+        Some(Self { columns, names, target, doubt, delay, delay_is_nuisance })
     }
 }
 

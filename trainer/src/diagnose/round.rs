@@ -139,13 +139,13 @@ impl<'s, 'a> Round<'s, 'a> {
                 let admissible = self.admissible(index);
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.scanned_beyond(index);
-                // A prior adds no direction: what it weighs is calibrated by the free series.
                 let trust = |variant: &Variant| self.doubt.trust(&self.white[variant.columns.clone()]);
+                // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&admissible);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
-                    .filter_map(|(variant, evidence)| Some((trust(variant), evidence.as_ref()?)))
-                    .map(|(trust, v)| chi_square_surprise(trust * v.statistic, v.degrees) - scanned)
+                    .filter_map(|(variant, evidence)| evidence.as_ref().map(|v| (variant, v)))
+                    .map(|(variant, v)| chi_square_surprise(trust(variant) * v.statistic, v.degrees) - scanned)
                     .fold(0.0, f64::max);
                 Some(Scored {
                     label: group.label.clone(),
