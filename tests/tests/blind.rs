@@ -1,6 +1,7 @@
 //! Every effect of the catalogue, hidden in a recording and named by a diagnosis that knows nothing of it.
 
 use frikan_tests::concealed::intervals::held;
+use frikan_tests::concealed::simulated;
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, run, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, Settings, diagnose};
@@ -90,7 +91,7 @@ fn a_noisy_simulation_is_not_taken_at_its_word() {
         let real = conceal(&control(noise, seed)).unwrap();
         let simulated = conceal(&control(noise, seed + 5_000_000)).unwrap();
         let [mut real, simulated] = [real, simulated].map(|made| signals(&made.recording, &made.joint));
-        let law = learn(&simulated, true).unwrap();
+        let law = learn(&simulated, &real).unwrap();
         real.compare_with(law.at(&real.states()));
         let settings = Settings { seed, ..Settings::default() };
         let options = Options { base: BaseKind::Reference, settings, ..Options::default() };
@@ -98,6 +99,36 @@ fn a_noisy_simulation_is_not_taken_at_its_word() {
             diagnose(&real, "N m", &options).unwrap().findings.iter().map(|finding| finding.effect).collect();
         assert_eq!(named, [], "{noise:?}, seed {seed}");
     }
+}
+
+/// A simulator that works an effect out itself was told that it lacks it: its law was learned from speed, position and
+/// acceleration alone.
+#[test]
+fn what_a_simulator_holds_is_not_missing_from_it() {
+    let effects = ["temperature", "presliding", "frictional_lag", "position_ripple", "kinematic_error", "coupling"];
+    effects.into_par_iter().enumerate().for_each(|(index, effect)| {
+        let seed = 71_500_000 + index as u64;
+        let case = Case {
+            hidden: Hidden::Effect(effect, 80.0),
+            base: BaseKind::Reference,
+            ..control(NoiseKind::Coloured, seed)
+        };
+        let compared = simulated::run(&case, 1).unwrap();
+        assert_eq!(compared.findings, Vec::<Vec<EffectId>>::new(), "{effect}, seed {seed}");
+    });
+}
+
+#[test]
+fn what_a_simulator_lacks_is_named_beside_what_it_holds() {
+    let pairs = [("presliding", "warm_up"), ("frictional_lag", "spring"), ("coupling", "torque_offset")];
+    pairs.into_par_iter().enumerate().for_each(|(index, (held, missing))| {
+        let seed = 71_510_000 + index as u64;
+        let hidden = Hidden::Pair(held, missing, 80.0);
+        let case = Case { hidden, base: BaseKind::Reference, ..control(NoiseKind::Coloured, seed) };
+        let compared = simulated::run(&case, 1).unwrap();
+        let first: Vec<&str> = compared.findings.iter().map(|set| set[0].name()).collect();
+        assert_eq!(first, [missing], "beside {held}, seed {seed}");
+    });
 }
 
 /// The spline was once straight in the root of the speed, and a law as sharp as a step missed every reversal by a sample.

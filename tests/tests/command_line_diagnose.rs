@@ -83,6 +83,54 @@ fn a_simulation_that_is_right_leaves_nothing_to_find() {
     }
 }
 
+/// Coulomb friction that is wrong by half is no effect of the catalogue: it was refitted and not told.
+#[test]
+fn a_simulation_with_a_wrong_coulomb_friction_is_told_by_how_much() {
+    let folder = bench();
+    let at = folder.path();
+    let elbow = std::fs::read_to_string(at.join("joint.toml")).unwrap();
+    let rougher = elbow.replace("coulomb_torque_Nm = 2.0", "coulomb_torque_Nm = 3.0");
+    std::fs::write(at.join("rougher.toml"), rougher).unwrap();
+    simulate(at, "rougher.toml --duration 40 --seed 3 -o real.csv");
+    simulate(at, "joint.toml --duration 40 --seed 7 -o simulated.csv");
+    let told = diagnose(at, "real.csv --simulation simulated.csv --json - --report page.html");
+    assert_eq!((told.status, told.messages.as_str()), (0, ""), "{}", told.output);
+    let json: Value = serde_json::from_str(&told.output).unwrap();
+    let rmse = json["given"]["rmse"].as_f64().unwrap();
+    assert!((rmse - 1.0).abs() < 0.1 && json["fit"]["baseline"]["rmse"].as_f64().unwrap() < 0.1, "{rmse}");
+    let change = &json["base_parameters"][0];
+    assert_eq!((&change["name"], &change["unit"]), (&"coulomb_torque_change".into(), &"N m".into()));
+    let [value, low, high] = [&change["value"], &change["ci95"][0], &change["ci95"][1]].map(|v| v.as_f64().unwrap());
+    assert!((value - 1.0).abs() < 0.05 && low < high && high - low < 0.1, "{change}");
+    let page = std::fs::read_to_string(at.join("page.html")).unwrap();
+    assert!(page.contains("As it was given, the model is wrong by") && page.contains("too low"));
+}
+
+/// The simulator's own effect is part of what the drive gets, and the recording may have less of it.
+#[test]
+fn what_a_simulator_holds_too_much_of_is_said_and_its_effects_reach_the_image() {
+    let folder = bench();
+    let at = folder.path();
+    let elbow = std::fs::read_to_string(at.join("joint.toml")).unwrap();
+    let quiet = elbow.replace("white_torque_Nm = 0.1", "white_torque_Nm = 0.0\ncoloured_torque_Nm = 0.0");
+    std::fs::write(at.join("quiet.toml"), quiet).unwrap();
+    simulate(at, "joint.toml --effect presliding=0.5 --duration 40 --seed 3 -o real.csv");
+    for (name, amplitude) in [("same", 0.5), ("stronger", 1.5)] {
+        simulate(at, &format!("quiet.toml --effect presliding={amplitude} --duration 40 --seed 3 -o {name}.csv"));
+    }
+    let same = diagnose(at, "real.csv --simulation same.csv -o same.frk");
+    assert_eq!(same.status, 0, "{}", same.output);
+    assert!(same.output.contains("Found in the simulation itself, and so not missing from it: presliding"));
+    let shown = run(at, &["show", "same.frk"]);
+    assert!(shown.output.contains("Presliding"), "{}", shown.output);
+    let stronger = diagnose(at, "real.csv --simulation stronger.csv --json -");
+    let json: Value = serde_json::from_str(&stronger.output).unwrap();
+    assert_eq!(json["given"]["holds"][0], "presliding");
+    assert_eq!(json["findings"][0]["effect"], "presliding");
+    let sentence = json["findings"][0]["sentence"].as_str().unwrap();
+    assert!(sentence.contains(" more: presliding hysteresis"), "the real joint yields less: {sentence}");
+}
+
 /// A model that was improved keeps its effects where it is improved again, whatever its law is: what comes of it leaves what the
 /// second diagnosis leaves.
 #[test]

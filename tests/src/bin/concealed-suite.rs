@@ -5,7 +5,7 @@ use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
 use frikan_tests::concealed::semi_real::Added;
 use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::tables::report;
-use frikan_tests::concealed::{Case, Hidden, advised, afterwards, run, semi_real};
+use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, run, semi_real};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
@@ -54,16 +54,6 @@ struct Arguments {
 
 /// Seeds that one run may take.
 const SEEDS_OF_A_RUN: u64 = 10_000;
-
-/// Pairs whose members are far apart in the catalogue.
-const PAIRS: [(&str, &str); 6] = [
-    ("stribeck", "load_friction"),
-    ("coupling", "torque_offset"),
-    ("inertia_error", "contact"),
-    ("presliding", "warm_up"),
-    ("position_ripple", "slow_drift"),
-    ("frictional_lag", "spring"),
-];
 
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();

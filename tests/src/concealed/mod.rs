@@ -7,6 +7,7 @@ pub mod afterwards;
 pub mod false_alarms;
 pub mod intervals;
 pub mod semi_real;
+pub mod simulated;
 pub mod summary;
 pub mod symbolic;
 pub mod tables;
@@ -40,6 +41,16 @@ pub struct Case {
     /// Seed of everything.
     pub seed: u64,
 }
+
+/// Pairs whose members are far apart in the catalogue.
+pub const PAIRS: [(&str, &str); 6] = [
+    ("stribeck", "load_friction"),
+    ("coupling", "torque_offset"),
+    ("inertia_error", "contact"),
+    ("presliding", "warm_up"),
+    ("position_ripple", "slow_drift"),
+    ("frictional_lag", "spring"),
+];
 
 /// A recording with the effects of a case hidden in it.
 #[derive(Clone, Debug)]
@@ -139,7 +150,7 @@ fn reach(recording: &SimulatedRecording, torque: &[f64], joint: &plant::Joint, c
 }
 
 /// Faults of the measurement that have no torque of their own, or none below a threshold: their amplitude is taken as it is.
-const WITHOUT_TORQUE: [&str; 4] = ["quantisation", "unit_or_sign", "clock_gaps", "time_misalignment"];
+pub const WITHOUT_TORQUE: [&str; 4] = ["quantisation", "unit_or_sign", "clock_gaps", "time_misalignment"];
 
 /// Amplitude at which an effect adds a torque of the wanted strength to what the joint already hides.
 fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &Case) -> Result<f64, plant::PlantError> {

@@ -33,7 +33,8 @@ pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
     let jacobian = (0..constants.len()).map(|index| {
         let by = STEP * constants[index].abs().max(STEP);
         let (up, down) = (moved(index, by), moved(index, -by));
-        state.velocity.iter().map(|v| (friction(*v, &up) - friction(*v, &down)) / (2.0 * by)).collect()
+        let column = state.velocity.iter().map(|v| (friction(*v, &up) - friction(*v, &down)) / (2.0 * by)).collect();
+        ("model_parameter", column)
     });
     let reach = 1.2 * state.top_speed();
     let reference = Reference {
@@ -41,7 +42,9 @@ pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
         jacobian: jacobian.collect(),
         friction: (-200..=200).map(|k| f64::from(k) / 200.0 * reach).map(|v| (v, friction(v, &constants))).collect(),
         rigid_body,
+        left: None,
         doubt: Vec::new(),
+        effects: Vec::new(),
     };
     signals.compare_with(reference);
     Ok(())

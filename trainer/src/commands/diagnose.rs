@@ -253,7 +253,8 @@ fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let rest =
         [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
     let advice = advice.map(|plan| format!("{}.\n", capital(&plan.sentence())));
-    std::iter::once(format!("{}\n", story.headline)).chain(bullets).chain(rest).chain(advice).collect()
+    let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
+    std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()
 }
 
 fn parse_lock(text: &str) -> std::result::Result<Lock, String> {

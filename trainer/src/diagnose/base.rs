@@ -4,7 +4,7 @@ use super::linear::least_squares;
 use super::prepare::Prepared;
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
-use crate::physics::JointState;
+use crate::physics::{EffectId, JointState};
 
 /// Which static friction model the recording is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,8 @@ pub struct Base {
     pub names: Vec<&'static str>,
     /// Filtered target: recorded torque less the nominal rigid body or reference.
     pub target: Vec<f64>,
+    /// Effects that a reference holds itself: the recording may ask for less of them.
+    pub held: Vec<EffectId>,
     /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
     /// Delay of the torque against the position that the fit found, in s.
@@ -74,8 +76,9 @@ impl Base {
         let runs = prepared.open_runs();
         let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
         columns.extend(nuisances(prepared));
-        if kind == BaseKind::Reference {
+        if let Some(reference) = &signals.reference {
             columns.push(sharpness(prepared));
+            columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
         }
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, signals, kind, &raw, &coefficients);
@@ -90,8 +93,11 @@ impl Base {
         if !delay_is_nuisance {
             columns.pop();
         }
-        let doubt = signals.reference_doubt.iter().map(|torque| prepared.filtered(torque)).collect();
-        Some(Self { columns, names, target, doubt, delay, delay_is_nuisance })
+        let reference = signals.reference.iter();
+        let doubt = reference.clone().flat_map(|reference| &reference.doubt);
+        let doubt = doubt.map(|torque| prepared.filtered(torque)).collect();
+        let held = reference.flat_map(|reference| reference.effects.clone()).collect();
+        Some(Self { columns, names, target, held, doubt, delay, delay_is_nuisance })
     }
 }
 
@@ -106,8 +112,8 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
     for (j, name) in names.iter().enumerate().take(count) {
         columns.push((name, state.map(|i| friction_basis(kind, state.velocity[i], state.sign[i], top_speed)[j])));
     }
-    if kind == BaseKind::Reference {
-        columns.extend(signals.reference_jacobian.iter().map(|column| ("model_parameter", column.clone())));
+    if let Some(reference) = &signals.reference {
+        columns.extend(reference.jacobian.iter().cloned());
     } else if signals.rigid_body.is_none() {
         // No rigid body is given: its inertia is identified together with friction.
         columns.push(("inertia", state.acceleration.clone()));
@@ -149,15 +155,14 @@ fn predict(
     }
     state.predicted = predicted;
     let top_speed = state.top_speed();
-    state.base_friction = if signals.reference_friction.is_empty() {
-        tabulated_velocities(1.2 * top_speed)
+    state.base_friction = match &signals.reference {
+        Some(reference) if !reference.friction.is_empty() => reference.friction.clone(),
+        _ => tabulated_velocities(1.2 * top_speed)
             .map(|velocity| {
                 let basis = friction_basis(kind, velocity, (velocity / state.sign_velocity).tanh(), top_speed);
                 (velocity, basis.iter().zip(coefficients).map(|(b, c)| b * c).sum())
             })
-            .collect()
-    } else {
-        signals.reference_friction.clone()
+            .collect(),
     };
 }
 

@@ -99,7 +99,7 @@ fn parameters(search: &Search, fitted: &Fitted, actuator: &str) -> Vec<Parameter
 
 pub(super) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, actuator: &str) -> Vec<Parameter> {
     let dimension = |name: &str| match name {
-        "viscous_coefficient" => Dimension::TorquePerVelocity,
+        "viscous_coefficient" | "viscous_coefficient_change" => Dimension::TorquePerVelocity,
         "inertia" => Dimension::Inertia,
         _ => Dimension::Torque,
     };
@@ -114,6 +114,8 @@ pub(super) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, act
                 symbol: match *name {
                     "coulomb_torque" => "F_c",
                     "viscous_coefficient" => "F_v",
+                    "coulomb_torque_change" => "dF_c",
+                    "viscous_coefficient_change" => "dF_v",
                     _ => "J",
                 }
                 .to_string(),

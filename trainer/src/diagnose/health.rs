@@ -112,16 +112,19 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
         .collect();
     // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
     let smooth = |series: &[f64]| filter.over(series, segments);
-    let mut bodies: Vec<(&str, Vec<f64>)> =
-        match (signals.reference_torque.as_ref(), signals.rigid_body.as_ref(), signals.load.as_ref()) {
-            (Some(reference), _, _) => vec![("torque of the model", smooth(reference))],
-            (None, Some(body), Some(load)) => {
-                let inertial: Vec<f64> = body.iter().zip(load).map(|(b, l)| b - l).collect();
-                vec![("inertial torque", smooth(&inertial)), ("load torque", smooth(load))]
-            }
-            (None, Some(body), None) => vec![("rigid-body torque", smooth(body))],
-            (None, None, _) => vec![("acceleration", acceleration)],
-        };
+    let mut bodies: Vec<(&str, Vec<f64>)> = match (
+        signals.reference.as_ref().map(|reference| &reference.torque),
+        signals.rigid_body.as_ref(),
+        signals.load.as_ref(),
+    ) {
+        (Some(reference), _, _) => vec![("torque of the model", smooth(reference))],
+        (None, Some(body), Some(load)) => {
+            let inertial: Vec<f64> = body.iter().zip(load).map(|(b, l)| b - l).collect();
+            vec![("inertial torque", smooth(&inertial)), ("load torque", smooth(load))]
+        }
+        (None, Some(body), None) => vec![("rigid-body torque", smooth(body))],
+        (None, None, _) => vec![("acceleration", acceleration)],
+    };
     bodies.retain(|(_, column)| column.iter().any(|v| *v != 0.0));
     let given = signals.known_torque().is_some();
     let mut columns: Vec<Vec<f64>> = bodies.iter().map(|(_, column)| column.clone()).collect();
@@ -137,7 +140,7 @@ fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
     let wrong = |sentence: String| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, sentence });
     // A reference holds friction of its own, and what it has too much of comes out negative.
-    let drives = signals.reference_torque.is_none() && coefficients[friction] < 0.0;
+    let drives = signals.reference.is_none() && coefficients[friction] < 0.0;
     if drives && share(friction) > 0.1 {
         return wrong("friction comes out as driving the joint: torque and motion have opposite signs".into());
     }

@@ -14,7 +14,7 @@ use crate::compile::interval::Interval;
 use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::compile_layout;
 use crate::fit::HostModel;
-use crate::physics::JointState;
+use crate::physics::{EffectId, JointState};
 use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, RigidBody};
 use frikan_shared::pool::Pool;
@@ -74,7 +74,18 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
         _ => table_model(&friction, origin, &state, unit),
     };
     terms.first_cell = cells.len() as u16;
-    let remarks = write_findings(diagnosis, &mut terms, &context);
+    let mut remarks = Vec::new();
+    if let Origin::Simulation(law) = origin {
+        for (effect, shape, coefficients) in law.effects() {
+            remarks.push(write_term(
+                &mut terms,
+                &context,
+                (effect, shape, coefficients),
+                ", as the simulation holds it",
+            ));
+        }
+    }
+    remarks.extend(write_findings(diagnosis, &mut terms, &context));
     model.rigid_body = terms.rigid_body;
     cells.extend(&terms.cells);
     model.cells = Pool::from_slice(&cells).ok()?;
@@ -93,13 +104,23 @@ fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -
         .effects
         .iter()
         .map(|fitted| match &fitted.label {
-            Label::Named(effect) => match terms.add(*effect, &fitted.shape, &fitted.coefficients, context) {
-                Ok(()) => format!("In the image: {}.", plain_name(*effect)),
-                Err(why) => format!("Not in the image: {} ({why}).", plain_name(*effect)),
-            },
+            Label::Named(effect) => write_term(terms, context, (*effect, &fitted.shape, &fitted.coefficients), ""),
             Label::Generic(_) => format!("Not in the image: {} (it has no name).", fitted.label),
         })
         .collect()
+}
+
+/// Writes one effect with its shape and coefficients, and says so.
+fn write_term(
+    terms: &mut Terms,
+    context: &Context,
+    (effect, shape, coefficients): (EffectId, &[f64], &[f64]),
+    origin: &str,
+) -> String {
+    match terms.add(effect, shape, coefficients, context) {
+        Ok(()) => format!("In the image: {}{origin}.", plain_name(effect)),
+        Err(why) => format!("Not in the image: {}{origin} ({why}).", plain_name(effect)),
+    }
 }
 
 /// Friction over velocity.

@@ -59,7 +59,7 @@ pub use health::HealthNote;
 pub use join::Unjoinable;
 pub use localise::Location;
 pub use noise::Noise;
-pub use outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
+pub use outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 pub use prepare::Prepared;
 pub use prove::Proof;
 pub use reference::Reference;

@@ -1,7 +1,7 @@
 //! A fitted model image evaluated at the recorded states, in the arithmetic of the drive, with what its parameters may move.
 
 use super::base::{BaseKind, friction_basis};
-use super::reference::{Reference, tabulated_velocities};
+use super::reference::{Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
 use crate::physics::JointState;
 use crate::samples::blocks::rests;
@@ -42,6 +42,8 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
         torque: friction.iter().zip(&rigid_body).map(|(f, b)| f + b).collect(),
         rigid_body,
         jacobian: jacobian(model, state),
+        effects: Vec::new(),
+        left: None,
         doubt: Vec::new(),
         friction: curve(model, state),
     })
@@ -119,16 +121,18 @@ pub(crate) fn movement<const CELLS: usize>(model: &Model<CELLS>) -> Movement {
 }
 
 /// Change of the torque with everything that may move.
-fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<Vec<f64>> {
+fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(&'static str, Vec<f64>)> {
+    let unnamed = |column: Vec<f64>| ("model_parameter", column);
     match movement(model) {
-        Movement::Constants => moving_columns(model, state).into_iter().map(|(_, column)| column).collect(),
+        Movement::Constants => moving_columns(model, state).into_iter().map(|(_, column)| unnamed(column)).collect(),
         Movement::Curve => {
             let odd = is_odd(&model.law);
             let top = state.top_speed();
             let rows: Vec<Vec<f64>> = state.velocity.iter().map(|v| hats(*v, state.sign_velocity, top, odd)).collect();
-            (0..hats(0.0, 1.0, 1.0, odd).len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
+            let column = |j: usize| unnamed(rows.iter().map(|row| row[j]).collect());
+            (0..hats(0.0, 1.0, 1.0, odd).len()).map(column).collect()
         }
-        Movement::Beside => vec![state.sign.clone(), state.velocity.clone()],
+        Movement::Beside => coulomb_and_viscous(state),
     }
 }
 

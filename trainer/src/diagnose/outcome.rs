@@ -95,7 +95,10 @@ pub struct Diagnosis {
     pub base: BaseKind,
     /// Which rows the proof was kept away from.
     pub lock: Lock,
-    /// Names of the base's physical parameters, as far as they have one, with their refitted values.
+    /// The simulation or model as it was given, before any of its parameters moved; `None` where the base is the recording's own.
+    pub given: Option<Given>,
+    /// Names of the base's physical parameters, as far as they have one, with their refitted values; of a simulation or a model
+    /// with what they have to change by.
     pub base_parameters: Vec<Parameter>,
     /// Root mean square of the noise that is left.
     pub noise_rmse: f64,
@@ -121,6 +124,16 @@ pub struct Diagnosis {
     pub sampling_delay_s: f64,
     /// Series for pictures and sentences.
     pub traces: Traces,
+}
+
+/// A simulation or model as it was given.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Given {
+    /// What it explains of the recording without a change.
+    #[serde(flatten)]
+    pub score: Score,
+    /// Effects of the catalogue that were found in a simulation, and that the recording is therefore not asked for.
+    pub holds: Vec<EffectId>,
 }
 
 /// Goodness of fit on the working rows.

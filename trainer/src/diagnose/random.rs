@@ -8,7 +8,6 @@ pub(crate) fn uniform(random: &mut impl RngCore) -> f64 {
 }
 
 /// Standard normal (Box and Muller 1958).
-#[cfg(test)]
 pub(crate) fn normal(random: &mut impl RngCore) -> f64 {
     let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
     radius * (std::f64::consts::TAU * uniform(random)).cos()

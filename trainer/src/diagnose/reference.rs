@@ -3,7 +3,7 @@
 use super::blocks::Lock;
 use super::prepare::Prepared;
 use super::signals::Signals;
-use crate::physics::JointState;
+use crate::physics::{EffectId, JointState};
 
 /// A law at the states of a recording.
 #[derive(Clone, Debug, Default)]
@@ -12,8 +12,12 @@ pub struct Reference {
     pub torque: Vec<f64>,
     /// Its rigid-body part.
     pub rigid_body: Vec<f64>,
-    /// Change of the torque with each parameter that may move.
-    pub jacobian: Vec<Vec<f64>>,
+    /// Change of the torque with each parameter that may move, with its name.
+    pub jacobian: Vec<(&'static str, Vec<f64>)>,
+    /// Effects of the catalogue that it holds itself.
+    pub effects: Vec<EffectId>,
+    /// What the law leaves of the simulation from which it was learned, where that is of the same motion.
+    pub left: Option<Vec<f64>>,
     /// Torque of each direction in which the law is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
     /// Its friction as pairs (velocity, torque) in ascending velocity.
@@ -30,13 +34,15 @@ impl Signals {
     /// Takes a reference for the model that the recording is compared with.
     pub fn compare_with(&mut self, reference: Reference) {
         if self.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
-            self.rigid_body = Some(reference.rigid_body);
+            self.rigid_body = Some(reference.rigid_body.clone());
         }
-        self.reference_torque = Some(reference.torque);
-        self.reference_jacobian = reference.jacobian;
-        self.reference_doubt = reference.doubt;
-        self.reference_friction = reference.friction;
+        self.reference = Some(reference);
     }
+}
+
+/// Coulomb and viscous friction that may move beside a law, with the names of their changes.
+pub(super) fn coulomb_and_viscous(state: &JointState) -> Vec<(&'static str, Vec<f64>)> {
+    vec![("coulomb_torque_change", state.sign.clone()), ("viscous_coefficient_change", state.velocity.clone())]
 }
 
 /// Velocities at which a reference's friction is tabulated, denser towards zero.

@@ -6,7 +6,8 @@ use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
 use super::findings::{base_parameters, finding, measurement_finding};
 use super::health::{coarse_position, examine};
-use super::outcome::{DetectionLimit, Diagnosis, Finding, Score, Verdict};
+use super::linear::weighted;
+use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
 use super::prove::{prove, prove_alone, rest};
 use super::rollout::roll_out;
@@ -156,13 +157,15 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         .collect();
     let findings = if blocked { health.iter().map(measurement_finding).collect() } else { findings };
     let verdict = verdict(&findings, blocked);
-    let score = |refit: &Refit| score(&search, refit);
+    let given = (options.base == BaseKind::Reference).then(|| given(&search, &baseline));
+    let score = |refit: &Refit| score(&search, &rest(&search, refit));
     Ok(Diagnosis {
         verdict,
         health,
         limits: limits(&search, &last_round, &improved),
         base: options.base,
         lock: options.lock,
+        given,
         base_parameters: base_parameters(&base, &improved, signals, actuator),
         noise_rmse: improved.noise.rms,
         traces: Traces::of(&search, &baseline, &improved),
@@ -245,8 +248,15 @@ fn verdict(findings: &[Finding], blocked: bool) -> Verdict {
     if findings.iter().all(|f| f.effect == EffectId::Unknown) { Verdict::Unexplained } else { Verdict::MissingPhysics }
 }
 
-fn score(search: &Search, refit: &Refit) -> Score {
-    let rest = rest(search, refit);
+/// The reference before its parameters moved; differentiation bias and the sampling's delay are none of its errors.
+fn given(search: &Search, baseline: &Refit) -> Given {
+    let moved = search.base.names.len();
+    let change = weighted(&search.base.columns[..moved], &baseline.base[..moved]);
+    let unmoved: Vec<f64> = rest(search, baseline).iter().zip(change).map(|(rest, change)| rest + change).collect();
+    Given { score: score(search, &unmoved), holds: search.base.held.clone() }
+}
+
+fn score(search: &Search, rest: &[f64]) -> Score {
     let torque = search.prepared.filtered(&search.prepared.torque);
     let count = rest.len() as f64;
     let mean = torque.iter().sum::<f64>() / count;

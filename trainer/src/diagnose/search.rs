@@ -110,10 +110,13 @@ impl<'a> Search<'a> {
         self.hypotheses.iter().find(|h| h.id() == effect).map(|h| h.as_ref() as &dyn Hypothesis)
     }
 
-    /// Whether the coefficients of a label may only be positive, because the effect cannot turn its sign.
+    /// Whether the coefficients of a label may only be positive, because the effect cannot turn its sign. The recording may have
+    /// less of what a reference holds, under whichever name.
     pub(crate) fn only_positive(&self, label: &Label) -> bool {
         match label {
-            Label::Named(effect) => self.hypothesis(*effect).is_some_and(Hypothesis::only_positive),
+            Label::Named(effect) => {
+                self.base.held.is_empty() && self.hypothesis(*effect).is_some_and(Hypothesis::only_positive)
+            }
             Label::Generic(_) => false,
         }
     }

@@ -15,6 +15,9 @@ const UP_TO: f64 = 0.98;
 /// Share of the torque that has to point one way before a sentence says "more" or "less".
 const ONE_WAY: f64 = 0.5;
 
+/// Error of a given model over that after a refit of its parameters from which the change is told.
+const TELLING_CHANGE: f64 = 1.05;
+
 /// What the recording is measured in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Units {
@@ -46,6 +49,8 @@ impl Units {
 pub struct Story {
     /// The answer in one sentence.
     pub headline: String,
+    /// The simulation or model as it was given: what it holds itself, and what its own parameters have to change by.
+    pub given: Vec<String>,
     /// What is wrong with the measurement.
     pub health: Vec<String>,
     /// One sentence a finding.
@@ -65,6 +70,7 @@ pub struct Story {
 pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
     Story {
         headline: headline(diagnosis, units),
+        given: given(diagnosis, units),
         health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
@@ -95,6 +101,36 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
         ),
         Verdict::BadData => "The measurement has to be put right before anything can be said of the physics.".into(),
     }
+}
+
+/// What a simulation or a model holds itself, and how far it is wrong before its own parameters move.
+fn given(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
+    let Some(given) = &diagnosis.given else { return Vec::new() };
+    let mut sentences = Vec::new();
+    if !given.holds.is_empty() {
+        let names: Vec<&str> = given.holds.iter().map(|effect| plain_name(*effect)).collect();
+        sentences.push(format!("Found in the simulation itself, and so not missing from it: {}.", names.join(", ")));
+    }
+    let (as_given, refitted) = (given.score.rmse, diagnosis.baseline.rmse);
+    if as_given > TELLING_CHANGE * refitted {
+        let [as_given, refitted] = [as_given, refitted].map(|rmse| quantity(rmse, units.actuator));
+        let changes: Vec<String> = diagnosis.base_parameters.iter().filter_map(change).collect();
+        let changes = if changes.is_empty() { String::new() } else { format!(": {}", changes.join(", ")) };
+        sentences.push(format!(
+            "As it was given, the model is wrong by {as_given}; refitting its own parameters leaves {refitted}{changes}."
+        ));
+    }
+    sentences
+}
+
+/// How far a parameter of the given model is off, where that is certain.
+fn change(parameter: &Parameter) -> Option<String> {
+    let name = parameter.name.strip_suffix("_change")?.replace('_', " ");
+    let is_certain = parameter.ci95[0] * parameter.ci95[1] > 0.0;
+    let direction = if parameter.value > 0.0 { "too low" } else { "too high" };
+    let [size, half] = [parameter.value.abs(), 0.5 * (parameter.ci95[1] - parameter.ci95[0])];
+    let [size, half] = [size, half].map(|figure| quantity(figure, &parameter.unit));
+    is_certain.then(|| format!("its {name} is {size} (\u{b1} {half}) {direction}"))
 }
 
 /// The sentence of one finding.

@@ -1,6 +1,7 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
 use super::filter::second_derivative;
+use super::reference::Reference;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::{Axis, Quantity, Recording};
@@ -28,14 +29,8 @@ pub struct Signals {
     pub link_position: Option<Vec<f64>>,
     /// Positions of other joints on the same clock.
     pub other_positions: Vec<Vec<f64>>,
-    /// Torque that a fitted model or a simulation predicts at the recorded state, rigid body included.
-    pub reference_torque: Option<Vec<f64>>,
-    /// Change of the reference torque with each parameter that may move.
-    pub reference_jacobian: Vec<Vec<f64>>,
-    /// Torque of each direction in which the reference is not sure of itself, at one standard deviation.
-    pub reference_doubt: Vec<Vec<f64>>,
-    /// Friction of the reference as pairs (velocity, torque) in ascending velocity.
-    pub reference_friction: Vec<(f64, f64)>,
+    /// The fitted model or simulation that it is compared with, at the recorded states.
+    pub reference: Option<Reference>,
     /// Stretches of uninterrupted motion (trajectories, or pieces between gaps).
     pub segments: Vec<Range<usize>>,
     /// Motor turns per joint turn, where known.
@@ -49,7 +44,7 @@ pub struct Signals {
 impl Signals {
     /// The torque that needs no identification: the reference's, or the rigid body's.
     pub(super) fn known_torque(&self) -> Option<&Vec<f64>> {
-        self.reference_torque.as_ref().or(self.rigid_body.as_ref())
+        self.reference.as_ref().map(|reference| &reference.torque).or(self.rigid_body.as_ref())
     }
 
     /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque

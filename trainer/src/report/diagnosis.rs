@@ -45,6 +45,9 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         ),
     );
     page.lead(&story.headline);
+    for sentence in &story.given {
+        page.paragraph(sentence);
+    }
     page.list(&story.findings, "findings");
     for sentence in [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten() {
         page.paragraph(sentence);
@@ -63,7 +66,11 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
     rivals(&mut page, diagnosis);
     proof(&mut page, diagnosis, units);
     if !diagnosis.base_parameters.is_empty() {
-        page.heading("Parameters of the base model, refitted");
+        page.heading(if diagnosis.given.is_some() {
+            "What the parameters of the model have to change by"
+        } else {
+            "Parameters of the base model, refitted"
+        });
         page.table(&PARAMETER_HEADER, &parameter_rows(&diagnosis.base_parameters));
     }
     limits(&mut page, diagnosis, units);

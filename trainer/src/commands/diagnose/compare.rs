@@ -35,10 +35,10 @@ pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: 
         same_units(&real[0], &simulated)?;
         let mut signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
-        let law = simulation::learn(&simulation, signals.rigid_body.is_some())
+        let state = states(&signals, &real[0])?;
+        let law = simulation::learn(&simulation, &signals)
             .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
-        let reference = law.at(&states(&signals, &real[0])?);
-        signals.compare_with(reference);
+        signals.compare_with(law.at(&state));
         Ok((signals, Compared::Simulation(Box::new(law))))
     } else if let Some(path) = &arguments.model {
         let (_, image) = fit::model::load(path)?;

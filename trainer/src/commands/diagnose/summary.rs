@@ -36,6 +36,7 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
             BaseKind::Spline => "spline",
             BaseKind::Reference => "reference",
         },
+        "given": diagnosis.given,
         "base_parameters": diagnosis.base_parameters,
         "fit": {
             "noise_rmse": diagnosis.noise_rmse,

@@ -148,9 +148,7 @@ impl<'a> Future<'a> {
             series.extend(std::iter::repeat_n(series.last().copied().unwrap_or(0.0), count));
         }
         signals.position.extend_from_slice(position);
-        signals.reference_torque = None;
-        signals.reference_jacobian.clear();
-        signals.reference_friction.clear();
+        signals.reference = None;
         signals
     }
 }

@@ -34,7 +34,7 @@ impl Outlook {
     pub(super) fn new(question: &Question, mut signals: Signals) -> Option<Self> {
         let (cut_off, lock) = (question.diagnosis.cut_off_hz, question.diagnosis.lock);
         let mut prepared = Prepared::at_cut_off(&signals, cut_off, lock);
-        if question.diagnosis.base == BaseKind::Reference && signals.reference_torque.is_none() {
+        if question.diagnosis.base == BaseKind::Reference && signals.reference.is_none() {
             signals.compare_with(question.reference?(&prepared.state)?);
             prepared = Prepared::at_cut_off(&signals, cut_off, lock);
         }

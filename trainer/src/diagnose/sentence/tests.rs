@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Label, Location, Lock, Proof, Refit, Score, Traces};
+use crate::diagnose::{Advice, BaseKind, Channel, Fitted, Given, Label, Location, Lock, Proof, Refit, Score, Traces};
 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 
@@ -63,6 +63,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
         lock: Lock::Spread,
+        given: None,
         base_parameters: Vec::new(),
         noise_rmse: 0.4,
         baseline: Score { rmse: 0.92, r2: 0.9 },
@@ -106,6 +107,30 @@ fn a_finding_reads_as_a_sentence() {
     );
     assert!(story.withdrawn.unwrap().contains("spring"));
     assert!(story.minor.unwrap().contains("4.2 %"));
+}
+
+#[test]
+fn a_given_model_is_told_by_how_much_its_own_parameters_are_off() {
+    let mut told = diagnosis(presliding("velocity", -0.05, 0.05));
+    assert!(tell(&told, ROTARY).given.is_empty());
+    let parameter = |name: &str, value: f64, half: f64| Parameter {
+        name: name.into(),
+        symbol: String::new(),
+        value,
+        unit: "N m".into(),
+        ci95: [value - half, value + half],
+    };
+    told.base_parameters =
+        vec![parameter("coulomb_torque_change", -1.2, 0.1), parameter("viscous_coefficient_change", 0.1, 0.2)];
+    told.given = Some(Given { score: Score { rmse: 1.5, r2: 0.6 }, holds: vec![EffectId::Temperature] });
+    assert_eq!(
+        tell(&told, ROTARY).given,
+        [
+            "Found in the simulation itself, and so not missing from it: friction that depends on temperature.",
+            "As it was given, the model is wrong by 1.5 N m; refitting its own parameters leaves 0.92 N m: its coulomb \
+             torque is 1.2 N m (\u{b1} 0.1 N m) too high."
+        ]
+    );
 }
 
 #[test]

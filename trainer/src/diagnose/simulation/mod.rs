@@ -1,15 +1,21 @@
 //! What a simulator computes: its inverse law, learned from its recording as a function of the state, so that neither clock
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
+mod held;
+mod left;
+
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
 use super::covariance::of_whitened;
 use super::linear::{least_squares, residual, weighted};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
-use super::reference::{Reference, tabulated_velocities};
+use super::reference::{Reference, coulomb_and_viscous, tabulated_velocities};
 use super::signals::Signals;
-use crate::physics::JointState;
+use crate::physics::{EffectId, JointState};
+use held::{HeldEffects, held_by, noise_floor};
+use left::Left;
+use std::ops::Range;
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -17,6 +23,9 @@ const LEAST_ROWS: usize = 100;
 const GRAVITY_TRAVEL_RAD: f64 = 0.2;
 /// Knots over speed that are tried: a simulation without noise bears many, a short or noisy one few.
 const KNOTS: [usize; 4] = [5, 9, 17, 33];
+
+/// Noise of a simulation over that of the recording below which what a law leaves of it is the error of the law's formulas.
+const QUIET: f64 = 0.5;
 
 /// Why no law can be learned from a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,7 +41,7 @@ pub enum Unlearnable {
     Undetermined,
 }
 
-/// The learned law: rigid body and friction over velocity, linear in its coefficients.
+/// The learned law: rigid body, friction over velocity and what of the catalogue the simulator holds, linear in its coefficients.
 #[derive(Clone, Debug)]
 pub struct InverseLaw {
     sign_velocity: f64,
@@ -41,19 +50,35 @@ pub struct InverseLaw {
     given: bool,
     /// Hats over speed.
     knots: usize,
-    /// Weights of the friction columns, then of the rigid body's.
+    held: Option<HeldEffects>,
+    /// Weights of the friction columns, then of the rigid body's, then of the effects'.
     coefficients: Vec<f64>,
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
     doubt: Vec<Vec<f64>>,
+    /// What the law leaves of the simulation over time.
+    left: Left,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
 }
 
-/// Learns the law of a simulation. `given` says that both recordings carry a rigid-body torque.
+/// Learns the law of a simulation: what the real recording could show of it.
 ///
 /// # Errors
 /// [`Unlearnable`] for a simulation of rest or of one velocity.
-pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnable> {
+pub fn learn(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
+    let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
+    let law = learn_beside(simulation, given, None)?;
+    let Some(noise) = noise_floor(real, &law) else { return Ok(law) };
+    let held = held_by(simulation, &law, noise);
+    let mut law = if held.is_none() { law } else { learn_beside(simulation, given, held).unwrap_or(law) };
+    if noise_floor(simulation, &law).is_some_and(|own| own < QUIET * noise) {
+        law.left = Left::of(simulation, &law.at(&simulation.states()));
+    }
+    Ok(law)
+}
+
+/// The law with given effects in it.
+fn learn_beside(simulation: &Signals, given: bool, held: Option<HeldEffects>) -> Result<InverseLaw, Unlearnable> {
     let prepared = Prepared::new(simulation, Lock::Nothing);
     let state = &prepared.state;
     let rows = prepared.rows.len();
@@ -70,9 +95,11 @@ pub fn learn(simulation: &Signals, given: bool) -> Result<InverseLaw, Unlearnabl
                 top_speed: state.top_speed(),
                 knots,
                 gravity,
-                given: given && simulation.rigid_body.is_some(),
+                given,
+                held: held.clone(),
                 coefficients: Vec::new(),
                 doubt: Vec::new(),
+                left: Left::default(),
                 rmse: 0.0,
             };
             law.fitted(&prepared)
@@ -152,6 +179,11 @@ impl InverseLaw {
         self.knots + 2
     }
 
+    /// Number of columns of the rigid body; the effects follow.
+    fn rigid_body_width(&self) -> usize {
+        2 + 2 * usize::from(self.gravity) + usize::from(self.given)
+    }
+
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
         let sign = state.averaged_sign(&state.velocity, self.sign_velocity);
         let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
@@ -169,6 +201,7 @@ impl InverseLaw {
         if self.given {
             columns.extend(state.rigid_body.clone());
         }
+        columns.extend(self.held.iter().flat_map(|held| held.columns(state)));
         columns
     }
 
@@ -187,15 +220,28 @@ impl InverseLaw {
         [next(true), next(true), next(self.gravity), next(self.gravity), next(self.given)]
     }
 
+    /// Effects of the catalogue that the simulator holds, with shape and coefficients.
+    pub fn effects(&self) -> impl Iterator<Item = (EffectId, &[f64], &[f64])> {
+        let mut begin = self.friction_width() + self.rigid_body_width();
+        self.held.iter().flat_map(|held| &held.effects).map(move |held| {
+            let place = begin..begin + held.width;
+            begin = place.end;
+            (held.effect, &held.shape[..], &self.coefficients[place])
+        })
+    }
+
     /// The law at the states of the real recording. Coulomb and viscous friction may move.
     #[must_use]
     pub fn at(&self, state: &JointState) -> Reference {
         let columns = self.columns(state);
-        let sum = |from: usize| weighted(&columns[from..], &self.coefficients[from..]);
+        let sum = |of: Range<usize>| weighted(&columns[of.clone()], &self.coefficients[of]);
+        let friction = self.friction_width();
         Reference {
-            torque: sum(0),
-            rigid_body: sum(self.friction_width()),
-            jacobian: vec![state.sign.clone(), state.velocity.clone()],
+            torque: sum(0..columns.len()),
+            rigid_body: sum(friction..friction + self.rigid_body_width()),
+            jacobian: coulomb_and_viscous(state),
+            effects: self.effects().map(|(effect, ..)| effect).collect(),
+            left: self.left.at(state),
             doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
             friction: tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect(),
         }
@@ -235,8 +281,8 @@ mod tests {
     #[test]
     fn a_law_learned_elsewhere_holds_at_other_states() {
         // Shorter, shifted in time and sampled differently.
-        let law = learn(&moving(20.0, 400.0, 1.3), false).unwrap();
         let real = moving(31.0, 500.0, 0.0);
+        let law = learn(&moving(20.0, 400.0, 1.3), &real).unwrap();
         let reference = law.at(&real.states());
         let error: f64 =
             reference.torque.iter().zip(&real.torque).skip(500).take(14000).map(|(a, b)| (a - b).powi(2)).sum();
@@ -249,6 +295,6 @@ mod tests {
     fn rest_teaches_nothing() {
         let mut still = moving(5.0, 400.0, 0.0);
         still.position.fill(0.3);
-        assert!(learn(&still, false).is_err());
+        assert!(learn(&still, &moving(5.0, 400.0, 0.0)).is_err());
     }
 }

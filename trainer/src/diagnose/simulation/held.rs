@@ -1,0 +1,101 @@
+//! Effects of the catalogue that a simulator computes itself: they are its law as much as its static friction, and nothing that
+//! the real joint has beyond it.
+
+use super::super::base::{Base, BaseKind};
+use super::super::blocks::Lock;
+use super::super::candidates::Label;
+use super::super::linear::{least_squares, residual};
+use super::super::noise::Noise;
+use super::super::prepare::Prepared;
+use super::super::random::normal;
+use super::super::reference::Reference;
+use super::super::run::{Options, diagnose};
+use super::super::signals::Signals;
+use super::{InverseLaw, root_mean_square};
+use crate::physics::{EffectId, JointState, Shape, catalogue};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// An effect of a law, at unit coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Held {
+    pub effect: EffectId,
+    pub shape: Shape,
+    /// Number of its columns.
+    pub width: usize,
+}
+
+/// Effects of a simulation, as their columns are worked out: beside the static law alone.
+#[derive(Clone, Debug)]
+pub(super) struct HeldEffects {
+    pub effects: Vec<Held>,
+    pub beside: Box<InverseLaw>,
+}
+
+/// Noise that the simulation is given, over that of the recording: what the recording shows is found in the simulation first.
+const NOISE_SHARE: f64 = 1.0 / 3.0;
+
+/// Whether an effect is a function of the state, which another recording has as well, and not of the clock.
+fn belongs_to_the_state(effect: EffectId) -> bool {
+    !matches!(effect, EffectId::SlowDrift | EffectId::TransientEvent | EffectId::TimeMisalignment)
+}
+
+/// What a diagnosis of the simulation names beside its static law. `None` where that is nothing.
+///
+/// The simulation is given a share of the `noise` of the real recording: below that the formulas of simulator and catalogue
+/// differ, and the recording could not show it.
+pub(super) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Option<HeldEffects> {
+    let mut signals = simulation.clone();
+    add_noise(&mut signals, NOISE_SHARE * noise);
+    let state = signals.states();
+    let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
+    signals.compare_with(Reference { jacobian, doubt: Vec::new(), left: None, ..law.at(&state) });
+    let options = Options { base: BaseKind::Reference, ..Options::default() };
+    let diagnosis = diagnose(&signals, "", &options).ok()?;
+    let held = diagnosis.findings.iter().filter_map(|finding| match finding.fitted.label {
+        Label::Named(effect) if belongs_to_the_state(effect) => {
+            let width = finding.fitted.coefficients.len();
+            (width > 0).then(|| Held { effect, shape: finding.fitted.shape.clone(), width })
+        }
+        _ => None,
+    });
+    let effects: Vec<Held> = held.collect();
+    (!effects.is_empty()).then(|| HeldEffects { effects, beside: Box::new(law.clone()) })
+}
+
+/// Deviation of what neither a law nor the rows before tell of a recording, behind its filter.
+pub(super) fn noise_floor(recording: &Signals, law: &InverseLaw) -> Option<f64> {
+    let mut signals = recording.clone();
+    signals.compare_with(law.at(&recording.states()));
+    let mut prepared = Prepared::new(&signals, Lock::Nothing);
+    let base = Base::fit(&mut prepared, &signals, BaseKind::Reference)?;
+    let runs = prepared.open_runs();
+    let coefficients = least_squares(&base.columns, &base.target, &runs)?;
+    let rest = residual(&base.columns, &base.target, &coefficients);
+    Noise::fit(&rest, &runs, &[]).deviation.first().copied()
+}
+
+/// Adds white noise of a deviation behind the filter to the torque.
+fn add_noise(signals: &mut Signals, deviation: f64) {
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let white: Vec<f64> = signals.torque.iter().map(|_| normal(&mut random)).collect();
+    let behind = root_mean_square(&Prepared::new(signals, Lock::Nothing).filtered(&white));
+    let scale = deviation / behind.max(f64::MIN_POSITIVE);
+    signals.torque.iter_mut().zip(&white).for_each(|(torque, noise)| *torque += scale * noise);
+}
+
+impl HeldEffects {
+    /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
+    pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
+        let law = self.beside.at(state);
+        let state = JointState { predicted: law.torque, base_friction: law.friction, ..state.clone() };
+        let hypotheses = catalogue();
+        let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);
+        let columns = self.effects.iter().flat_map(|held| {
+            let mut columns = hypothesis(held.effect).map(|h| h.columns(&state, &held.shape)).unwrap_or_default();
+            columns.resize_with(held.width, || vec![0.0; state.len()]);
+            columns
+        });
+        columns.collect()
+    }
+}
