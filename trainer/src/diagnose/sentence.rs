@@ -108,7 +108,10 @@ fn given(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
     let Some(given) = &diagnosis.given else { return Vec::new() };
     let mut sentences = Vec::new();
     if !given.holds.is_empty() {
-        let names: Vec<&str> = given.holds.iter().map(|effect| plain_name(*effect)).collect();
+        // An effect that repeats, a ripple of several orders, is said once.
+        let is_first = |(index, effect): &(usize, &EffectId)| !given.holds[..*index].contains(effect);
+        let once = given.holds.iter().enumerate().filter(is_first);
+        let names: Vec<&str> = once.map(|(_, effect)| plain_name(*effect)).collect();
         sentences.push(format!("Found in the simulation itself, and so not missing from it: {}.", names.join(", ")));
     }
     let (as_given, refitted) = (given.score.rmse, diagnosis.baseline.rmse);

@@ -122,11 +122,13 @@ fn a_given_model_is_told_by_how_much_its_own_parameters_are_off() {
     };
     told.base_parameters =
         vec![parameter("coulomb_torque_change", -1.2, 0.1), parameter("viscous_coefficient_change", 0.1, 0.2)];
-    told.given = Some(Given { score: Score { rmse: 1.5, r2: 0.6 }, holds: vec![EffectId::Temperature] });
+    let holds = vec![EffectId::PositionRipple, EffectId::Temperature, EffectId::PositionRipple];
+    told.given = Some(Given { score: Score { rmse: 1.5, r2: 0.6 }, holds });
     assert_eq!(
         tell(&told, ROTARY).given,
         [
-            "Found in the simulation itself, and so not missing from it: friction that depends on temperature.",
+            "Found in the simulation itself, and so not missing from it: torque ripple over position, friction that \
+             depends on temperature.",
             "As it was given, the model is wrong by 1.5 N m; refitting its own parameters leaves 0.92 N m: its coulomb \
              torque is 1.2 N m (\u{b1} 0.1 N m) too high."
         ]
