@@ -2,9 +2,9 @@
 
 use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::simulated;
-use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, run, set_of, signals};
+use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, diagnosis_of, run, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
-use frikan_trainer::diagnose::{BaseKind, Lock, Options, Settings, diagnose};
+use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
 use rayon::prelude::*;
@@ -88,15 +88,13 @@ fn a_noisy_simulation_is_not_taken_at_its_word() {
         (NoiseKind::CoarseEncoder, 71_100_039),
     ];
     for (noise, seed) in seeds {
-        let real = conceal(&control(noise, seed)).unwrap();
+        let case = Case { base: BaseKind::Reference, ..control(noise, seed) };
         let simulated = conceal(&control(noise, seed + 5_000_000)).unwrap();
-        let [mut real, simulated] = [real, simulated].map(|made| signals(&made.recording, &made.joint));
+        let [mut real, simulated] = [conceal(&case).unwrap(), simulated].map(|m| signals(&m.recording, &m.joint));
         let law = learn(&simulated, &real).unwrap();
         real.compare_with(law.at(&real.states()));
-        let settings = Settings { seed, ..Settings::default() };
-        let options = Options { base: BaseKind::Reference, settings, ..Options::default() };
-        let named: Vec<EffectId> =
-            diagnose(&real, "N m", &options).unwrap().findings.iter().map(|finding| finding.effect).collect();
+        let diagnosis = diagnosis_of(&case, &real).unwrap();
+        let named: Vec<EffectId> = diagnosis.findings.iter().map(|finding| finding.effect).collect();
         assert_eq!(named, [], "{noise:?}, seed {seed}");
     }
 }

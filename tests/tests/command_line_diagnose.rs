@@ -5,7 +5,8 @@ use std::path::Path;
 use frikan_tests::command::{Run, run};
 use serde_json::Value;
 
-/// A folder with the elbow of the fixtures: as it is, sampled more slowly, moved little, and at rest.
+/// A folder with the elbow of the fixtures: as it is, sampled more slowly, with half as much friction again, without noise, moved
+/// little, and at rest.
 fn bench() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
@@ -17,6 +18,8 @@ fn bench() -> tempfile::TempDir {
     for (name, text) in [
         ("joint.toml", elbow.clone()),
         ("slower.toml", elbow.replace("rate_Hz = 250.0", "rate_Hz = 180.0")),
+        ("rougher.toml", elbow.replace("coulomb_torque_Nm = 2.0", "coulomb_torque_Nm = 3.0")),
+        ("quiet.toml", elbow.replace("white_torque_Nm = 0.1", "white_torque_Nm = 0.0\ncoloured_torque_Nm = 0.0")),
         ("narrow.toml", moved(NARROW)),
         ("rest.toml", moved("{ kind = \"rest\" }")),
     ] {
@@ -88,9 +91,6 @@ fn a_simulation_that_is_right_leaves_nothing_to_find() {
 fn a_simulation_with_a_wrong_coulomb_friction_is_told_by_how_much() {
     let folder = bench();
     let at = folder.path();
-    let elbow = std::fs::read_to_string(at.join("joint.toml")).unwrap();
-    let rougher = elbow.replace("coulomb_torque_Nm = 2.0", "coulomb_torque_Nm = 3.0");
-    std::fs::write(at.join("rougher.toml"), rougher).unwrap();
     simulate(at, "rougher.toml --duration 40 --seed 3 -o real.csv");
     simulate(at, "joint.toml --duration 40 --seed 7 -o simulated.csv");
     let told = diagnose(at, "real.csv --simulation simulated.csv --json - --report page.html");
@@ -111,9 +111,6 @@ fn a_simulation_with_a_wrong_coulomb_friction_is_told_by_how_much() {
 fn what_a_simulator_holds_too_much_of_is_said_and_its_effects_reach_the_image() {
     let folder = bench();
     let at = folder.path();
-    let elbow = std::fs::read_to_string(at.join("joint.toml")).unwrap();
-    let quiet = elbow.replace("white_torque_Nm = 0.1", "white_torque_Nm = 0.0\ncoloured_torque_Nm = 0.0");
-    std::fs::write(at.join("quiet.toml"), quiet).unwrap();
     simulate(at, "joint.toml --effect presliding=0.5 --duration 40 --seed 3 -o real.csv");
     for (name, amplitude) in [("same", 0.5), ("stronger", 1.5)] {
         simulate(at, &format!("quiet.toml --effect presliding={amplitude} --duration 40 --seed 3 -o {name}.csv"));

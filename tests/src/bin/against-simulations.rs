@@ -2,11 +2,9 @@
 
 use clap::Parser;
 use frikan_tests::concealed::simulated::{report, run};
-use frikan_tests::concealed::{Case, Hidden, PAIRS, WITHOUT_TORQUE};
+use frikan_tests::concealed::{Case, Hidden, PAIRS, WITHOUT_TORQUE, page};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Compares recordings with simulations and reports what is named.
 #[derive(Parser)]
@@ -28,33 +26,13 @@ struct Arguments {
     output: Option<std::path::PathBuf>,
 }
 
-/// Seeds that one run may take.
-const SEEDS_OF_A_RUN: u64 = 10_000;
-
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
-    let cases = cases(&arguments);
-    let done = AtomicUsize::new(0);
-    let results: Vec<_> = cases
-        .par_iter()
-        .filter_map(|(case, held)| {
-            let result = run(case, *held).map_err(|error| eprintln!("{case:?}: {error}")).ok();
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if count.is_multiple_of(20) {
-                eprintln!("{count} of {} cases", cases.len());
-            }
-            result
-        })
-        .collect();
-    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
-    let text = report(&results, &format!("cargo run --release -p frikan-tests --bin against-simulations -- {command}"));
-    match &arguments.output {
-        Some(path) => std::fs::write(path, text),
-        None => {
-            println!("{text}");
-            Ok(())
-        }
-    }
+    let results: Vec<_> = page::counted(&cases(&arguments), |(case, held)| {
+        run(case, *held).map_err(|error| eprintln!("{case:?}: {error}")).ok()
+    });
+    let results: Vec<_> = results.into_iter().flatten().collect();
+    page::put(&report(&results, &page::command("against-simulations")), arguments.output.as_deref())
 }
 
 /// Every recording with the number of its effects that the simulator holds.
@@ -74,6 +52,6 @@ fn cases(arguments: &Arguments) -> Vec<(Case, usize)> {
     for (first, second) in PAIRS {
         add(Hidden::Pair(first, second, arguments.strength), NoiseKind::Coloured, 1, arguments.seeds);
     }
-    (arguments.first_seed * SEEDS_OF_A_RUN..).zip(&mut cases).for_each(|(seed, (case, _))| case.seed = seed);
+    page::seeds(arguments.first_seed).zip(&mut cases).for_each(|(seed, (case, _))| case.seed = seed);
     cases
 }

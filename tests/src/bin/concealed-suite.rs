@@ -5,11 +5,10 @@ use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
 use frikan_tests::concealed::semi_real::Added;
 use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::tables::report;
-use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, run, semi_real};
+use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, page, run, semi_real};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Hides effects in simulated recordings and reports what the diagnosis makes of them.
 #[derive(Parser)]
@@ -52,40 +51,19 @@ struct Arguments {
     output: Option<std::path::PathBuf>,
 }
 
-/// Seeds that one run may take.
-const SEEDS_OF_A_RUN: u64 = 10_000;
-
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
-    let cases = cases(&arguments);
-    let done = AtomicUsize::new(0);
-    let outcomes: Vec<Result<Row, String>> = cases
-        .par_iter()
-        .map(|case| {
-            let row = run(case).map(|outcome| Row::of(&outcome)).map_err(|error| format!("{case:?}: {error}"));
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if count.is_multiple_of(20) {
-                eprintln!("{count} of {} cases", cases.len());
-            }
-            row
-        })
-        .collect();
+    let outcomes: Vec<Result<Row, String>> = page::counted(&cases(&arguments), |case| {
+        run(case).map(|outcome| Row::of(&outcome)).map_err(|error| format!("{case:?}: {error}"))
+    });
     let (rows, errors): (Vec<_>, Vec<_>) = outcomes.into_iter().partition(Result::is_ok);
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
     let errors: Vec<String> = errors.into_iter().filter_map(Result::err).collect();
-    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
-    let command = format!("cargo run --release -p frikan-tests --bin concealed-suite -- {command}");
-    let mut text = report(&rows, &errors, &command);
+    let mut text = report(&rows, &errors, &page::command("concealed-suite"));
     if arguments.afterwards > 0 {
         text += &beyond(&arguments);
     }
-    match &arguments.output {
-        Some(path) => std::fs::write(path, text),
-        None => {
-            println!("{text}");
-            Ok(())
-        }
-    }
+    page::put(&text, arguments.output.as_deref())
 }
 
 /// What goes beyond one recording each: other trajectories, confounded recordings with the proposed motion, real recordings.
@@ -139,7 +117,6 @@ fn cases(arguments: &Arguments) -> Vec<Case> {
     for (first, second) in PAIRS {
         add(Hidden::Pair(first, second, 150.0), NoiseKind::Coloured, plain, arguments.pairs);
     }
-    // Cases that share a seed would share their noise, and with it their luck.
-    (arguments.first_seed * SEEDS_OF_A_RUN..).zip(&mut cases).for_each(|(seed, case)| case.seed = seed);
+    page::seeds(arguments.first_seed).zip(&mut cases).for_each(|(seed, case)| case.seed = seed);
     cases
 }

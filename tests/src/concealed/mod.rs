@@ -6,6 +6,7 @@ pub mod advised;
 pub mod afterwards;
 pub mod false_alarms;
 pub mod intervals;
+pub mod page;
 pub mod semi_real;
 pub mod simulated;
 pub mod summary;
@@ -179,19 +180,24 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
     Ok(amplitude)
 }
 
+/// The diagnosis of a case's signals.
+///
+/// # Errors
+/// What keeps the recording from being diagnosed.
+pub fn diagnosis_of(case: &Case, signals: &Signals) -> Result<Diagnosis, String> {
+    let settings = Settings { seed: case.seed, ..Settings::default() };
+    let options = Options { base: case.base, settings, ..Options::default() };
+    diagnose(signals, "N m", &options).map_err(|e| e.to_string())
+}
+
 /// Runs a case.
 pub fn run(case: &Case) -> Result<Outcome, String> {
     let concealed = conceal(case).map_err(|e| e.to_string())?;
-    let options = Options {
-        base: case.base,
-        settings: Settings { seed: case.seed, ..Settings::default() },
-        ..Options::default()
-    };
     let mut signals = signals(&concealed.recording, &concealed.joint);
     if case.base == BaseKind::Reference {
         symbolic::compare_with_own_law(&mut signals)?;
     }
-    let diagnosis = diagnose(&signals, "N m", &options).map_err(|e| e.to_string())?;
+    let diagnosis = diagnosis_of(case, &signals)?;
     Ok(Outcome { case: case.clone(), concealed, diagnosis })
 }
 

@@ -3,9 +3,8 @@
 use std::fmt::Write;
 
 use super::summary::share;
-use super::{Case, Hidden, conceal, set_of, signals};
+use super::{Case, Hidden, conceal, diagnosis_of, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
-use frikan_trainer::diagnose::{BaseKind, Options, Settings, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind};
 
@@ -36,9 +35,7 @@ pub fn run(case: &Case, held: usize) -> Result<Compared, String> {
     let mut recorded = signals(&real.recording, &real.joint);
     let law = learn(&signals(&simulation, &simulator), &recorded).map_err(|e| e.to_string())?;
     recorded.compare_with(law.at(&recorded.states()));
-    let settings = Settings { seed: case.seed, ..Settings::default() };
-    let options = Options { base: BaseKind::Reference, settings, ..Options::default() };
-    let diagnosis = diagnose(&recorded, "N m", &options).map_err(|e| e.to_string())?;
+    let diagnosis = diagnosis_of(case, &recorded)?;
     let mut names = real.joint.effects.into_iter().map(|effect| effect.name);
     Ok(Compared {
         case: case.clone(),
@@ -48,7 +45,25 @@ pub fn run(case: &Case, held: usize) -> Result<Compared, String> {
     })
 }
 
+/// What the simulator holds, and what the recording hides beyond it.
+const GROUPS: [&str; 4] = [
+    "all of it: static friction, five kinds of noise",
+    "all of it: the one hidden effect",
+    "all but the one hidden effect",
+    "the first of two hidden effects",
+];
+
 impl Compared {
+    /// Place among [`GROUPS`].
+    fn group(&self) -> usize {
+        match (self.held.len(), &self.missing) {
+            (0, None) => 0,
+            (_, None) => 1,
+            (0, Some(_)) => 2,
+            _ => 3,
+        }
+    }
+
     /// What was named first.
     fn first(&self) -> Option<EffectId> {
         self.findings.first().map(|set| set[0])
@@ -74,25 +89,6 @@ impl Compared {
         match &self.case.hidden {
             Hidden::Nothing => format!("{:?} noise", self.case.noise),
             _ => format!("held: {}; missing: {}", self.held.join(", "), self.missing.as_deref().unwrap_or("")),
-        }
-    }
-}
-
-/// What the simulator holds, and what the recording hides beyond it.
-const GROUPS: [&str; 4] = [
-    "all of it: static friction, five kinds of noise",
-    "all of it: the one hidden effect",
-    "all but the one hidden effect",
-    "the first of two hidden effects",
-];
-
-impl Compared {
-    fn group(&self) -> usize {
-        match (self.held.len(), &self.missing) {
-            (0, None) => 0,
-            (_, None) => 1,
-            (0, Some(_)) => 2,
-            _ => 3,
         }
     }
 }
