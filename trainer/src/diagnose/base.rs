@@ -93,10 +93,11 @@ impl Base {
         if !delay_is_nuisance {
             columns.pop();
         }
-        let reference = signals.reference.iter();
-        let doubt = reference.clone().flat_map(|reference| &reference.doubt);
-        let doubt = doubt.map(|torque| prepared.filtered(torque)).collect();
-        let held = reference.flat_map(|reference| reference.effects.clone()).collect();
+        let (held, doubt) = match &signals.reference {
+            Some(reference) => (reference.effects.clone(), &reference.doubt[..]),
+            None => (Vec::new(), &[][..]),
+        };
+        let doubt = doubt.iter().map(|torque| prepared.filtered(torque)).collect();
         Some(Self { columns, names, target, held, doubt, delay, delay_is_nuisance })
     }
 }

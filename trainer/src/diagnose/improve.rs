@@ -76,14 +76,8 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
     terms.first_cell = cells.len() as u16;
     let mut remarks = Vec::new();
     if let Origin::Simulation(law) = origin {
-        for (effect, shape, coefficients) in law.effects() {
-            remarks.push(write_term(
-                &mut terms,
-                &context,
-                (effect, shape, coefficients),
-                ", as the simulation holds it",
-            ));
-        }
+        let written = |effect| write_term(&mut terms, &context, effect, ", as the simulation holds it");
+        remarks.extend(law.effects().map(written));
     }
     remarks.extend(write_findings(diagnosis, &mut terms, &context));
     model.rigid_body = terms.rigid_body;

@@ -122,6 +122,11 @@ pub(crate) fn residual(columns: &[Vec<f64>], target: &[f64], coefficients: &[f64
     residual
 }
 
+/// What the least-squares fit over runs leaves at every row; `None` where it is singular.
+pub(crate) fn left_by_fit(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<Vec<f64>> {
+    least_squares(columns, target, runs).map(|coefficients| residual(columns, target, &coefficients))
+}
+
 /// Orthonormal basis of the span of columns over runs (modified Gram-Schmidt, twice); columns that depend on
 /// the ones before are left out.
 pub(crate) fn orthonormal(columns: &[Vec<f64>], runs: &[Range<usize>]) -> Vec<Vec<f64>> {

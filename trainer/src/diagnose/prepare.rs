@@ -2,6 +2,7 @@
 
 use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
+use super::linear::{least_squares, left_by_fit};
 use super::signals::Signals;
 use crate::physics::{JointState, MemoryAxes, OtherJoint, quantile, top_speed};
 use std::ops::Range;
@@ -240,15 +241,12 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
         .map(|series| prepared.filtered(series))
         .collect();
     let target = prepared.filtered(&signals.torque);
-    let Some(coefficients) = super::linear::least_squares(&columns, &target, &prepared.open_runs()) else {
-        return true;
-    };
-    let friction = prepared.filtered(&prepared.friction_torque);
-    let Some(rest) = super::linear::least_squares(&columns, &friction, &prepared.open_runs()) else { return true };
-    let residual = super::linear::residual(&columns, &friction, &rest);
     let rows = prepared.open_runs();
+    let Some(coefficients) = least_squares(&columns, &target, &rows) else { return true };
+    let friction = prepared.filtered(&prepared.friction_torque);
+    let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
     let count: usize = rows.iter().map(|run| run.len()).sum();
-    let energy: f64 = rows.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
+    let energy: f64 = rows.iter().flat_map(|run| &left[run.clone()]).map(|e| e * e).sum();
     let deviation = (energy / count.max(1) as f64).sqrt();
     let grain = signals.position_resolution / 12f64.sqrt() * prepared.filter.second_derivative_gain(signals.period);
     coefficients[2].abs() * grain < ENCODER_SHARE * deviation

@@ -6,7 +6,7 @@ use super::channel::Channel;
 use super::conclude::Fitted;
 use super::doubt::Doubt;
 use super::evidence::{Bench, GroupEvidence};
-use super::linear::{residual, weighted};
+use super::linear::{left_by_fit, weighted};
 use super::noise::{Noise, noise_features};
 use super::null::NullDraws;
 use super::prepare::Prepared;
@@ -302,11 +302,8 @@ impl<'a> Search<'a> {
     /// errors that pass for noise.
     pub(crate) fn noise_after(&self, columns: &[Vec<f64>]) -> Noise {
         let runs = self.prepared.open_runs();
-        let rest = match super::linear::least_squares(columns, &self.base.target, &runs) {
-            Some(coefficients) => residual(columns, &self.base.target, &coefficients),
-            None => self.base.target.clone(),
-        };
-        Noise::fit(&rest, &runs, &self.features)
+        let left = left_by_fit(columns, &self.base.target, &runs);
+        Noise::fit(left.as_ref().unwrap_or(&self.base.target), &runs, &self.features)
     }
 }
 

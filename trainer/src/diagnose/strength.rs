@@ -3,7 +3,7 @@
 use super::base::{Base, BaseKind};
 use super::blocks::Lock;
 use super::evidence::Bench;
-use super::linear::{dot, least_squares, residual};
+use super::linear::{dot, left_by_fit, residual};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
 use super::signals::Signals;
@@ -30,8 +30,7 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let runs = prepared.open_runs();
     let filtered = prepared.filtered(torque);
     let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();
-    let coefficients = least_squares(&known, &base.target, &runs)?;
-    let model = Noise::fit(&residual(&known, &base.target, &coefficients), &runs, &noise_features(&prepared));
+    let model = Noise::fit(&left_by_fit(&known, &base.target, &runs)?, &runs, &noise_features(&prepared));
     let white = |column: &[f64]| {
         let mut white = column.to_vec();
         model.whiten(&mut white, &runs);

@@ -4,7 +4,7 @@
 use super::super::base::{Base, BaseKind};
 use super::super::blocks::Lock;
 use super::super::candidates::Label;
-use super::super::linear::{least_squares, residual};
+use super::super::linear::left_by_fit;
 use super::super::noise::Noise;
 use super::super::prepare::Prepared;
 use super::super::random::normal;
@@ -49,7 +49,7 @@ pub(super) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Opt
     add_noise(&mut signals, NOISE_SHARE * noise);
     let state = signals.states();
     let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
-    signals.compare_with(Reference { jacobian, doubt: Vec::new(), left: None, ..law.at(&state) });
+    signals.compare_with(Reference { jacobian, doubt: Vec::new(), ..law.at(&state) });
     let options = Options { base: BaseKind::Reference, ..Options::default() };
     let diagnosis = diagnose(&signals, "", &options).ok()?;
     let held = diagnosis.findings.iter().filter_map(|finding| match finding.fitted.label {
@@ -70,9 +70,8 @@ pub(super) fn noise_floor(recording: &Signals, law: &InverseLaw) -> Option<f64> 
     let mut prepared = Prepared::new(&signals, Lock::Nothing);
     let base = Base::fit(&mut prepared, &signals, BaseKind::Reference)?;
     let runs = prepared.open_runs();
-    let coefficients = least_squares(&base.columns, &base.target, &runs)?;
-    let rest = residual(&base.columns, &base.target, &coefficients);
-    Noise::fit(&rest, &runs, &[]).deviation.first().copied()
+    let left = left_by_fit(&base.columns, &base.target, &runs)?;
+    Noise::fit(&left, &runs, &[]).deviation.first().copied()
 }
 
 /// Adds white noise of a deviation behind the filter to the torque.
@@ -87,8 +86,8 @@ fn add_noise(signals: &mut Signals, deviation: f64) {
 impl HeldEffects {
     /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
     pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let law = self.beside.at(state);
-        let state = JointState { predicted: law.torque, base_friction: law.friction, ..state.clone() };
+        let (predicted, base_friction) = (self.beside.torque(state), self.beside.friction_curve());
+        let state = JointState { predicted, base_friction, ..state.clone() };
         let hypotheses = catalogue();
         let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);
         let columns = self.effects.iter().flat_map(|held| {

@@ -1,6 +1,5 @@
 //! What a learned law leaves of its simulation: errors of its formulas, which the same motion meets again in the recording.
 
-use super::super::reference::Reference;
 use super::super::signals::Signals;
 use crate::physics::JointState;
 
@@ -8,7 +7,7 @@ use crate::physics::JointState;
 const ONE_MOTION: f64 = 0.02;
 
 /// Torque left over time, with the position at which it was left.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Left {
     /// Time since the start, s.
     time: Vec<f64>,
@@ -17,12 +16,12 @@ pub(super) struct Left {
 }
 
 impl Left {
-    pub fn of(simulation: &Signals, law: &Reference) -> Self {
+    pub fn of(simulation: &Signals, law: &[f64]) -> Self {
         let start = simulation.time.first().copied().unwrap_or(0.0);
         Self {
             time: simulation.time.iter().map(|time| time - start).collect(),
             position: simulation.position.clone(),
-            torque: simulation.torque.iter().zip(&law.torque).map(|(torque, law)| torque - law).collect(),
+            torque: simulation.torque.iter().zip(law).map(|(torque, law)| torque - law).collect(),
         }
     }
 
@@ -63,8 +62,7 @@ mod tests {
             rotary: true,
             ..Signals::default()
         };
-        let law = Reference { torque: vec![100.0; 400], ..Reference::default() };
-        let left = Left::of(&moving(0.0, 3.0), &law);
+        let left = Left::of(&moving(0.0, 3.0), &[100.0; 400]);
         let later = left.at(&moving(50.0, 3.0).states()).unwrap();
         assert!((later[250] - 150.0).abs() < 1e-6 && later.last() == Some(&0.0), "{}", later[250]);
         assert!(left.at(&moving(0.0, 3.5).states()).is_none());

@@ -15,7 +15,6 @@ use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
 use held::{HeldEffects, held_by, noise_floor};
 use left::Left;
-use std::ops::Range;
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -55,8 +54,8 @@ pub struct InverseLaw {
     coefficients: Vec<f64>,
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
     doubt: Vec<Vec<f64>>,
-    /// What the law leaves of the simulation over time.
-    left: Left,
+    /// What the law leaves of a simulation that is quiet.
+    left: Option<Left>,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
 }
@@ -67,19 +66,18 @@ pub struct InverseLaw {
 /// [`Unlearnable`] for a simulation of rest or of one velocity.
 pub fn learn(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
-    let law = learn_beside(simulation, given, None)?;
+    let prepared = Prepared::new(simulation, Lock::Nothing);
+    let law = learn_with(None, &prepared, given)?;
     let Some(noise) = noise_floor(real, &law) else { return Ok(law) };
     let held = held_by(simulation, &law, noise);
-    let mut law = if held.is_none() { law } else { learn_beside(simulation, given, held).unwrap_or(law) };
-    if noise_floor(simulation, &law).is_some_and(|own| own < QUIET * noise) {
-        law.left = Left::of(simulation, &law.at(&simulation.states()));
-    }
+    let mut law = if held.is_none() { law } else { learn_with(held, &prepared, given).unwrap_or(law) };
+    let is_quiet = noise_floor(simulation, &law).is_some_and(|own| own < QUIET * noise);
+    law.left = is_quiet.then(|| Left::of(simulation, &law.torque(&prepared.state)));
     Ok(law)
 }
 
 /// The law with given effects in it.
-fn learn_beside(simulation: &Signals, given: bool, held: Option<HeldEffects>) -> Result<InverseLaw, Unlearnable> {
-    let prepared = Prepared::new(simulation, Lock::Nothing);
+fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
     if rows < LEAST_ROWS {
@@ -99,16 +97,16 @@ fn learn_beside(simulation: &Signals, given: bool, held: Option<HeldEffects>) ->
                 held: held.clone(),
                 coefficients: Vec::new(),
                 doubt: Vec::new(),
-                left: Left::default(),
+                left: None,
                 rmse: 0.0,
             };
-            law.fitted(&prepared)
+            law.fitted(prepared)
         })
         .collect();
     // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
     let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
     let runs = prepared.open_runs();
-    let noise = Noise::fit(finest, &runs, &noise_features(&prepared));
+    let noise = Noise::fit(finest, &runs, &noise_features(prepared));
     let criterion = |(law, rest): &(InverseLaw, Vec<f64>)| {
         let mut white = rest.clone();
         noise.whiten(&mut white, &runs);
@@ -117,7 +115,7 @@ fn learn_beside(simulation: &Signals, given: bool, held: Option<HeldEffects>) ->
     };
     let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
     let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
-    law.doubt = law.doubts(&prepared, &rest, &noise);
+    law.doubt = law.doubts(prepared, &rest, &noise);
     Ok(law)
 }
 
@@ -230,20 +228,30 @@ impl InverseLaw {
         })
     }
 
+    /// Whole torque of the law at the states of a recording.
+    fn torque(&self, state: &JointState) -> Vec<f64> {
+        weighted(&self.columns(state), &self.coefficients)
+    }
+
+    /// Friction as pairs (velocity, torque) in ascending velocity.
+    fn friction_curve(&self) -> Vec<(f64, f64)> {
+        tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect()
+    }
+
     /// The law at the states of the real recording. Coulomb and viscous friction may move.
     #[must_use]
     pub fn at(&self, state: &JointState) -> Reference {
         let columns = self.columns(state);
-        let sum = |of: Range<usize>| weighted(&columns[of.clone()], &self.coefficients[of]);
         let friction = self.friction_width();
+        let rigid_body = friction..friction + self.rigid_body_width();
         Reference {
-            torque: sum(0..columns.len()),
-            rigid_body: sum(friction..friction + self.rigid_body_width()),
+            torque: weighted(&columns, &self.coefficients),
+            rigid_body: weighted(&columns[rigid_body.clone()], &self.coefficients[rigid_body]),
             jacobian: coulomb_and_viscous(state),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
-            left: self.left.at(state),
+            left: self.left.as_ref().and_then(|left| left.at(state)),
             doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
-            friction: tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect(),
+            friction: self.friction_curve(),
         }
     }
 }
