@@ -1,7 +1,7 @@
 //! Every effect of the catalogue, hidden in a recording and named by a diagnosis that knows nothing of it.
 
 use frikan_tests::concealed::intervals::held;
-use frikan_tests::concealed::simulated;
+use frikan_tests::concealed::simulated::{self, Comparison, Group};
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, diagnosis_of, run, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
@@ -111,7 +111,7 @@ fn what_a_simulator_holds_is_not_missing_from_it() {
             base: BaseKind::Reference,
             ..control(NoiseKind::Coloured, seed)
         };
-        let compared = simulated::run(&case, 1).unwrap();
+        let compared = simulated::run(&Comparison { group: Group::Held, case }).unwrap();
         assert_eq!(compared.findings, Vec::<Vec<EffectId>>::new(), "{effect}, seed {seed}");
     });
 }
@@ -123,9 +123,22 @@ fn what_a_simulator_lacks_is_named_beside_what_it_holds() {
         let seed = 71_510_000 + index as u64;
         let hidden = Hidden::Pair(held, missing, 80.0);
         let case = Case { hidden, base: BaseKind::Reference, ..control(NoiseKind::Coloured, seed) };
-        let compared = simulated::run(&case, 1).unwrap();
+        let compared = simulated::run(&Comparison { group: Group::HeldAndMissing, case }).unwrap();
         let first: Vec<&str> = compared.findings.iter().map(|set| set[0].name()).collect();
         assert_eq!(first, [missing], "beside {held}, seed {seed}");
+    });
+}
+
+/// Beyond the simulated motion the formulas of a strong effect err by more than the noise, and that was named.
+#[test]
+fn the_formulas_of_a_shorter_simulation_are_not_taken_for_physics() {
+    let effects = ["presliding", "frictional_lag", "dwell_breakaway", "windup_hysteresis"];
+    effects.into_par_iter().enumerate().for_each(|(index, effect)| {
+        let seed = 71_520_000 + index as u64;
+        let hidden = Hidden::Effect(effect, 8000.0);
+        let case = Case { hidden, base: BaseKind::Reference, ..control(NoiseKind::Coloured, seed) };
+        let compared = simulated::run(&Comparison { group: Group::ShorterHeld, case }).unwrap();
+        assert_eq!(compared.findings, Vec::<Vec<EffectId>>::new(), "{effect}, seed {seed}");
     });
 }
 

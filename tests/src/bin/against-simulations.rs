@@ -1,7 +1,7 @@
 //! Compares recordings with simulations that hold none, one or all of what the real joint hides, writes the page.
 
 use clap::Parser;
-use frikan_tests::concealed::simulated::{report, run};
+use frikan_tests::concealed::simulated::{Comparison, Group, report, run};
 use frikan_tests::concealed::{Case, Hidden, PAIRS, WITHOUT_TORQUE, page};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
@@ -12,7 +12,7 @@ struct Arguments {
     /// Recordings of each kind of noise of a joint that hides nothing.
     #[arg(long, default_value_t = 2)]
     controls: u64,
-    /// Recordings of each effect that the simulator holds, as many that it lacks, and of each pair of which it holds one.
+    /// Recordings of each effect and of each pair of them, for every way in which a simulator can hold them.
     #[arg(long, default_value_t = 1)]
     seeds: u64,
     /// Non-centrality of each hidden effect.
@@ -26,32 +26,40 @@ struct Arguments {
     output: Option<std::path::PathBuf>,
 }
 
+/// How much larger than the others an effect is of which a shorter simulation holds all.
+const LARGE: f64 = 10.0;
+
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
-    let results: Vec<_> = page::counted(&cases(&arguments), |(case, held)| {
-        run(case, *held).map_err(|error| eprintln!("{case:?}: {error}")).ok()
+    let results: Vec<_> = page::counted(&comparisons(&arguments), |comparison| {
+        run(comparison).map_err(|error| eprintln!("{comparison:?}: {error}")).ok()
     });
     let results: Vec<_> = results.into_iter().flatten().collect();
     page::put(&report(&results, &page::command("against-simulations")), arguments.output.as_deref())
 }
 
-/// Every recording with the number of its effects that the simulator holds.
-fn cases(arguments: &Arguments) -> Vec<(Case, usize)> {
-    let mut cases = Vec::new();
-    let mut add = |hidden: Hidden, noise: NoiseKind, held: usize, count: u64| {
+fn comparisons(arguments: &Arguments) -> Vec<Comparison> {
+    let mut comparisons = Vec::new();
+    let mut add = |group: Group, hidden: Hidden, noise: NoiseKind, count: u64| {
         let case = Case { hidden, noise, base: BaseKind::Reference, seed: 0 };
-        cases.extend((0..count).map(|_| (case.clone(), held)));
+        comparisons.extend((0..count).map(|_| Comparison { group, case: case.clone() }));
     };
-    NoiseKind::ALL.into_iter().for_each(|noise| add(Hidden::Nothing, noise, 0, arguments.controls));
+    NoiseKind::ALL.into_iter().for_each(|noise| add(Group::Control, Hidden::Nothing, noise, arguments.controls));
+    // Non-centrality goes with the square of the amplitude.
+    let [strength, large] = [1.0, LARGE * LARGE].map(|times| times * arguments.strength);
     for entry in CATALOGUE.iter().filter(|entry| !WITHOUT_TORQUE.contains(&entry.name)) {
-        for held in [1, 0] {
-            let hidden = Hidden::Effect(entry.name, arguments.strength);
-            add(hidden, NoiseKind::Coloured, held, arguments.seeds);
+        add(Group::Held, Hidden::Effect(entry.name, strength), NoiseKind::Coloured, arguments.seeds);
+        add(Group::Missing, Hidden::Effect(entry.name, strength), NoiseKind::Coloured, arguments.seeds);
+        // What goes with the clock goes on once the simulation has ended.
+        if !["slow_drift", "transient_event"].contains(&entry.name) {
+            add(Group::ShorterHeld, Hidden::Effect(entry.name, large), NoiseKind::Coloured, arguments.seeds);
         }
     }
     for (first, second) in PAIRS {
-        add(Hidden::Pair(first, second, arguments.strength), NoiseKind::Coloured, 1, arguments.seeds);
+        for group in [Group::HeldAndMissing, Group::ShorterHeldAndMissing] {
+            add(group, Hidden::Pair(first, second, strength), NoiseKind::Coloured, arguments.seeds);
+        }
     }
-    page::seeds(arguments.first_seed).zip(&mut cases).for_each(|(seed, (case, _))| case.seed = seed);
-    cases
+    page::seeds(arguments.first_seed).zip(&mut comparisons).for_each(|(seed, comparison)| comparison.case.seed = seed);
+    comparisons
 }

@@ -250,8 +250,10 @@ fn exit_status(verdict: Verdict) -> u8 {
 
 fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
-    let rest =
-        [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten().map(|s| format!("{s}\n"));
+    let rest = [&story.proof, &story.minor, &story.doubtful, &story.withdrawn, &story.limits]
+        .into_iter()
+        .flatten()
+        .map(|s| format!("{s}\n"));
     let advice = advice.map(|plan| format!("{}.\n", capital(&plan.sentence())));
     let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()

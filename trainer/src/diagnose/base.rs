@@ -30,6 +30,8 @@ pub struct Base {
     pub held: Vec<EffectId>,
     /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
+    /// Root mean square of what the formulas of a reference get wrong.
+    pub formula_error: f64,
     /// Delay of the torque against the position that the fit found, in s.
     pub delay: f64,
     /// Whether the delay is small enough to be the sampling's own and is carried as a nuisance.
@@ -98,7 +100,8 @@ impl Base {
             None => (Vec::new(), &[][..]),
         };
         let doubt = doubt.iter().map(|torque| prepared.filtered(torque)).collect();
-        Some(Self { columns, names, target, held, doubt, delay, delay_is_nuisance })
+        let formula_error = signals.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
+        Some(Self { columns, names, target, held, doubt, formula_error, delay, delay_is_nuisance })
     }
 }
 

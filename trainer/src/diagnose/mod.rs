@@ -41,6 +41,7 @@ mod round;
 mod run;
 mod search;
 pub mod sentence;
+mod set_aside;
 mod settings;
 mod signals;
 pub mod simulation;

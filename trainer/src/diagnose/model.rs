@@ -44,6 +44,7 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
         jacobian: jacobian(model, state),
         effects: Vec::new(),
         left: None,
+        formula_error: 0.0,
         doubt: Vec::new(),
         friction: curve(model, state),
     })

@@ -87,6 +87,9 @@ pub struct Diagnosis {
     /// Effects that were found beside larger ones but account for little, with their share of the removable error; they are
     /// not in the improved model.
     pub minor: Vec<(EffectId, f64)>,
+    /// Effects that were found but explain no more than the formulas of the reference get wrong, with the root mean square of what
+    /// they explain.
+    pub doubtful: Vec<(EffectId, f64)>,
     /// Effects that were found but withdrawn, because locked data did not confirm them.
     pub withdrawn: Vec<EffectId>,
     /// What would have been seen.

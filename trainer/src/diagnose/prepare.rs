@@ -43,7 +43,7 @@ const CHANNEL_WIDTH: f64 = 1.6;
 /// Widest filter, in cycles a sample.
 const WIDEST: f64 = 0.35;
 /// Standard deviation of normal noise over the median of its magnitude.
-const DEVIATION_PER_MEDIAN: f64 = 1.4826;
+pub(super) const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 /// Filter of the nuisance column of the velocity over that before the motion.
 const NARROW_VELOCITY: f64 = 0.4;
 /// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.

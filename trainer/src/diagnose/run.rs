@@ -9,10 +9,11 @@ use super::health::{coarse_position, examine};
 use super::linear::weighted;
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
-use super::prove::{prove, prove_alone, rest};
+use super::prove::{prove, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
-use super::search::{Accepted, Search, SearchOutcome};
+use super::search::{Search, SearchOutcome};
+use super::set_aside::{FORMULA_ERROR, set_aside_doubtful, set_aside_minor, withdraw_unproven};
 use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
@@ -57,12 +58,6 @@ pub enum Refusal {
 const LEAST_ROWS: usize = 150;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
-/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque; a structure
-/// without a name takes up more of the error of a formula.
-const MINOR_SHARE: f64 = 0.06;
-const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
-/// Root mean square over that of the recorded torque below which it is small.
-const MINOR_TORQUE: f64 = 0.025;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
@@ -144,8 +139,9 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
     let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
     polish(&search, &mut accepted, &noise);
     let withdrawn = withdraw_unproven(&search, &mut accepted);
+    let doubtful = set_aside_doubtful(&search, &mut accepted);
     let minor = set_aside_minor(&search, &mut accepted, &baseline);
-    if !withdrawn.is_empty() || !minor.is_empty() {
+    if !withdrawn.is_empty() || !doubtful.is_empty() || !minor.is_empty() {
         polish(&search, &mut accepted, &noise);
     }
     let improved = refit(&search, &accepted).ok_or(Refusal::Undetermined)?;
@@ -175,6 +171,7 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         rollout: roll_out(&search, &baseline, &improved),
         findings,
         minor,
+        doubtful,
         withdrawn,
         rivals: last_round,
         cut_off_hz: prepared.filter.cut_off_hz,
@@ -183,56 +180,6 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         baseline_refit: baseline,
         improved_refit: improved,
     })
-}
-
-/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for or against it.
-fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
-    let mut withdrawn = Vec::new();
-    while let Some(all) = refit(search, accepted) {
-        let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
-        let unproven = lasting.filter_map(|i| {
-            let proof = prove_alone(search, accepted, i, &all)?;
-            let Accepted { label, family_wise, .. } = &accepted[i];
-            (!search.settings.carried(label, *family_wise, &proof)).then_some((i, proof.gain_nats))
-        });
-        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-        withdrawn.push(accepted.remove(weakest).effect());
-    }
-    withdrawn
-}
-
-/// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the
-/// error of the larger one's formula may pass for an effect. Effects that repeat count together.
-fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let energy = |accepted: &[Accepted]| refit(search, accepted).map(|refit| refit.noise.rms.powi(2));
-    let torque = search.prepared.filtered(&search.prepared.torque);
-    let torque_energy = torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64;
-    let small = MINOR_TORQUE * MINOR_TORQUE * torque_energy;
-    let mut minor = Vec::new();
-    while let (Some(all), true) = (energy(accepted), accepted.len() > 1) {
-        let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
-        let share = |effect: EffectId| {
-            // A structure without a name can take over what any effect explains: a name is weighed beside names.
-            let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
-            let with: Vec<Accepted> = accepted.iter().filter(|other| beside(other.effect())).cloned().collect();
-            let without: Vec<Accepted> = with.iter().filter(|other| other.effect() != effect).cloned().collect();
-            energy(&without).zip(energy(&with)).map(|(without, with)| (effect, (without - with) / removable))
-        };
-        // A one-off event is short: its share says nothing of its size.
-        let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
-        let is_minor = |(effect, share): &(EffectId, f64)| {
-            let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
-            *share < least && share * removable < small
-        };
-        match effects.filter_map(share).filter(is_minor).min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((effect, share)) => {
-                accepted.retain(|other| other.effect() != effect);
-                minor.push((effect, share));
-            }
-            None => break,
-        }
-    }
-    minor
 }
 
 fn verdict(findings: &[Finding], blocked: bool) -> Verdict {
@@ -280,7 +227,10 @@ fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimi
             let visible = doubt.trust(&white) * bench.visible_energy(&white[0])?;
             let amplitude = (FOUND_WITH_NINETY_PERCENT / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
-            Some(DetectionLimit { effect, torque_rms: amplitude * rms })
+            Some(DetectionLimit {
+                effect,
+                torque_rms: (amplitude * rms).max(FORMULA_ERROR * search.base.formula_error),
+            })
         })
         .filter(|limit| limit.torque_rms.is_finite())
         .collect()

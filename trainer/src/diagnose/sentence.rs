@@ -59,6 +59,8 @@ pub struct Story {
     pub proof: Option<String>,
     /// What was found beside the findings and accounts for little.
     pub minor: Option<String>,
+    /// What was found and may be an error of the law that the recording is compared with.
+    pub doubtful: Option<String>,
     /// What was found at first and then withdrawn.
     pub withdrawn: Option<String>,
     /// What would have been seen.
@@ -75,6 +77,7 @@ pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
         minor: minor(diagnosis),
+        doubtful: doubtful(diagnosis, units),
         withdrawn: withdrawn(diagnosis),
         limits: limits(diagnosis, units),
     }
@@ -84,7 +87,10 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
     let noise = quantity(diagnosis.noise_rmse, units.actuator);
     match diagnosis.verdict {
         Verdict::Consistent => {
-            format!("Nothing is missing that this recording could show: what the model leaves, {noise}, is noise.")
+            let beside = if diagnosis.doubtful.is_empty() { "" } else { " or the error of its law" };
+            format!(
+                "Nothing is missing that this recording could show: what the model leaves, {noise}, is noise{beside}."
+            )
         }
         Verdict::MissingPhysics => {
             let count = diagnosis.findings.len();
@@ -277,6 +283,20 @@ fn minor(diagnosis: &Diagnosis) -> Option<String> {
     };
     let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
     (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
+}
+
+fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    let named = |(effect, explained): &(EffectId, f64)| {
+        format!("{} ({})", plain_name(*effect), quantity(*explained, units.actuator))
+    };
+    let names: Vec<String> = diagnosis.doubtful.iter().map(named).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "No larger than the errors of the law that was learned from the simulation, and so not taken for physics: {}. \
+             A simulation of the whole recorded motion would tell.",
+            names.join(", ")
+        )
+    })
 }
 
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {

@@ -49,7 +49,8 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         page.paragraph(sentence);
     }
     page.list(&story.findings, "findings");
-    for sentence in [&story.proof, &story.minor, &story.withdrawn, &story.limits].into_iter().flatten() {
+    for sentence in [&story.proof, &story.minor, &story.doubtful, &story.withdrawn, &story.limits].into_iter().flatten()
+    {
         page.paragraph(sentence);
     }
     if !story.health.is_empty() {

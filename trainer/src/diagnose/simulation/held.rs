@@ -1,11 +1,9 @@
 //! Effects of the catalogue that a simulator computes itself: they are its law as much as its static friction, and nothing that
 //! the real joint has beyond it.
 
-use super::super::base::{Base, BaseKind};
+use super::super::base::BaseKind;
 use super::super::blocks::Lock;
 use super::super::candidates::Label;
-use super::super::linear::left_by_fit;
-use super::super::noise::Noise;
 use super::super::prepare::Prepared;
 use super::super::random::normal;
 use super::super::reference::Reference;
@@ -61,17 +59,6 @@ pub(super) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Opt
     });
     let effects: Vec<Held> = held.collect();
     (!effects.is_empty()).then(|| HeldEffects { effects, beside: Box::new(law.clone()) })
-}
-
-/// Deviation of what neither a law nor the rows before tell of a recording, behind its filter.
-pub(super) fn noise_floor(recording: &Signals, law: &InverseLaw) -> Option<f64> {
-    let mut signals = recording.clone();
-    signals.compare_with(law.at(&recording.states()));
-    let mut prepared = Prepared::new(&signals, Lock::Nothing);
-    let base = Base::fit(&mut prepared, &signals, BaseKind::Reference)?;
-    let runs = prepared.open_runs();
-    let left = left_by_fit(&base.columns, &base.target, &runs)?;
-    Noise::fit(&left, &runs, &[]).deviation.first().copied()
 }
 
 /// Adds white noise of a deviation behind the filter to the torque.

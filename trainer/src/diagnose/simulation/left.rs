@@ -15,6 +15,14 @@ pub(super) struct Left {
     torque: Vec<f64>,
 }
 
+/// What of it a recording meets again.
+pub(super) struct Met {
+    /// Torque at every sample, nothing beyond the simulation.
+    pub torque: Vec<f64>,
+    /// Share of the samples within the simulation.
+    pub share: f64,
+}
+
 impl Left {
     pub fn of(simulation: &Signals, law: &[f64]) -> Self {
         let start = simulation.time.first().copied().unwrap_or(0.0);
@@ -25,8 +33,8 @@ impl Left {
         }
     }
 
-    /// The torque at the same times of a recording, nothing beyond the simulation. `None` where that is of another motion.
-    pub fn at(&self, state: &JointState) -> Option<Vec<f64>> {
+    /// The torque at the same times of a recording. `None` where that is of another motion.
+    pub fn at(&self, state: &JointState) -> Option<Met> {
         let start = state.time.first()?;
         let (mut torque, mut differences) = (Vec::with_capacity(state.len()), Vec::new());
         for (time, position) in state.time.iter().zip(&state.position) {
@@ -43,7 +51,8 @@ impl Left {
         }
         let (low, high) = state.travel();
         let difference = super::root_mean_square(&differences);
-        (difference <= ONE_MOTION * (high - low)).then_some(torque)
+        let share = differences.len() as f64 / torque.len() as f64;
+        (difference <= ONE_MOTION * (high - low)).then_some(Met { torque, share })
     }
 }
 
@@ -64,7 +73,8 @@ mod tests {
         };
         let left = Left::of(&moving(0.0, 3.0), &[100.0; 400]);
         let later = left.at(&moving(50.0, 3.0).states()).unwrap();
-        assert!((later[250] - 150.0).abs() < 1e-6 && later.last() == Some(&0.0), "{}", later[250]);
+        assert!((later.torque[250] - 150.0).abs() < 1e-6 && later.torque.last() == Some(&0.0), "{}", later.torque[250]);
+        assert!((later.share - 399.0 / 400.0).abs() < 1e-9, "{}", later.share);
         assert!(left.at(&moving(0.0, 3.5).states()).is_none());
     }
 }

@@ -3,6 +3,7 @@
 
 mod held;
 mod left;
+mod rest;
 
 use super::base::{nuisances, speed_hats};
 use super::blocks::Lock;
@@ -13,8 +14,9 @@ use super::prepare::Prepared;
 use super::reference::{Reference, coulomb_and_viscous, tabulated_velocities};
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
-use held::{HeldEffects, held_by, noise_floor};
+use held::{HeldEffects, held_by};
 use left::Left;
+use rest::{Rest, rest_of};
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -56,6 +58,8 @@ pub struct InverseLaw {
     doubt: Vec<Vec<f64>>,
     /// What the law leaves of a simulation that is quiet.
     left: Option<Left>,
+    /// Root mean square of that beside the simulation's noise; zero of one that is not quiet.
+    formula_error: f64,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
 }
@@ -68,11 +72,13 @@ pub fn learn(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearn
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Lock::Nothing);
     let law = learn_with(None, &prepared, given)?;
-    let Some(noise) = noise_floor(real, &law) else { return Ok(law) };
+    let Some(Rest { noise, .. }) = rest_of(real, &law) else { return Ok(law) };
     let held = held_by(simulation, &law, noise);
     let mut law = if held.is_none() { law } else { learn_with(held, &prepared, given).unwrap_or(law) };
-    let is_quiet = noise_floor(simulation, &law).is_some_and(|own| own < QUIET * noise);
-    law.left = is_quiet.then(|| Left::of(simulation, &law.torque(&prepared.state)));
+    if let Some(rest) = rest_of(simulation, &law).filter(|rest| rest.noise < QUIET * noise) {
+        law.left = Some(Left::of(simulation, &law.torque(&prepared.state)));
+        law.formula_error = rest.formula_error;
+    }
     Ok(law)
 }
 
@@ -98,6 +104,7 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
                 coefficients: Vec::new(),
                 doubt: Vec::new(),
                 left: None,
+                formula_error: 0.0,
                 rmse: 0.0,
             };
             law.fitted(prepared)
@@ -244,12 +251,16 @@ impl InverseLaw {
         let columns = self.columns(state);
         let friction = self.friction_width();
         let rigid_body = friction..friction + self.rigid_body_width();
+        let met = self.left.as_ref().and_then(|left| left.at(state));
+        let unmet = met.as_ref().map_or(1.0, |met| 1.0 - met.share);
+        let formula_error = self.formula_error * unmet.sqrt();
         Reference {
             torque: weighted(&columns, &self.coefficients),
             rigid_body: weighted(&columns[rigid_body.clone()], &self.coefficients[rigid_body]),
             jacobian: coulomb_and_viscous(state),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
-            left: self.left.as_ref().and_then(|left| left.at(state)),
+            left: met.map(|met| met.torque),
+            formula_error,
             doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
             friction: self.friction_curve(),
         }

@@ -1,0 +1,91 @@
+//! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
+
+use super::conclude::{Refit, refit};
+use super::prove::prove_alone;
+use super::search::{Accepted, Search};
+use crate::physics::EffectId;
+
+/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque; a structure
+/// without a name takes up more of the error of a formula.
+const MINOR_SHARE: f64 = 0.06;
+const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
+/// Root mean square over that of the recorded torque below which it is small.
+const MINOR_TORQUE: f64 = 0.025;
+/// Times the error that a law's formulas show in the simulation it was learned from up to which it may explain what is found: the
+/// rest of the motion may suit them less.
+pub(super) const FORMULA_ERROR: f64 = 1.5;
+
+/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for or against it.
+pub(super) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
+    let mut withdrawn = Vec::new();
+    while let Some(all) = refit(search, accepted) {
+        let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
+        let unproven = lasting.filter_map(|i| {
+            let proof = prove_alone(search, accepted, i, &all)?;
+            let Accepted { label, family_wise, .. } = &accepted[i];
+            (!search.settings.carried(label, *family_wise, &proof)).then_some((i, proof.gain_nats))
+        });
+        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        withdrawn.push(accepted.remove(weakest).effect());
+    }
+    withdrawn
+}
+
+/// Sets aside, smallest first, what explains no more than the formulas of the reference get wrong. Effects that repeat count
+/// together.
+pub(super) fn set_aside_doubtful(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    let could_be_an_error = FORMULA_ERROR * search.base.formula_error;
+    let mut doubtful = Vec::new();
+    while let (Some(all), true) = (energy_left(search, accepted), could_be_an_error > 0.0) {
+        let explained = |effect: EffectId| {
+            let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
+            let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
+            (explained < could_be_an_error).then_some((effect, explained))
+        };
+        let least = accepted.iter().map(Accepted::effect).filter_map(explained).min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((effect, explained)) = least else { break };
+        accepted.retain(|other| other.effect() != effect);
+        doubtful.push((effect, explained));
+    }
+    doubtful
+}
+
+/// Mean square of what base and effects leave.
+fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
+    refit(search, accepted).map(|refit| refit.noise.rms.powi(2))
+}
+
+/// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the
+/// error of the larger one's formula may pass for an effect. Effects that repeat count together.
+pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
+    let torque = search.prepared.filtered(&search.prepared.torque);
+    let torque_energy = torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64;
+    let small = MINOR_TORQUE * MINOR_TORQUE * torque_energy;
+    let mut minor = Vec::new();
+    while let (Some(all), true) = (energy_left(search, accepted), accepted.len() > 1) {
+        let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
+        let share = |effect: EffectId| {
+            // A structure without a name can take over what any effect explains: a name is weighed beside names.
+            let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
+            let with: Vec<Accepted> = accepted.iter().filter(|other| beside(other.effect())).cloned().collect();
+            let without: Vec<Accepted> = with.iter().filter(|other| other.effect() != effect).cloned().collect();
+            energy_left(search, &without)
+                .zip(energy_left(search, &with))
+                .map(|(without, with)| (effect, (without - with) / removable))
+        };
+        // A one-off event is short: its share says nothing of its size.
+        let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
+        let is_minor = |(effect, share): &(EffectId, f64)| {
+            let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
+            *share < least && share * removable < small
+        };
+        match effects.filter_map(share).filter(is_minor).min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((effect, share)) => {
+                accepted.retain(|other| other.effect() != effect);
+                minor.push((effect, share));
+            }
+            None => break,
+        }
+    }
+    minor
+}
