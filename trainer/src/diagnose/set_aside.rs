@@ -36,7 +36,10 @@ pub(super) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -
 pub(super) fn set_aside_doubtful(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
     let could_be_an_error = FORMULA_ERROR * search.base.formula_error;
     let mut doubtful = Vec::new();
-    while let (Some(all), true) = (energy_left(search, accepted), could_be_an_error > 0.0) {
+    if could_be_an_error == 0.0 {
+        return doubtful;
+    }
+    while let Some(all) = energy_left(search, accepted) {
         let explained = |effect: EffectId| {
             let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
             let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();

@@ -106,7 +106,8 @@ fn a_finding_reads_as_a_sentence() {
         "Held-out error 0.92 -> 0.41 N m on 300 rows that took no part in fitting and could only withdraw a finding \
          (ratio 0.446, 95 % interval 0.4 to 0.5)."
     );
-    assert!(story.doubtful.unwrap().contains("not taken for physics: one-off event (20 mN m)."));
+    let doubtful = story.doubtful.unwrap();
+    assert!(doubtful.contains("not taken for physics: one-off event (0.02 N m)."), "{doubtful}");
     assert!(story.withdrawn.unwrap().contains("spring"));
     assert!(story.minor.unwrap().contains("4.2 %"));
 }
