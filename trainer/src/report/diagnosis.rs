@@ -88,25 +88,30 @@ fn overview(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     if traces.is_empty() {
         return;
     }
-    page.heading("What the model leaves, before and after");
-    let when: Vec<[f64; 2]> = diagnosis.findings.first().map(|f| f.location.when_s.clone()).unwrap_or_default();
-    page.figure(
-        &over_time(traces, &when, units),
-        "Residual over time. Shaded: where the first finding holds most evidence.",
-    );
-    let channel = diagnosis.findings.first().map_or("position", |found| second_axis(traces, found));
-    maps(page, traces, channel, units);
+    let first = diagnosis.findings.first();
+    let (heading, caption) = match first {
+        Some(_) => (
+            "What the model leaves, before and after",
+            "Residual over time. Shaded: where the first finding holds most evidence.",
+        ),
+        None => ("What the model leaves", "Residual over time."),
+    };
+    page.heading(heading);
+    page.figure(&over_time(traces, first, units), caption);
+    maps(page, traces, first, units);
 }
 
-fn over_time(traces: &Traces, shaded: &[[f64; 2]], units: Units) -> String {
+fn over_time(traces: &Traces, first: Option<&Finding>, units: Units) -> String {
     let range = (Scale::over(traces.time.iter().copied()), Scale::over(traces.before.iter().copied()));
     let residual = format!("residual ({})", units.actuator);
     let mut chart = Chart::new((1060.0, 300.0), range.0, range.1, ["time (s)", &residual]);
-    for [from, to] in shaded {
+    for [from, to] in first.iter().flat_map(|found| &found.location.when_s) {
         chart.band(*from, *to);
     }
     chart.line(&broken(traces, &traces.before), Ink::Data, "base model");
-    chart.line(&broken(traces, &traces.after), Ink::One, "with the findings");
+    if first.is_some() {
+        chart.line(&broken(traces, &traces.after), Ink::One, "with the findings");
+    }
     chart.svg()
 }
 
@@ -124,21 +129,27 @@ fn broken(traces: &Traces, values: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// Residual over velocity and a channel, before and after, in one scale of colour.
-fn maps(page: &mut Page, traces: &Traces, channel: &str, units: Units) {
+fn maps(page: &mut Page, traces: &Traces, first: Option<&Finding>, units: Units) {
+    let channel = first.map_or("position", |found| second_axis(traces, found));
     let Some(values) = traces.channel(channel) else { return };
     let before = HeatMap::of(&traces.velocity, values, &traces.before);
-    let after = HeatMap::of(&traces.velocity, values, &traces.after);
     let reach = before.reach();
-    let label = axis_label(channel, units);
-    let velocity = axis_label("velocity", units);
+    let (velocity, label) = (axis_label("velocity", units), axis_label(channel, units));
     let full = quantity(reach, units.actuator);
-    page.figures(&[
-        (
-            before.svg(reach, [&velocity, &label]),
-            format!("Before: mean residual, orange where the real joint needs more torque, blue where less; full colour is {full}."),
+    let mut pictures = vec![(
+        before.svg(reach, [&velocity, &label]),
+        format!(
+            "Mean residual of the base model, orange where the real joint needs more torque, blue where less; full colour is {full}."
         ),
-        (after.svg(reach, [&velocity, &label]), "After, in the same colours.".to_string()),
-    ]);
+    )];
+    if first.is_some() {
+        let after = HeatMap::of(&traces.velocity, values, &traces.after);
+        pictures.push((
+            after.svg(reach, [&velocity, &label]),
+            "The same with the findings, in the same colours.".to_string(),
+        ));
+    }
+    page.figures(&pictures);
 }
 
 /// The channel beside velocity along which a finding is located best.
@@ -187,10 +198,12 @@ fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
         return;
     }
     page.heading("The rivals and their evidence");
-    page.figure(
-        &bars(&rows, "nats"),
-        "Orange: accepted, with the score at that time. Grey: what was still left over and not accepted, after the findings were taken into the model.",
-    );
+    let caption = if diagnosis.findings.is_empty() {
+        "What came nearest, and was not accepted."
+    } else {
+        "Orange: accepted, with the score at that time. Grey: what was still left over and not accepted, after the findings were taken into the model."
+    };
+    page.figure(&bars(&rows, "nats"), caption);
 }
 
 fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
