@@ -4,7 +4,7 @@ use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::simulated::{self, Comparison, Group};
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, diagnosis_of, run, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
-use frikan_trainer::diagnose::{BaseKind, Lock, Options, diagnose};
+use frikan_trainer::diagnose::{BaseKind, Lock, Options, Verdict, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
 use rayon::prelude::*;
@@ -193,16 +193,26 @@ fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
     let stretches = rows.chunk_by(|a, b| a.1 == b.1 && b.0 - a.0 < 0.02).filter(|stretch| stretch[0].1);
     let longest = stretches.max_by_key(|stretch| stretch.len()).unwrap();
     let event = longest[0].0..longest[longest.len() - 1].0;
-    signals
-        .torque
-        .iter_mut()
-        .zip(&signals.time)
-        .filter(|(_, time)| event.contains(time))
-        .for_each(|(torque, _)| *torque += 1.0);
-    let after = diagnose(&signals, "N m", &options).unwrap();
-    assert_eq!(after.lock, Lock::SpreadElsewhere);
-    let [found] = after.findings.as_slice() else { panic!("{} findings", after.findings.len()) };
-    assert_eq!(found.effect, EffectId::TransientEvent);
-    let [start, end] = found.fitted.shape[..] else { panic!("{:?}", found.fitted.shape) };
-    assert!(start < event.end && end > event.start, "{start} to {end} instead of {event:?}");
+    let recorded = signals.torque.clone();
+    let mut with_event = |event_torque: f64| {
+        for ((torque, recorded), time) in signals.torque.iter_mut().zip(&recorded).zip(&signals.time) {
+            *torque = recorded + if event.contains(time) { event_torque } else { 0.0 };
+        }
+        diagnose(&signals, "N m", &options).unwrap()
+    };
+    for event_torque in [1.0, 20.0] {
+        let after = with_event(event_torque);
+        assert_eq!(after.lock, Lock::SpreadElsewhere, "{event_torque} N m");
+        let [found] = after.findings.as_slice() else {
+            panic!("{} findings of {event_torque} N m", after.findings.len())
+        };
+        assert_eq!(found.effect, EffectId::TransientEvent);
+        let [start, end] = found.fitted.shape[..] else { panic!("{:?}", found.fitted.shape) };
+        assert!(start < event.end && end > event.start, "{start} to {end} instead of {event:?}");
+    }
+    // So large that what its edges leave drowns all else: whether it is named or not, it is not taken for noise.
+    let after = with_event(500.0);
+    assert_ne!(after.verdict, Verdict::Consistent);
+    let is_named = after.findings.iter().any(|found| found.effect == EffectId::TransientEvent);
+    assert!(is_named || after.health.iter().any(|note| note.effect == EffectId::TransientEvent), "{:?}", after.health);
 }

@@ -4,6 +4,8 @@ use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::linear::{least_squares, residual};
 use super::prepare::Prepared;
 use super::signals::Signals;
+use super::traces::WorstLocked;
+use crate::figures::{digits, quantity};
 use crate::physics::{EffectId, quantile};
 use serde::Serialize;
 
@@ -60,6 +62,18 @@ fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
         blocking: true,
         sentence: format!("the torque is recorded in steps of {smallest:.4}, coarser than its own noise"),
     })
+}
+
+/// Something that happened once, in rows that were locked away.
+pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNote {
+    let ([from, to], rms) = (worst.when_s.map(digits), quantity(worst.rms, actuator));
+    HealthNote {
+        effect: EffectId::TransientEvent,
+        blocking: false,
+        sentence: format!(
+            "between {from} and {to} s the model is wrong by {rms} (root mean square), which nothing in the other rows is like"
+        ),
+    }
 }
 
 /// An encoder so coarse that its grain alone left only a few hertz of the motion.

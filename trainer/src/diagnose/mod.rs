@@ -71,4 +71,4 @@ pub use run::{Options, Refusal, diagnose};
 pub use settings::Settings;
 pub use signals::Signals;
 pub use strength::{Strength, strength};
-pub use traces::Traces;
+pub use traces::{Traces, WorstLocked};

@@ -5,7 +5,7 @@ use super::blocks::Lock;
 use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
 use super::findings::{base_parameters, finding, measurement_finding};
-use super::health::{coarse_position, examine};
+use super::health::{coarse_position, examine, unexplained_event};
 use super::linear::weighted;
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
@@ -58,6 +58,10 @@ pub enum Refusal {
 const LEAST_ROWS: usize = 150;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
+/// What a locked stretch is left with over what any open one is, root mean square, from which other blocks are locked.
+const STICKS_OUT: f64 = 1.5;
+/// The same from which it is no noise, whatever it is.
+const NO_NOISE: f64 = 4.0;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
@@ -109,9 +113,14 @@ fn misalignment(diagnosis: &Diagnosis) -> Option<&Finding> {
 /// Diagnoses signals whose torque and motion belong together; with other blocks locked where a one-off event lay in those that
 /// were.
 fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
-    let first = diagnose_locked(signals, actuator, options)?;
-    if options.lock != Lock::Spread || !first.traces.locked_stretch_sticks_out() {
-        return Ok(first);
+    let mut first = diagnose_locked(signals, actuator, options)?;
+    let worst = first.traces.worst_locked().filter(|worst| worst.over_open > STICKS_OUT);
+    let (Lock::Spread, Some(worst)) = (options.lock, worst) else { return Ok(first) };
+    if worst.over_open > NO_NOISE && first.verdict != Verdict::BadData {
+        first.health.push(unexplained_event(worst, actuator));
+        if first.verdict == Verdict::Consistent {
+            first.verdict = Verdict::Unexplained;
+        }
     }
     let elsewhere = Options { lock: Lock::SpreadElsewhere, ..*options };
     let Ok(second) = diagnose_locked(signals, actuator, &elsewhere) else { return Ok(first) };

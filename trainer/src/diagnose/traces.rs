@@ -7,6 +7,7 @@ use super::prove::rest;
 use super::region::Region;
 use super::search::Search;
 use crate::physics::quantile;
+use std::ops::Range;
 
 /// Series at the working rows behind the common filter; all of one length.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +32,16 @@ pub struct Traces {
     pub run_starts: Vec<usize>,
 }
 
-/// Root mean square of a locked stretch that sticks out, over the largest of the open ones.
-const STICKS_OUT: f64 = 1.5;
+/// What the locked stretch with the most is left with: what happened in it once, no open row saw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstLocked {
+    /// Its root mean square.
+    pub rms: f64,
+    /// The same over that of the open stretch with the most.
+    pub over_open: f64,
+    /// From and to, in s.
+    pub when_s: [f64; 2],
+}
 
 impl Traces {
     /// Traces of a finished search.
@@ -88,20 +97,32 @@ impl Traces {
         self.channels.iter().find(|(channel, _)| *channel == name).map(|(_, values)| values.as_slice())
     }
 
-    /// Whether one of the locked stretches is left with far more than any open one: what happened there once, no open row saw.
+    /// The locked stretch that is left with the most. `None` where nothing is locked.
     #[must_use]
-    pub fn locked_stretch_sticks_out(&self) -> bool {
+    pub fn worst_locked(&self) -> Option<WorstLocked> {
         let ends = self.run_starts.iter().skip(1).copied().chain([self.len()]);
         let (shut, open): (Vec<_>, Vec<_>) =
             self.run_starts.iter().copied().zip(ends).partition(|(start, _)| self.locked[*start]);
         let usual_length = quantile(shut.iter().map(|(start, end)| (end - start) as f64), 0.5) as usize;
         // Pieces of one length, as a short one may hold nothing but a reversal.
-        let largest = |stretches: &[(usize, usize)]| {
-            let pieces = stretches.iter().flat_map(|&(start, end)| self.after[start..end].chunks(usual_length.max(1)));
-            let whole = pieces.filter(|piece| 2 * piece.len() > usual_length);
-            whole.map(|piece| piece.iter().map(|r| r * r).sum::<f64>() / piece.len() as f64).fold(0.0, f64::max).sqrt()
+        let pieces = |(start, end): (usize, usize)| {
+            let starts = (start..end).step_by(usual_length.max(1));
+            let pieces = starts.map(move |start| start..(start + usual_length.max(1)).min(end));
+            pieces.filter(|piece| 2 * piece.len() > usual_length)
         };
-        largest(&shut) > STICKS_OUT * largest(&open)
+        let rms = |piece: Range<usize>| {
+            let left = &self.after[piece.clone()];
+            ((left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt(), piece)
+        };
+        let worst = |stretches: Vec<(usize, usize)>| {
+            stretches.into_iter().flat_map(pieces).map(rms).max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let of_open = worst(open).map_or(0.0, |(rms, _)| rms);
+        worst(shut).map(|(rms, piece)| WorstLocked {
+            over_open: rms / of_open.max(f64::MIN_POSITIVE),
+            rms,
+            when_s: [self.time[piece.start], self.time[piece.end - 1]],
+        })
     }
 
     /// Where all effects together lower the squared residual: regions, sharpest first, and stretches of time in s.
@@ -125,17 +146,19 @@ mod tests {
     use super::*;
 
     /// Five stretches of twenty rows of which the last is locked, and a locked one of four; `events` are rows that stick out.
-    fn sticks_out(events: std::ops::Range<usize>) -> bool {
+    fn locked_over_open(events: std::ops::Range<usize>) -> f64 {
         let mut after: Vec<f64> = (0..104).map(|i| if i % 2 == 0 { 0.1 } else { -0.1 }).collect();
         after[events].fill(1.0);
         let locked = (0..104).map(|i| i >= 80).collect();
         Traces { time: vec![0.0; 104], after, locked, run_starts: vec![0, 20, 40, 60, 80, 100], ..Traces::default() }
-            .locked_stretch_sticks_out()
+            .worst_locked()
+            .unwrap()
+            .over_open
     }
 
     #[test]
     fn a_locked_stretch_sticks_out_by_more_than_the_open_ones_and_by_more_than_a_reversal() {
-        assert!(sticks_out(85..95));
-        assert!(!sticks_out(0..0) && !sticks_out(45..55) && !sticks_out(101..103));
+        assert!(locked_over_open(85..95) > 5.0);
+        assert!([0..0, 45..55, 101..103].into_iter().all(|events| locked_over_open(events) <= 1.0));
     }
 }
