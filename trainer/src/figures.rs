@@ -10,10 +10,10 @@ pub fn quantity(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", digits(value * factor))
 }
 
-/// Two values with their unit, the prefix that suits the larger one.
-pub(crate) fn interval(from: f64, to: f64, unit: &str) -> String {
+/// Two values with a word between them and their unit, the prefix that suits the larger one.
+pub(crate) fn pair(from: f64, word: &str, to: f64, unit: &str) -> String {
     let (factor, prefix) = prefix(from.abs().max(to.abs()), unit);
-    format!("{} and {} {prefix}{unit}", digits(from * factor), digits(to * factor))
+    format!("{} {word} {} {prefix}{unit}", digits(from * factor), digits(to * factor))
 }
 
 fn prefix(value: f64, unit: &str) -> (f64, &'static str) {

@@ -15,6 +15,7 @@ use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::compile_layout;
 use crate::fit::HostModel;
 use crate::physics::{EffectId, JointState};
+use crate::statistics::quantile;
 use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, RigidBody};
 use frikan_shared::pool::Pool;
@@ -256,7 +257,7 @@ fn fastest(state: &JointState) -> f64 {
 }
 
 fn quantile_of_load(state: &JointState) -> f64 {
-    state.load.as_ref().map_or(0.0, |load| crate::physics::quantile(load.iter().map(|l| l.abs()), 0.9))
+    state.load.as_ref().map_or(0.0, |load| quantile(load.iter().map(|l| l.abs()), 0.9))
 }
 
 /// Friction over velocity as a table whose cells grow with speed, the finest an eighth of the smoothed sign's width at most.

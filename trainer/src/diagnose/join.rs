@@ -51,6 +51,7 @@ impl Signals {
         for (series, with) in self.other_positions.iter_mut().zip(next.other_positions) {
             series.extend(with);
         }
+        self.spikes.extend(next.spikes);
         self.position_resolution = self.position_resolution.max(next.position_resolution);
         Ok(())
     }

@@ -29,6 +29,7 @@ pub mod model;
 mod nearest;
 mod noise;
 mod null;
+mod other_joints;
 mod outcome;
 mod prepare;
 mod prove;

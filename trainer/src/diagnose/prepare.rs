@@ -4,7 +4,8 @@ use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::linear::{least_squares, left_by_fit};
 use super::signals::Signals;
-use crate::physics::{JointState, MemoryAxes, OtherJoint, quantile, top_speed};
+use crate::physics::{JointState, MemoryAxes, OtherJoint, top_speed};
+use crate::statistics::quantile;
 use std::ops::Range;
 
 /// States at the recording's rate and the rows on which evidence is weighed.

@@ -6,7 +6,7 @@ mod tests;
 use super::certainty::certainty;
 use super::outcome::{Diagnosis, Finding, Verdict};
 use super::region::{Region, Side};
-use crate::figures::{digits, interval, quantity};
+use crate::figures::{digits, pair, quantity};
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
 
@@ -171,7 +171,7 @@ fn place(region: &Region, units: Units) -> String {
 /// Where an interval is, as a sentence begins, in small letters.
 fn place_along(side: &Side, units: Units) -> String {
     let unit = units.of_channel(side.channel);
-    let between = interval(side.from, side.to, &unit);
+    let between = pair(side.from, "and", side.to, &unit);
     let from_zero = side.from.abs() < 0.03 * side.to.abs();
     match side.channel {
         "velocity" => format!("between {between}"),
@@ -266,10 +266,9 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
         String::new()
     };
     Some(format!(
-        "Held-out error {} -> {} on {} rows that took no part in fitting and could only withdraw a finding \
+        "Held-out error {} on {} rows that took no part in fitting and could only withdraw a finding \
          (ratio {}{interval}).",
-        digits(proof.baseline_rmse),
-        quantity(proof.improved_rmse, units.actuator),
+        pair(proof.baseline_rmse, "->", proof.improved_rmse, units.actuator),
         proof.rows,
         digits(ratio),
     ))

@@ -1,11 +1,13 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
 use super::filter::second_derivative;
+use super::other_joints::other_positions;
 use super::reference::Reference;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::{Axis, Quantity, Recording};
 use crate::samples::EvenClock;
+use crate::samples::spikes::{Spikes, without_spikes};
 use std::ops::Range;
 
 /// Signals of one joint on an even clock; all series of one length; SI, joint side.
@@ -39,6 +41,8 @@ pub struct Signals {
     pub rotary: bool,
     /// Smallest step of the position in its unit; 0 when unknown.
     pub position_resolution: f64,
+    /// Glitches of the recording that were replaced.
+    pub spikes: Vec<Spikes>,
 }
 
 impl Signals {
@@ -53,6 +57,7 @@ impl Signals {
     /// # Errors
     /// `FRK-D009` when clock, motion or actuator is missing.
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
+        let (recording, spikes) = &without_spikes(recording);
         let even = EvenClock::of(recording)?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
         let actuator = recording
@@ -83,11 +88,12 @@ impl Signals {
             load: owned(Quantity::LoadTorque),
             temperature: owned(Quantity::Temperature),
             link_position: owned(Quantity::LinkPosition),
-            other_positions: even.named("other_position_rad").map(<[f64]>::to_vec).into_iter().collect(),
+            other_positions: other_positions(recording, &even),
             segments: even.segments.clone(),
             gear_ratio: joint.drive.gear_ratio,
             rotary,
             position_resolution: recording.health.position_resolution.unwrap_or(0.0),
+            spikes: spikes.clone(),
             torque,
             position,
             ..Self::default()

@@ -6,7 +6,7 @@ use super::localise::locate_density;
 use super::prove::rest;
 use super::region::Region;
 use super::search::Search;
-use crate::physics::quantile;
+use crate::statistics::quantile;
 use std::ops::Range;
 
 /// Series at the working rows behind the common filter; all of one length.

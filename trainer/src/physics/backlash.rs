@@ -1,9 +1,9 @@
 //! G1, Nordin and Gutman 2002: play between motor and load. While it is crossed the motor loses the load, and at its end the
 //! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
-use super::state::quantile;
 use super::transmission::{nominal_inertia, opening};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use crate::statistics::quantile;
 
 pub(super) struct Backlash;
 

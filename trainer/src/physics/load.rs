@@ -1,8 +1,8 @@
 //! B3 and B3b: friction grows with the transmitted load (Dohring, Lee and Newman 1993; Hamon, Gautier and Garrec 2010),
 //! differently when driving and backdriving.
 
-use super::state::quantile;
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use crate::statistics::quantile;
 
 pub(super) struct LoadFriction;
 

@@ -32,8 +32,8 @@ mod warm_up;
 mod windup;
 
 pub use identity::{Action, EffectId};
+pub(crate) use state::top_speed;
 pub use state::{JointState, MemoryAxes, OtherJoint};
-pub(crate) use state::{quantile, top_speed};
 
 /// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).
 pub type Shape = Vec<f64>;

@@ -1,8 +1,8 @@
 //! E1 to E5: corrections of the rigid body and of the torque chain, linear in their coefficients
 //! (Atkeson, An and Hollerbach 1986; Gautier and Khalil 1990; Gautier and Briot 2014).
 
-use super::state::quantile;
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use crate::statistics::quantile;
 
 pub(super) struct GravityError;
 

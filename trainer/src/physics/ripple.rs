@@ -1,6 +1,7 @@
 //! D1, Holtz and Springob 1996; Piccoli and Yim 2016: torque ripple at fixed orders of position.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use crate::statistics::quantile;
 
 pub(super) struct PositionRipple;
 
@@ -25,7 +26,7 @@ pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
     let turn = std::f64::consts::TAU;
     let lowest = LEAST_PERIODS * turn / travel;
     let step = if state.rotary && travel > turn { 1.0 } else { 0.5 * turn / travel };
-    let typical_speed = super::state::quantile(state.velocity.iter().map(|v| v.abs()), 0.7).max(f64::MIN_POSITIVE);
+    let typical_speed = quantile(state.velocity.iter().map(|v| v.abs()), 0.7).max(f64::MIN_POSITIVE);
     // Ten samples a period at a typical speed, or the encoder's own grain.
     let highest = (turn / (10.0 * state.period * typical_speed)).min(turn / (8.0 * state.resolution.max(1e-12)));
     let first = if step == 1.0 { lowest.ceil() } else { lowest };

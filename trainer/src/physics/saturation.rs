@@ -1,8 +1,8 @@
 //! F1: the actuator gives less than commanded beyond a torque limit. The regressor is the torque that the model needs, not
 //! the recorded one, whose noise would explain itself.
 
-use super::state::quantile;
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use crate::statistics::quantile;
 
 pub(super) struct Saturation;
 

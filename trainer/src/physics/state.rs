@@ -1,5 +1,6 @@
 //! The recorded states at which every hypothesis evaluates its torque.
 
+use crate::statistics::quantile;
 use std::ops::Range;
 
 /// States of one joint at the recording's own rate, all series of one length; SI units, joint side.
@@ -212,14 +213,4 @@ impl JointState {
 /// Speed that all but a fiftieth of the samples stay below.
 pub(crate) fn top_speed(velocity: &[f64]) -> f64 {
     quantile(velocity.iter().map(|v| v.abs()), 0.98)
-}
-
-/// Quantile of finite values by sorting; 0 when there are none.
-pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
-    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    if sorted.is_empty() {
-        return 0.0;
-    }
-    let rank = ((sorted.len() - 1) as f64 * share).round() as usize;
-    *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
 }

@@ -1,8 +1,8 @@
 //! B1, Bittencourt and Gunnarsson 2012: friction depends on the measured temperature, its dry part linearly, its viscous
 //! part linearly or as the viscosity of a grease that falls exponentially.
 
-use super::state::quantile;
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use crate::statistics::quantile;
 
 pub(super) struct Temperature;
 

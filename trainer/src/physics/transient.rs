@@ -1,7 +1,8 @@
 //! F3, Kulldorff 1997: a one-off event, found by scanning windows in time. The windows are proposed by the residual itself,
 //! so their score pays for all that were looked at.
 
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, quantile};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+use crate::statistics::quantile;
 use std::ops::Range;
 
 pub(super) struct TransientEvent;

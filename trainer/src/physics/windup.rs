@@ -5,6 +5,7 @@
 use super::elasticity::highest_antiresonance;
 use super::transmission::{nominal_inertia, opening};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use crate::statistics::quantile;
 
 pub(super) struct WindupHysteresis;
 
@@ -42,7 +43,7 @@ fn winding(state: &JointState, drive: &[f64], antiresonance: f64, loop_twist: f6
 
 /// Twist that the usual drive causes in a spring of that antiresonance.
 fn usual_twist(drive: &[f64], antiresonance: f64) -> f64 {
-    super::state::quantile(drive.iter().map(|u| u.abs()), 0.8) / (antiresonance * antiresonance)
+    quantile(drive.iter().map(|u| u.abs()), 0.8) / (antiresonance * antiresonance)
 }
 
 impl Hypothesis for WindupHysteresis {

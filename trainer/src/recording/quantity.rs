@@ -131,6 +131,15 @@ const FLAGS: &[&str] =
     &["enabled", "valid", "flag", "state", "status", "mode", "register", "raw", "id", "index", "limit", "error"];
 
 impl Quantity {
+    /// Quantity and unit of a column `<quantity>_<unit>`.
+    #[must_use]
+    pub fn of_column(name: &str) -> Option<(Self, &'static Unit)> {
+        match read_column_name(name) {
+            ColumnName::Known(quantity, unit) => Some((quantity, unit)),
+            ColumnName::UnknownUnit(_) | ColumnName::Other => None,
+        }
+    }
+
     /// Every quantity with its name in column names.
     pub const ALL: [(Self, &'static str); 15] = [
         (Self::Time, "time"),

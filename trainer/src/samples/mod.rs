@@ -13,6 +13,7 @@ mod prepare;
 pub mod regression;
 pub mod relevance;
 pub mod rigid_body;
+pub mod spikes;
 #[cfg(test)]
 mod tests;
 

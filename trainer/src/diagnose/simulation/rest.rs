@@ -7,7 +7,7 @@ use super::super::noise::Noise;
 use super::super::prepare::{DEVIATION_PER_MEDIAN, Prepared};
 use super::super::signals::Signals;
 use super::{InverseLaw, root_mean_square};
-use crate::physics::quantile;
+use crate::statistics::quantile;
 
 /// What a law leaves of a recording, behind its filter.
 pub(super) struct Rest {

@@ -1,0 +1,11 @@
+//! Order statistics that every room uses.
+
+/// Quantile of finite values by sorting; 0 when there are none.
+pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    if sorted.is_empty() {
+        return 0.0;
+    }
+    let rank = ((sorted.len() - 1) as f64 * share).round() as usize;
+    *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
+}
