@@ -250,7 +250,7 @@ fn exit_status(verdict: Verdict) -> u8 {
 
 fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
-    let rest = [&story.proof, &story.minor, &story.doubtful, &story.withdrawn, &story.limits]
+    let rest = [&story.proof, &story.minor, &story.doubtful, &story.negligible, &story.withdrawn, &story.limits]
         .into_iter()
         .flatten()
         .map(|s| format!("{s}\n"));

@@ -90,6 +90,8 @@ pub struct Diagnosis {
     /// Effects that were found but explain no more than the formulas of the reference get wrong, with the root mean square of what
     /// they explain.
     pub doubtful: Vec<(EffectId, f64)>,
+    /// Effects that were found but are too small to matter, with the root mean square of what they explain.
+    pub negligible: Vec<(EffectId, f64)>,
     /// Effects that were found but withdrawn, because locked data did not confirm them.
     pub withdrawn: Vec<EffectId>,
     /// What would have been seen.

@@ -13,7 +13,9 @@ use super::prove::{prove, rest};
 use super::rollout::roll_out;
 use super::round::Scored;
 use super::search::{Search, SearchOutcome};
-use super::set_aside::{FORMULA_ERROR, set_aside_doubtful, set_aside_minor, withdraw_unproven};
+use super::set_aside::{
+    FORMULA_ERROR, least_torque, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
+};
 use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
@@ -150,7 +152,8 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
     let withdrawn = withdraw_unproven(&search, &mut accepted);
     let doubtful = set_aside_doubtful(&search, &mut accepted);
     let minor = set_aside_minor(&search, &mut accepted, &baseline);
-    if !withdrawn.is_empty() || !doubtful.is_empty() || !minor.is_empty() {
+    let negligible = set_aside_negligible(&search, &mut accepted);
+    if !(withdrawn.is_empty() && doubtful.is_empty() && minor.is_empty() && negligible.is_empty()) {
         polish(&search, &mut accepted, &noise);
     }
     let improved = refit(&search, &accepted).ok_or(Refusal::Undetermined)?;
@@ -181,6 +184,7 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         findings,
         minor,
         doubtful,
+        negligible,
         withdrawn,
         rivals: last_round,
         cut_off_hz: prepared.filter.cut_off_hz,
@@ -225,6 +229,7 @@ fn score(search: &Search, rest: &[f64]) -> Score {
 fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = search.bench(search.base.columns.clone(), &refit.noise);
     let doubt = search.doubt(&bench, &refit.noise);
+    let least = least_torque(search).max(FORMULA_ERROR * search.base.formula_error);
     table
         .iter()
         .filter_map(|scored| {
@@ -236,10 +241,7 @@ fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimi
             let visible = doubt.trust(&white) * bench.visible_energy(&white[0])?;
             let amplitude = (FOUND_WITH_NINETY_PERCENT / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
-            Some(DetectionLimit {
-                effect,
-                torque_rms: (amplitude * rms).max(FORMULA_ERROR * search.base.formula_error),
-            })
+            Some(DetectionLimit { effect, torque_rms: (amplitude * rms).max(least) })
         })
         .filter(|limit| limit.torque_rms.is_finite())
         .collect()

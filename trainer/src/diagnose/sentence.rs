@@ -61,6 +61,8 @@ pub struct Story {
     pub minor: Option<String>,
     /// What was found and may be an error of the law that the recording is compared with.
     pub doubtful: Option<String>,
+    /// What was found and is too small to matter.
+    pub negligible: Option<String>,
     /// What was found at first and then withdrawn.
     pub withdrawn: Option<String>,
     /// What would have been seen.
@@ -78,6 +80,7 @@ pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
         proof: proof(diagnosis, units),
         minor: minor(diagnosis),
         doubtful: doubtful(diagnosis, units),
+        negligible: negligible(diagnosis, units),
         withdrawn: withdrawn(diagnosis),
         limits: limits(diagnosis, units),
     }
@@ -285,17 +288,26 @@ fn minor(diagnosis: &Diagnosis) -> Option<String> {
 }
 
 fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {
-    let named = |(effect, explained): &(EffectId, f64)| {
-        format!("{} ({})", plain_name(*effect), quantity(*explained, units.actuator))
-    };
-    let names: Vec<String> = diagnosis.doubtful.iter().map(named).collect();
-    (!names.is_empty()).then(|| {
+    (!diagnosis.doubtful.is_empty()).then(|| {
         format!(
             "No larger than the errors of the law that was learned from the simulation, and so not taken for physics: {}. \
              A simulation of the whole recorded motion would tell.",
-            names.join(", ")
+            explaining(&diagnosis.doubtful, units)
         )
     })
+}
+
+fn negligible(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    (!diagnosis.negligible.is_empty())
+        .then(|| format!("Too small to matter, and not modelled: {}.", explaining(&diagnosis.negligible, units)))
+}
+
+/// Effects with the root mean square of what each explains.
+fn explaining(effects: &[(EffectId, f64)], units: Units) -> String {
+    let named = |(effect, explained): &(EffectId, f64)| {
+        format!("{} ({})", plain_name(*effect), quantity(*explained, units.actuator))
+    };
+    effects.iter().map(named).collect::<Vec<_>>().join(", ")
 }
 
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {

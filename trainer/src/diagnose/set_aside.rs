@@ -15,15 +15,34 @@ const MINOR_TORQUE: f64 = 0.025;
 /// rest of the motion may suit them less.
 pub(super) const FORMULA_ERROR: f64 = 1.5;
 
-/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for or against it.
+/// Root mean square over that of the recorded torque below which an effect is too small to matter: no filter, encoder or clock is
+/// that exact, and what they leave has a shape.
+const NEGLIGIBLE_TORQUE: f64 = 7e-4;
+
+/// Torque (root mean square) that matters in a recording.
+pub(super) fn least_torque(search: &Search) -> f64 {
+    NEGLIGIBLE_TORQUE * mean_square_torque(search).sqrt()
+}
+
+fn mean_square_torque(search: &Search) -> f64 {
+    let torque = search.prepared.filtered(&search.prepared.torque);
+    torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64
+}
+
+/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for it, but may make them
+/// worse.
 pub(super) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
     while let Some(all) = refit(search, accepted) {
-        let lasting = (0..accepted.len()).filter(|&i| accepted[i].effect() != EffectId::TransientEvent);
-        let unproven = lasting.filter_map(|i| {
+        let unproven = (0..accepted.len()).filter_map(|i| {
             let proof = prove_alone(search, accepted, i, &all)?;
             let Accepted { label, family_wise, .. } = &accepted[i];
-            (!search.settings.carried(label, *family_wise, &proof)).then_some((i, proof.gain_nats))
+            let is_carried = if accepted[i].effect() == EffectId::TransientEvent {
+                !search.settings.is_worse(&proof)
+            } else {
+                search.settings.carried(label, *family_wise, &proof)
+            };
+            (!is_carried).then_some((i, proof.gain_nats))
         });
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
@@ -31,26 +50,35 @@ pub(super) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -
     withdrawn
 }
 
-/// Sets aside, smallest first, what explains no more than the formulas of the reference get wrong. Effects that repeat count
-/// together.
+/// Sets aside what explains no more than the formulas of the reference get wrong.
 pub(super) fn set_aside_doubtful(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
-    let could_be_an_error = FORMULA_ERROR * search.base.formula_error;
-    let mut doubtful = Vec::new();
-    if could_be_an_error == 0.0 {
-        return doubtful;
+    set_aside_below(FORMULA_ERROR * search.base.formula_error, search, accepted)
+}
+
+/// Sets aside what is too small to matter.
+pub(super) fn set_aside_negligible(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    set_aside_below(least_torque(search), search, accepted)
+}
+
+/// Sets aside, smallest first, what explains less than a torque (root mean square), with what it explains. Effects that repeat count
+/// together.
+fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    let mut set_aside = Vec::new();
+    if least_torque == 0.0 {
+        return set_aside;
     }
     while let Some(all) = energy_left(search, accepted) {
         let explained = |effect: EffectId| {
             let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
             let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
-            (explained < could_be_an_error).then_some((effect, explained))
+            (explained < least_torque).then_some((effect, explained))
         };
         let least = accepted.iter().map(Accepted::effect).filter_map(explained).min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((effect, explained)) = least else { break };
         accepted.retain(|other| other.effect() != effect);
-        doubtful.push((effect, explained));
+        set_aside.push((effect, explained));
     }
-    doubtful
+    set_aside
 }
 
 /// Mean square of what base and effects leave.
@@ -61,9 +89,7 @@ fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
 /// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let torque = search.prepared.filtered(&search.prepared.torque);
-    let torque_energy = torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64;
-    let small = MINOR_TORQUE * MINOR_TORQUE * torque_energy;
+    let small = MINOR_TORQUE * MINOR_TORQUE * mean_square_torque(search);
     let mut minor = Vec::new();
     while let (Some(all), true) = (energy_left(search, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);

@@ -82,11 +82,20 @@ impl Settings {
             + locked.locked_share.sqrt() * locked.locked_deviations;
         let is_contradicted = locked.locked_deviations < 0.0;
         let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
-        let is_worse = locked.gain_nats < -self.largest_locked_loss && locked.improved_rmse >= locked.baseline_rmse;
         let is_to_be_compensated = matches!(label, Label::Named(_));
-        together >= deviations_of(level) && !(is_worse && (is_contradicted || is_to_be_compensated))
+        let is_far_worse = locked.improved_rmse > FAR_WORSE * locked.baseline_rmse;
+        let may_be_worse = !is_contradicted && !is_to_be_compensated && !is_far_worse;
+        together >= deviations_of(level) && (may_be_worse || !self.is_worse(locked))
+    }
+
+    /// Whether an effect makes the locked rows clearly worse.
+    pub(super) fn is_worse(&self, locked: &Proof) -> bool {
+        locked.gain_nats < -self.largest_locked_loss && locked.improved_rmse >= locked.baseline_rmse
     }
 }
+
+/// Error of the locked rows over that without an effect, from which nothing speaks for it.
+const FAR_WORSE: f64 = 1.5;
 
 /// Standard deviations that a normal variable exceeds with a probability.
 fn deviations_of(probability: f64) -> f64 {
@@ -156,6 +165,8 @@ mod tests {
         assert!(
             Settings::default().carried(&unnamed, 1e-20, &less) && !Settings::default().carried(&NAMED, 1e-20, &less)
         );
+        let far_worse = Proof { baseline_rmse: 1.0, improved_rmse: 2.0, ..less.clone() };
+        assert!(!Settings::default().carried(&unnamed, 1e-20, &far_worse));
         let opposite = Proof { locked_deviations: -0.5, ..less };
         assert!(!Settings::default().carried(&unnamed, 1e-20, &opposite));
     }

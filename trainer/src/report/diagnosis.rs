@@ -49,7 +49,9 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         page.paragraph(sentence);
     }
     page.list(&story.findings, "findings");
-    for sentence in [&story.proof, &story.minor, &story.doubtful, &story.withdrawn, &story.limits].into_iter().flatten()
+    for sentence in [&story.proof, &story.minor, &story.doubtful, &story.negligible, &story.withdrawn, &story.limits]
+        .into_iter()
+        .flatten()
     {
         page.paragraph(sentence);
     }

@@ -2,6 +2,7 @@
 
 use crate::diagnose::sentence::Story;
 use crate::diagnose::{BaseKind, Diagnosis, Finding, Plan, Region, Scored, Side};
+use crate::physics::EffectId;
 use serde_json::{Value, json};
 
 /// Rivals listed with a finding, nearest first.
@@ -27,7 +28,8 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
         "health": diagnosis.health,
         "findings": diagnosis.findings.iter().zip(&story.findings).map(finding_json).collect::<Vec<_>>(),
         "minor": diagnosis.minor.iter().map(|(effect, share)| json!({ "effect": effect, "share": share })).collect::<Vec<_>>(),
-        "doubtful": diagnosis.doubtful.iter().map(|(effect, rms)| json!({ "effect": effect, "torque_rms": rms })).collect::<Vec<_>>(),
+        "doubtful": explaining(&diagnosis.doubtful),
+        "negligible": explaining(&diagnosis.negligible),
         "withdrawn": diagnosis.withdrawn,
         "localisation": { "where": excess.iter().map(region_json).collect::<Vec<_>>(), "when_s": excess_when },
         "detection_limits": diagnosis.limits,
@@ -106,4 +108,9 @@ fn region_json(region: &Region) -> Value {
 
 fn rival_json(rival: &Scored) -> Value {
     json!({ "name": rival.label.to_string(), "score_nats": rival.score, "family_wise_p": rival.family_wise })
+}
+
+/// Effects with the root mean square of what each explains.
+fn explaining(effects: &[(EffectId, f64)]) -> Vec<Value> {
+    effects.iter().map(|(effect, rms)| json!({ "effect": effect, "torque_rms": rms })).collect()
 }

@@ -60,6 +60,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         findings: vec![found],
         minor: vec![(EffectId::Presliding, 0.042)],
         doubtful: vec![(EffectId::TransientEvent, 0.02)],
+        negligible: vec![(EffectId::Elasticity, 0.003)],
         withdrawn: vec![EffectId::Spring],
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
@@ -108,6 +109,7 @@ fn a_finding_reads_as_a_sentence() {
     );
     let doubtful = story.doubtful.unwrap();
     assert!(doubtful.contains("not taken for physics: one-off event (0.02 N m)."), "{doubtful}");
+    assert_eq!(story.negligible.unwrap(), "Too small to matter, and not modelled: elastic transmission (3 mN m).");
     assert!(story.withdrawn.unwrap().contains("spring"));
     assert!(story.minor.unwrap().contains("4.2 %"));
 }
