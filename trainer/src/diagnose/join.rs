@@ -37,6 +37,7 @@ impl Signals {
         self.torque.extend(next.torque);
         self.segments.extend(next.segments.into_iter().map(|segment| segment.start + count..segment.end + count));
         for (series, with) in [
+            (&mut self.velocity, next.velocity),
             (&mut self.rigid_body, next.rigid_body),
             (&mut self.load, next.load),
             (&mut self.temperature, next.temperature),

@@ -48,6 +48,7 @@ mod signals;
 pub mod simulation;
 mod strength;
 mod traces;
+mod unit_or_sign;
 
 pub use advise::{Advice, Limits, Plan, Question, TOLD_APART_NATS, plan};
 pub use base::BaseKind;

@@ -19,6 +19,8 @@ pub struct Signals {
     pub time: Vec<f64>,
     /// Position in rad or m.
     pub position: Vec<f64>,
+    /// Velocity as it was recorded: the diagnosis differentiates the position, and only compares both.
+    pub velocity: Option<Vec<f64>>,
     /// Actuator torque (N m, N or A).
     pub torque: Vec<f64>,
     /// Torque of the nominal rigid body, where one is given.
@@ -84,6 +86,7 @@ impl Signals {
         let mut signals = Self {
             period: even.period_s,
             time: even.time.clone(),
+            velocity: owned(Quantity::Velocity),
             rigid_body: owned(Quantity::RigidBodyTorque),
             load: owned(Quantity::LoadTorque),
             temperature: owned(Quantity::Temperature),
