@@ -217,3 +217,39 @@ fn advice_is_a_trajectory_within_the_limits() {
     let json: Value = serde_json::from_str(&both.output).unwrap();
     assert_eq!((both.status, &json["schema"]), (1, &Value::from("frikan.diagnose/1")), "{}", both.messages);
 }
+
+/// A torque that was never measured was explained by a torque scale of -1, and written into an improved model.
+#[test]
+fn what_the_measurement_got_wrong_is_told_and_no_model_is_written() {
+    let folder = bench();
+    let at = folder.path();
+    simulate(at, "joint.toml --duration 20 --seed 3 -o real.csv");
+    let header = std::fs::read_to_string(at.join("real.csv")).unwrap();
+    let header: Vec<&str> = header.lines().next().unwrap().split(',').collect();
+    let place = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let (position, torque) = (place("position_rad"), place("torque_Nm"));
+    rewrite(at, "real.csv", "still.csv", |fields| {
+        let mut fields = fields.to_vec();
+        if fields[torque] != "torque_Nm" {
+            fields[torque] = "0";
+        }
+        fields.join(",")
+    });
+    let before = std::cell::Cell::new(f64::NAN);
+    rewrite(at, "real.csv", "turned.csv", |fields| {
+        let velocity = match fields[position].parse::<f64>() {
+            Ok(now) => {
+                let step = now - before.replace(now);
+                if step.is_nan() { "0".to_string() } else { (-250.0 * step).to_string() }
+            }
+            Err(_) => "velocity_rad_s".to_string(),
+        };
+        format!("{},{},{},{velocity}", fields[place("time_s")], fields[position], fields[torque])
+    });
+    for (recording, sentence) in [("still.csv", "was not measured"), ("turned.csv", "as between two directions")] {
+        let told = diagnose(at, &format!("{recording} --joint joint.toml -o better.frk"));
+        let all = told.output + &told.messages;
+        assert!(told.status == 3 && all.contains(sentence), "{recording}: {all}");
+        assert!(!at.join("better.frk").exists());
+    }
+}

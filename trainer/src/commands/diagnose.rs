@@ -113,7 +113,11 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
     }
     let mut remarks = Vec::new();
-    if let Some(path) = &arguments.output {
+    let is_blocked = diagnosis.health.iter().any(|note| note.blocking);
+    if is_blocked && arguments.output.is_some() {
+        remarks.push("no model is written: the measurement has to be put right first".to_string());
+    }
+    if let Some(path) = arguments.output.as_ref().filter(|_| !is_blocked) {
         let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &signals, &compared)?;
         outputs.add(path, image);
         remarks = export;
@@ -235,6 +239,7 @@ fn units(recording: &Recording) -> Units {
 fn refused(refusal: &Refusal, recording: &Recording) -> Error {
     let code = match refusal {
         Refusal::TooLittleMotion { .. } => &codes::SEGMENTS_TOO_SHORT,
+        Refusal::NotMeasured { .. } => &codes::NOT_MEASURED,
         Refusal::Undetermined => &codes::NO_MOTION,
     };
     Error::new(code, refusal.to_string()).in_file(recording.file())

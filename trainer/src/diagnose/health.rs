@@ -32,7 +32,6 @@ const LEAST_BAND_HZ: f64 = 10.0;
 pub fn examine(signals: &Signals) -> Vec<HealthNote> {
     let mut notes = Vec::new();
     notes.extend(signals.spikes.iter().map(replaced));
-    notes.extend(constant_torque(signals));
     notes.extend(clipped_torque(signals));
     notes.extend(contradicting_velocity(signals));
     notes.extend(wrong_sign_or_unit(signals));
@@ -52,16 +51,6 @@ fn replaced(spikes: &Spikes) -> HealthNote {
         )
     };
     HealthNote { effect: EffectId::TransientEvent, blocking: false, sentence }
-}
-
-/// A torque that is the same in every row was not measured.
-fn constant_torque(signals: &Signals) -> Option<HealthNote> {
-    let first = signals.torque.first()?;
-    signals.torque.iter().all(|torque| torque == first).then(|| HealthNote {
-        effect: EffectId::Quantisation,
-        blocking: true,
-        sentence: format!("the torque is {} in every row: it was not measured", digits(*first)),
-    })
 }
 
 /// Torque steps of more than the noise hide what happens between them.
@@ -115,16 +104,4 @@ fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
         blocking: false,
         sentence: format!("the torque stands at its limit of {top:.4} in {:.1} % of the samples", 100.0 * share),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_torque_that_never_changes_was_not_measured() {
-        let recorded = |torque: Vec<f64>| constant_torque(&Signals { torque, ..Signals::default() });
-        assert_eq!(recorded(vec![0.0, 0.0, 0.1]), None);
-        assert!(recorded(vec![0.0; 3]).is_some_and(|note| note.blocking));
-    }
 }

@@ -41,7 +41,8 @@ pub(super) fn other_positions(recording: &Recording, even: &EvenClock) -> Vec<Ve
     joints.iter().filter_map(position).collect()
 }
 
-/// Joint, quantity and factor to SI of a column `<joint>_<quantity>_<unit>`, or `q`, `dq` and `ddq` with a number.
+/// Joint, quantity and factor to SI of a column `<joint>_<quantity>_<unit>`, in SI units where none is given, or of `q`, `dq` and
+/// `ddq` with a number.
 fn joint_of(column: &str) -> Option<(&str, Quantity, f64)> {
     if let Some((derivatives, number)) = column.split_once('q').filter(|(_, number)| is_number(number)) {
         let order = MOTION.iter().find(|(_, order)| derivatives == &"dd"[..*order])?;
@@ -49,8 +50,9 @@ fn joint_of(column: &str) -> Option<(&str, Quantity, f64)> {
     }
     let (joint, rest) = column.split_once('_')?;
     let word = joint.trim_end_matches(|c: char| c.is_ascii_digit());
-    let (quantity, unit) = Quantity::of_column(rest)?;
-    JOINT.contains(&word).then_some((joint, quantity, unit.factor))
+    let with_unit = || Quantity::of_column(rest).map(|(quantity, unit)| (quantity, unit.factor));
+    let (quantity, factor) = Quantity::from_name(rest).map(|quantity| (quantity, 1.0)).or_else(with_unit)?;
+    JOINT.contains(&word).then_some((joint, quantity, factor))
 }
 
 fn is_number(text: &str) -> bool {
@@ -91,7 +93,7 @@ mod tests {
     #[test]
     fn joints_are_known_by_their_columns_and_by_whatever_of_their_motion_is_recorded() {
         let (a, b) = (2.0, 0.7 * std::f64::consts::TAU);
-        let header = "goal_position_rad,joint2_acceleration_rad_s2,axis3_position_deg,axis3_velocity_deg_s,j4_velocity_rad_s,dq5,q,dddq1";
+        let header = "goal_position_rad,joint2_acceleration_rad_s2,axis3_position_deg,axis3_velocity_deg_s,j4_velocity,dq5,q,dddq1";
         let found = positions(header, |t| {
             let [sine, cosine] = [(b * t).sin(), (b * t).cos()];
             vec![9.0, -a * b * b * sine, 90.0 * cosine, 0.0, a * b * cosine, a * b * cosine, 7.0, 7.0]

@@ -51,6 +51,12 @@ pub enum Refusal {
         /// Cut-off of the filter in Hz.
         cut_off_hz: f64,
     },
+    /// The torque is the same in every row.
+    #[error("the torque is {torque} in every row: it was not measured")]
+    NotMeasured {
+        /// That torque.
+        torque: f64,
+    },
     /// The base model cannot be determined.
     #[error("the motion does not determine even the base model (one velocity, or no change of direction)")]
     Undetermined,
@@ -73,8 +79,11 @@ const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 /// put back.
 ///
 /// # Errors
-/// [`Refusal`] when the recording holds too little motion for any answer.
+/// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
 pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+    if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
+        return Err(Refusal::NotMeasured { torque });
+    }
     let as_recorded = diagnose_aligned(signals, actuator, options)?;
     let Some(mut misaligned) = misalignment(&as_recorded).cloned() else { return Ok(as_recorded) };
     let mut delay = misaligned.fitted.coefficients[0];

@@ -360,7 +360,7 @@ pub fn plain_name(effect: EffectId) -> &'static str {
         Elasticity => "elastic transmission",
         WindupHysteresis => "windup hysteresis of the transmission",
         TimeMisalignment => "torque and position recorded out of step",
-        Quantisation => "encoder too coarse",
+        Quantisation => "resolution too coarse",
         UnitOrSign => "wrong unit or sign",
         Unknown => "a structure that the catalogue does not hold",
     }

@@ -131,6 +131,10 @@ registry! {
         "The key file does not hold 64 hexadecimal digits, which are the 32 bytes of a key.",
         "Another file is named, or the key was made in another form.",
         "`openssl rand -hex 32 > drive.key` makes one.";
+    NOT_MEASURED = "FRK-D023" Data "torque was not measured",
+        "The torque, force or current has one and the same value in every row.",
+        "A channel that was never connected or not enabled, a constant that stands for a missing signal, or the wrong column.",
+        "Record the torque, or map its column in joint.toml.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",
