@@ -65,8 +65,8 @@ pub(super) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
     })
 }
 
-/// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a negative
-/// inertia or a scale near a unit's factor betray a wrong sign or unit.
+/// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a given
+/// body that enters with its sign turned or near a unit's factor betray a wrong sign or unit.
 pub(super) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     if signals.period <= 0.0 {
         return None;

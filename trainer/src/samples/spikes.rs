@@ -2,6 +2,7 @@
 
 use crate::recording::{Quantity, Recording};
 use crate::statistics::quantile;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Rows that a glitch lasts at most.
@@ -39,24 +40,23 @@ pub struct Spikes {
 /// The recording with the glitches of actuator and position replaced by a straight line between their neighbours. Without a
 /// clock and a position it stays as it is.
 #[must_use]
-pub fn without_spikes(recording: &Recording) -> (Recording, Vec<Spikes>) {
-    let mut clean = recording.clone();
+pub fn without_spikes(recording: &Recording) -> (Cow<'_, Recording>, Vec<Spikes>) {
+    let mut clean = Cow::Borrowed(recording);
     let (Some(time), Some(position)) = (recording.values(Quantity::Time), recording.values(Quantity::Position)) else {
         return (clean, Vec::new());
     };
     let mut found = Vec::new();
     let mut clear = |quantity, spikes: Vec<Spike>| {
-        let Some(channel) = clean.channels.iter_mut().find(|channel| channel.quantity == Some(quantity)) else {
-            return;
-        };
-        let largest = spikes.iter().max_by(|a, b| a.height.abs().total_cmp(&b.height.abs()));
-        found.extend(largest.map(|largest| Spikes {
+        let Some(largest) = spikes.iter().max_by(|a, b| a.height.abs().total_cmp(&b.height.abs())) else { return };
+        let channels = &mut clean.to_mut().channels;
+        let Some(channel) = channels.iter_mut().find(|channel| channel.quantity == Some(quantity)) else { return };
+        found.push(Spikes {
             channel: channel.name.clone(),
             rows: spikes.iter().map(|spike| spike.rows.len()).sum(),
             time_s: time[largest.rows.start],
             height: largest.height,
             unit: channel.unit,
-        }));
+        });
         spikes.iter().for_each(|spike| bridge(&mut channel.values, &spike.rows));
     };
     clear(Quantity::Position, spikes(position, |_| 0.0));
@@ -163,14 +163,16 @@ mod tests {
     #[test]
     fn up_to_three_rows_that_leave_and_come_back_are_replaced() {
         for (rows, height) in [(200..201, 1.5), (900..903, -1.5), (700..702, 65_535.0)] {
-            let (clean, found) = without_spikes(&swinging(within(rows.clone(), height), |_| 0.0));
+            let recording = swinging(within(rows.clone(), height), |_| 0.0);
+            let (clean, found) = without_spikes(&recording);
             let [spikes] = found.as_slice() else { panic!("{found:?}") };
             assert_eq!((spikes.channel.as_str(), spikes.rows, spikes.unit), ("torque", rows.len(), "Nm"));
             assert!((spikes.height - height).abs() < 0.2 && spikes.time_s == rows.start as f64 / 500.0, "{spikes:?}");
             let torque = &clean.actuator().unwrap().values;
             assert!(rows.clone().all(|row| (torque[row] - torque[rows.start - 1]).abs() < 0.2));
         }
-        let (clean, found) = without_spikes(&swinging(|_| 0.0, within(400..401, 3.0)));
+        let recording = swinging(|_| 0.0, within(400..401, 3.0));
+        let (clean, found) = without_spikes(&recording);
         assert_eq!((found.len(), found[0].channel.as_str()), (1, "position"));
         assert!((clean.values(Quantity::Position).unwrap()[400] - 4.0_f64.sin()).abs() < 1e-3);
     }
