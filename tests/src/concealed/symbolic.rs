@@ -42,10 +42,7 @@ pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
         jacobian: jacobian.collect(),
         friction: (-200..=200).map(|k| f64::from(k) / 200.0 * reach).map(|v| (v, friction(v, &constants))).collect(),
         rigid_body,
-        left: None,
-        formula_error: 0.0,
-        doubt: Vec::new(),
-        effects: Vec::new(),
+        ..Reference::default()
     };
     signals.compare_with(reference);
     Ok(())

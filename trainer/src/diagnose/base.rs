@@ -1,6 +1,7 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
-use super::linear::least_squares;
+use super::grain::Grain;
+use super::linear::{dot, least_squares, orthonormal, project_out, residual};
 use super::prepare::Prepared;
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
@@ -30,6 +31,8 @@ pub struct Base {
     pub held: Vec<EffectId>,
     /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
+    /// What more of the encoder's grain and of the torque's noise would change.
+    pub(super) grain: Option<Grain>,
     /// Root mean square of what the formulas of a reference get wrong.
     pub formula_error: f64,
     /// Delay of the torque against the position that the fit found, in s.
@@ -76,12 +79,7 @@ impl Base {
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
         let target = prepared.filtered(&prepared.friction_torque);
         let runs = prepared.open_runs();
-        let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
-        columns.extend(nuisances(prepared));
-        if let Some(reference) = &signals.reference {
-            columns.push(sharpness(prepared));
-            columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
-        }
+        let mut columns = filtered_columns(prepared, signals, &raw);
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, signals, kind, &raw, &coefficients);
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
@@ -90,6 +88,7 @@ impl Base {
         columns.push(late);
         let with_delay = least_squares(&columns, &target, &runs)?;
         let delay = with_delay[columns.len() - 1];
+        let grain = Grain::of(prepared, signals, &residual(&columns, &target, &with_delay));
         // The drive holds its torque over a sample while the position is read at one edge of it.
         let delay_is_nuisance = delay.abs() <= 1.25 * prepared.state.period;
         if !delay_is_nuisance {
@@ -101,8 +100,52 @@ impl Base {
         };
         let doubt = doubt.iter().map(|torque| prepared.filtered(torque)).collect();
         let formula_error = signals.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
-        Some(Self { columns, names, target, held, doubt, formula_error, delay, delay_is_nuisance })
+        Some(Self { columns, names, target, held, doubt, grain, formula_error, delay, delay_is_nuisance })
     }
+}
+
+/// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole
+/// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more.
+pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: BaseKind) -> f64 {
+    let state = &prepared.state;
+    let raw = raw_columns(state, signals, kind);
+    let columns = filtered_columns(prepared, signals, &raw);
+    let runs = prepared.open_runs();
+    let directions = orthonormal(&columns, &runs);
+    let torque = prepared.filter.over(&prepared.torque, &state.segments);
+    let known: Vec<f64> = prepared.torque.iter().zip(&prepared.friction_torque).map(|(t, f)| t - f).collect();
+    let known = prepared.filtered(&known);
+    let longest = ((LONGEST_DELAY_S / state.period) as isize).max(2);
+    let left_at = |shift: isize| {
+        let shifted =
+            |(&row, known): (&usize, &f64)| torque[row.saturating_add_signed(shift).min(torque.len() - 1)] - known;
+        let mut left: Vec<f64> = prepared.rows.iter().zip(&known).map(shifted).collect();
+        project_out(&mut left, &directions, &runs);
+        dot(&left, &left, &runs)
+    };
+    let left: Vec<f64> = (-longest..=longest).map(left_at).collect();
+    let best = (1..left.len() - 1).min_by(|&a, &b| left[a].total_cmp(&left[b]));
+    let Some(best) = best.filter(|&best| left[best] < CLEARLY_LESS * left[longest as usize]) else { return 0.0 };
+    let [before, here, after] = [left[best - 1], left[best], left[best + 1]];
+    let bend = before - 2.0 * here + after;
+    let between = if bend > 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+    (best as f64 - longest as f64 + between) * state.period
+}
+
+/// Longest delay that is looked for, in s, but for two samples.
+const LONGEST_DELAY_S: f64 = 0.03;
+/// Share of what is left without a shift below which a shift counts.
+const CLEARLY_LESS: f64 = 0.98;
+
+/// The columns of the parameters and the nuisances behind the common filter.
+fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
+    let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
+    columns.extend(nuisances(prepared));
+    columns.push(sharpness(prepared));
+    if let Some(reference) = &signals.reference {
+        columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
+    }
+    columns
 }
 
 fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'static str, Vec<f64>)> {

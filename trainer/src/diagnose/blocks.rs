@@ -32,10 +32,11 @@ pub struct Block {
     pub locked: bool,
 }
 
-/// Working rows, as sample indices, and their blocks. `stuck` marks samples at which the joint sticks.
+/// Working rows, as sample indices, and their blocks. `left_out` marks samples that no row may see: where
+/// the joint sticks, or the law that it is compared with was not fitted.
 pub(super) fn rows_and_blocks(
     state: &JointState,
-    stuck: &[bool],
+    left_out: &[bool],
     filter: &ZeroPhase,
     lock: Lock,
 ) -> (Vec<usize>, Vec<Block>) {
@@ -54,7 +55,7 @@ pub(super) fn rows_and_blocks(
             // What the filter sees across a border between open and locked samples belongs to neither side.
             let is_border = last.replace((part.end, locked)) == Some((part.start, !locked));
             let inner = part.start + if is_border { reach } else { 0 }..part.end;
-            let runs = runs_of_motion(state, stuck, reach, inner.step_by(step), &mut rows);
+            let runs = runs_of_motion(state, left_out, reach, inner.step_by(step), &mut rows);
             if locked { &mut shut } else { &mut open }.runs.extend(runs);
         }
         blocks.extend([open, shut].into_iter().filter(|block| !block.runs.is_empty()));
@@ -90,10 +91,10 @@ fn split_for_lock(
     }
 }
 
-/// Adds the samples of a part that see no standstill to the rows and returns their runs.
+/// Adds the samples of a part that see neither standstill nor what is left out to the rows and returns their runs.
 fn runs_of_motion(
     state: &JointState,
-    stuck: &[bool],
+    left_out: &[bool],
     reach: usize,
     samples: impl Iterator<Item = usize>,
     rows: &mut Vec<usize>,
@@ -102,7 +103,7 @@ fn runs_of_motion(
     let mut begin = rows.len();
     for i in samples {
         // A row that sees standstill sees a torque that no law of motion can predict.
-        let near_rest = (i - reach / 2..=i + reach / 2).any(|j| stuck[j] || state.memory.at_rest[j]);
+        let near_rest = (i - reach / 2..=i + reach / 2).any(|j| left_out[j] || state.memory.at_rest[j]);
         if !near_rest {
             rows.push(i);
             continue;

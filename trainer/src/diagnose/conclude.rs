@@ -6,7 +6,7 @@ use super::linear::{dot, least_squares, residual, weighted};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search, others};
-use crate::physics::{Dimension, Shape};
+use crate::physics::{Dimension, EffectId, Shape};
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -73,6 +73,10 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
             }
             accepted[index].shape =
                 refine(hypothesis, state, &accepted[index].shape, |shape| weigh(shape).map(|e| e.statistic));
+            if let (EffectId::TransientEvent, &[start, end]) = (effect, &accepted[index].shape[..]) {
+                // An end that lies beside the open rows could lie anywhere there.
+                accepted[index].shape = search.prepared.shown_by_open_rows([start, end]).to_vec();
+            }
         }
     }
 }

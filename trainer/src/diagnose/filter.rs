@@ -77,6 +77,11 @@ impl ZeroPhase {
         filtered
     }
 
+    /// Root of the summed squares of the taps: what the filter leaves of white noise.
+    pub fn gain(&self) -> f64 {
+        self.taps.iter().map(|tap| tap * tap).sum::<f64>().sqrt()
+    }
+
     /// Root of the summed squares of the taps of `D2 F` in 1/s2: what a second derivative makes of white position noise.
     pub fn second_derivative_gain(&self, period: f64) -> f64 {
         let tap = |i: isize| usize::try_from(i).ok().and_then(|i| self.taps.get(i)).copied().unwrap_or(0.0);

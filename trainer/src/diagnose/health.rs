@@ -1,6 +1,7 @@
 //! Measurement before physics: what is wrong with the recording itself.
 
 use super::prepare::Prepared;
+use super::reference::Outside;
 use super::signals::Signals;
 use super::traces::WorstLocked;
 use super::unit_or_sign::{contradicting_velocity, wrong_sign_or_unit};
@@ -25,8 +26,9 @@ pub struct HealthNote {
 const CLIPPED_SHARE: f64 = 0.02;
 /// A torque step of this share of the usual torque hides friction.
 const COARSE_TORQUE_SHARE: f64 = 0.05;
-/// Band in Hz that the encoder has to leave for friction to be seen.
-const LEAST_BAND_HZ: f64 = 10.0;
+/// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
+const LEAST_BAND_HZ: f64 = 12.5;
+const COARSE_STEP: f64 = 1e-4;
 
 /// Looks at the signals alone.
 pub fn examine(signals: &Signals) -> Vec<HealthNote> {
@@ -36,7 +38,27 @@ pub fn examine(signals: &Signals) -> Vec<HealthNote> {
     notes.extend(contradicting_velocity(signals));
     notes.extend(wrong_sign_or_unit(signals));
     notes.extend(coarse_torque(signals));
+    notes.extend(signals.reference.as_ref().and_then(|reference| beyond_the_model(&reference.outside)));
     notes
+}
+
+/// Rows at which the model is asked for more than it was fitted on.
+fn beyond_the_model(outside: &Outside) -> Option<HealthNote> {
+    let beyond = outside.samples.iter().filter(|beyond| **beyond).count();
+    let [first, ..] = &outside.channels[..] else { return None };
+    let range = |(channel, [low, high], unit): &(String, [f64; 2], String)| {
+        format!("{channel} from {} to {} {unit}", digits(*low), digits(*high))
+    };
+    let ranges = outside.channels.iter().skip(1).fold(range(first), |all, next| all + ", " + &range(next));
+    let share = 100.0 * beyond as f64 / outside.samples.len() as f64;
+    Some(HealthNote {
+        // Where a law ends nothing of the joint is missing.
+        effect: EffectId::Unknown,
+        blocking: false,
+        sentence: format!(
+            "the model was fitted on {ranges}: the {share:.1} % of the recording beyond that are not compared with it"
+        ),
+    })
 }
 
 /// Rows that no motion of the joint can explain and that were replaced.
@@ -84,7 +106,9 @@ pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNot
 /// An encoder so coarse that its grain alone left only a few hertz of the motion.
 pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
     let cut_off = prepared.filter.cut_off_hz;
-    let coarse = prepared.grain_limited && cut_off < LEAST_BAND_HZ;
+    let (low, high) = prepared.state.travel();
+    let is_coarse = signals.position_resolution > COARSE_STEP * (high - low);
+    let coarse = is_coarse && prepared.grain_limited && cut_off < LEAST_BAND_HZ;
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,

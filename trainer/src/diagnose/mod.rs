@@ -20,6 +20,7 @@ mod findings;
 mod form;
 mod formula;
 mod generic;
+mod grain;
 mod health;
 pub mod improve;
 mod join;
@@ -48,6 +49,7 @@ mod signals;
 pub mod simulation;
 mod strength;
 mod traces;
+mod twist;
 mod unit_or_sign;
 
 pub use advise::{Advice, Limits, Plan, Question, TOLD_APART_NATS, plan};

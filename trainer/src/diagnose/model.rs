@@ -1,7 +1,7 @@
 //! A fitted model image evaluated at the recorded states, in the arithmetic of the drive, with what its parameters may move.
 
 use super::base::{BaseKind, friction_basis};
-use super::reference::{Reference, coulomb_and_viscous, tabulated_velocities};
+use super::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
 use crate::physics::JointState;
 use crate::samples::blocks::rests;
@@ -42,12 +42,33 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
         torque: friction.iter().zip(&rigid_body).map(|(f, b)| f + b).collect(),
         rigid_body,
         jacobian: jacobian(model, state),
-        effects: Vec::new(),
-        left: None,
-        formula_error: 0.0,
-        doubt: Vec::new(),
+        outside: outside(model, state),
         friction: curve(model, state),
+        ..Reference::default()
     })
+}
+
+/// Share of a trained range by which a channel may lie beyond it.
+const BEYOND: f64 = 0.01;
+
+/// Where the recording leaves the ranges that the model was fitted on.
+fn outside<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Outside {
+    let mut outside = Outside::default();
+    for (place, input) in model.inputs.iter().enumerate() {
+        let (low, high) = (f64::from(input.low), f64::from(input.high));
+        let slack = BEYOND * (high - low);
+        let is_beyond = |i: usize| {
+            let value = f64::from(measurement(state, i).channels(&model.inputs)[place]);
+            value < low - slack || value > high + slack
+        };
+        let beyond: Vec<bool> = (0..state.len()).map(is_beyond).collect();
+        if beyond.contains(&true) {
+            outside.channels.push((input.quantity.name().to_string(), [low, high], input.unit.symbol().to_string()));
+            outside.samples.resize(state.len(), false);
+            outside.samples.iter_mut().zip(beyond).for_each(|(all, beyond)| *all |= beyond);
+        }
+    }
+    outside
 }
 
 #[allow(clippy::field_reassign_with_default)] // struct update trips the compiler over the length of `other`

@@ -4,7 +4,8 @@ use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::linear::{least_squares, left_by_fit};
 use super::signals::Signals;
-use crate::physics::{JointState, MemoryAxes, OtherJoint, top_speed};
+use super::twist::told_by_twist;
+use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};
 use crate::statistics::quantile;
 use std::ops::Range;
 
@@ -15,6 +16,8 @@ pub struct Prepared {
     pub state: JointState,
     /// The common filter F.
     pub filter: ZeroPhase,
+    /// The filter before the motion.
+    pub(super) motion_filter: ZeroPhase,
     /// Whether a wider filter was refused for the encoder's grain.
     pub grain_limited: bool,
     /// Sample index of each working row.
@@ -33,8 +36,8 @@ pub struct Prepared {
 
 /// Cut-off frequencies that are tried, widest first, in Hz.
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
-/// Share of the residual's deviation that encoder noise may reach through the inertia.
-const ENCODER_SHARE: f64 = 0.1;
+/// Share of the residual's deviation that encoder noise may reach through the inertia: what it gives a candidate is taken off that.
+const ENCODER_SHARE: f64 = 0.4;
 /// Width of the smoothed sign at least, as a share of the top speed.
 const SIGN_SHARE: f64 = 0.001;
 /// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
@@ -76,12 +79,17 @@ impl Prepared {
         let period = signals.period;
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);
-        let channels = ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period);
+        let channels = channel_filter(cut_off, period);
         let (states, Motion { position, velocity, acceleration }) = sharpest_motion(signals, cut_off);
-        let narrow = |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), signals);
+        let narrow =
+            |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), &signals.position, segments, period);
         let narrow_velocity = narrow(NARROW_VELOCITY * states.cut_off_hz).velocity;
         let narrow_acceleration = narrow(NARROW_ACCELERATION * cut_off).acceleration;
         let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
+        let other_motion = |series: &[f64]| {
+            let Motion { position, velocity, acceleration } = Motion::behind(&states, series, segments, period);
+            OtherJoint { position, velocity, acceleration }
+        };
         let mut state = JointState {
             period,
             time: signals.time.clone(),
@@ -92,20 +100,11 @@ impl Prepared {
             sign: Vec::new(),
             rigid_body: signals.rigid_body.as_ref().map(|series| channels.over(series, segments)),
             load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| channels.over(series, segments)),
+            gravity: None,
             temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
-            link_position: signals.link_position.as_ref().map(|series| states.over(series, segments)),
-            other_joints: signals
-                .other_positions
-                .iter()
-                .map(|series| {
-                    let smooth = states.over(series, segments);
-                    OtherJoint {
-                        velocity: first_derivative(&smooth, segments, period),
-                        acceleration: second_derivative(&smooth, segments, period),
-                        position: smooth,
-                    }
-                })
-                .collect(),
+            link: signals.link_position.as_ref().map(|series| other_motion(series)),
+            twist: Twist::Untold,
+            other_joints: signals.other_positions.iter().map(|series| other_motion(series)).collect(),
             torque: channels.over(&signals.torque, segments),
             predicted: Vec::new(),
             base_friction: Vec::new(),
@@ -119,18 +118,27 @@ impl Prepared {
         state.sign = state.averaged_sign(&state.velocity, state.sign_velocity);
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
+        state.gravity = match &signals.load {
+            Some(_) => state.load.clone(),
+            None => gravity_of_body(&state),
+        };
+        state.twist = told_by_twist(&state);
         let known = signals.known_torque();
         let friction_torque = match known {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),
         };
         let unsure = hesitation(&state.velocity, state.sign_velocity, segments);
-        let stuck: Vec<bool> =
+        let mut left_out: Vec<bool> =
             standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
-        let (rows, blocks) = rows_and_blocks(&state, &stuck, &filter, lock);
+        if let Some(reference) = &signals.reference {
+            left_out.iter_mut().zip(&reference.outside.samples).for_each(|(left_out, outside)| *left_out |= outside);
+        }
+        let (rows, blocks) = rows_and_blocks(&state, &left_out, &filter, lock);
         Self {
             state,
             filter,
+            motion_filter: states,
             grain_limited: false,
             rows,
             blocks,
@@ -151,6 +159,27 @@ impl Prepared {
         self.rows.iter().map(|&i| series[i]).collect()
     }
 
+    /// The part of a stretch of time (s) that open rows show, half of the filter's reach beyond the first and the last of them.
+    pub(super) fn shown_by_open_rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let reach = 0.5 * self.filter.reach() as f64 * self.state.period;
+        let times = self.open_runs().into_iter().flatten().map(|row| self.state.time[self.rows[row]]);
+        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+        for time in times.filter(|time| (from..to).contains(time)) {
+            (first, last) = (first.min(time), last.max(time));
+        }
+        if first > last { [from, to] } else { [from.max(first - reach), to.min(last + reach)] }
+    }
+
+    /// The states had `position` and `torque` been recorded, behind the same filters.
+    pub(super) fn state_at(&self, position: &[f64], torque: &[f64]) -> JointState {
+        let JointState { period, segments, sign_velocity, .. } = &self.state;
+        let Motion { position, velocity, acceleration } =
+            Motion::behind(&self.motion_filter, position, segments, *period);
+        let sign = self.state.averaged_sign(&velocity, *sign_velocity);
+        let torque = channel_filter(self.filter.cut_off_hz, *period).over(torque, segments);
+        JointState { position, velocity, acceleration, sign, torque, ..self.state.clone() }
+    }
+
     /// Runs of rows that take part in fitting and choosing.
     pub fn open_runs(&self) -> Vec<Range<usize>> {
         self.blocks.iter().filter(|block| !block.locked).flat_map(|block| block.runs.clone()).collect()
@@ -162,6 +191,11 @@ impl Prepared {
     }
 }
 
+/// The filter before all channels but the motion.
+fn channel_filter(cut_off: f64, period: f64) -> ZeroPhase {
+    ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period)
+}
+
 /// Position, velocity and acceleration behind one filter.
 struct Motion {
     position: Vec<f64>,
@@ -170,9 +204,8 @@ struct Motion {
 }
 
 impl Motion {
-    fn behind(filter: &ZeroPhase, signals: &Signals) -> Self {
-        let (period, segments) = (signals.period, &signals.segments);
-        let position = filter.over(&signals.position, segments);
+    fn behind(filter: &ZeroPhase, position: &[f64], segments: &[Range<usize>], period: f64) -> Self {
+        let position = filter.over(position, segments);
         let velocity = first_derivative(&position, segments, period);
         let acceleration = second_derivative(&position, segments, period);
         Self { position, velocity, acceleration }
@@ -184,7 +217,7 @@ impl Motion {
 fn sharpest_motion(signals: &Signals, cut_off: f64) -> (ZeroPhase, Motion) {
     let behind = |width: f64| {
         let filter = ZeroPhase::new((width * cut_off).min(WIDEST / signals.period), signals.period);
-        let motion = Motion::behind(&filter, signals);
+        let motion = Motion::behind(&filter, &signals.position, &signals.segments, signals.period);
         (filter, motion)
     };
     let [wider @ .., narrowest] = STATE_WIDTHS;
@@ -203,6 +236,21 @@ fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
     // A derivative at the cut-off: white noise of res/sqrt(12) through a low-pass of bandwidth f has the share 2 f dt.
     let bandwidth = filter.cut_off_hz;
     resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
+}
+
+/// What a given rigid body has beside its inertia, which goes with the acceleration; `None` where none is given.
+fn gravity_of_body(state: &JointState) -> Option<Vec<f64>> {
+    let body = state.rigid_body.as_ref()?;
+    let mut columns = vec![state.acceleration.clone(), vec![1.0; state.len()]];
+    columns.extend(torques_of_position(state));
+    let inertia = least_squares(&columns, body, &state.segments)?[0];
+    Some(state.map(|i| body[i] - inertia * state.acceleration[i]))
+}
+
+/// What of a rigid body depends on the position: sine and cosine of a joint, a slope of a linear axis.
+fn torques_of_position(state: &JointState) -> Vec<Vec<f64>> {
+    let of_position: &[fn(f64) -> f64] = if state.rotary { &[f64::sin, f64::cos] } else { &[|position| position] };
+    of_position.iter().map(|torque| state.map(|i| torque(state.position[i]))).collect()
 }
 
 /// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand
@@ -236,19 +284,32 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
     if signals.position_resolution <= 0.0 {
         return true;
     }
-    let state = &prepared.state;
-    let columns: Vec<Vec<f64>> = [&state.sign, &state.velocity, &state.acceleration, &vec![1.0; state.len()]]
-        .into_iter()
-        .map(|series| prepared.filtered(series))
-        .collect();
-    let target = prepared.filtered(&signals.torque);
     let rows = prepared.open_runs();
-    let Some(coefficients) = least_squares(&columns, &target, &rows) else { return true };
+    let columns = simplest_model(prepared);
+    let Some(inertia) = identified_inertia(prepared) else { return true };
     let friction = prepared.filtered(&prepared.friction_torque);
     let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
     let count: usize = rows.iter().map(|run| run.len()).sum();
     let energy: f64 = rows.iter().flat_map(|run| &left[run.clone()]).map(|e| e * e).sum();
     let deviation = (energy / count.max(1) as f64).sqrt();
     let grain = signals.position_resolution / 12f64.sqrt() * prepared.filter.second_derivative_gain(signals.period);
-    coefficients[2].abs() * grain < ENCODER_SHARE * deviation
+    inertia.abs() * grain < ENCODER_SHARE * deviation
+}
+
+/// Filtered Coulomb and viscous friction, inertia and offset.
+fn simplest_model(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    [&state.sign, &state.velocity, &state.acceleration, &vec![1.0; state.len()]]
+        .into_iter()
+        .map(|series| prepared.filtered(series))
+        .collect()
+}
+
+/// Torque per acceleration that the recording shows beside gravity or a spring; `None` where it shows none.
+pub(super) fn identified_inertia(prepared: &Prepared) -> Option<f64> {
+    let state = &prepared.state;
+    let mut columns = simplest_model(prepared);
+    columns.extend(torques_of_position(state).iter().map(|torque| prepared.filtered(torque)));
+    let torque = prepared.filtered(&prepared.torque);
+    least_squares(&columns, &torque, &prepared.open_runs()).map(|coefficients| coefficients[2])
 }

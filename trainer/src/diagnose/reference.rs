@@ -22,8 +22,19 @@ pub struct Reference {
     pub formula_error: f64,
     /// Torque of each direction in which the law is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
+    /// Samples at which a channel lies beyond what the law was fitted on, and by which channels; empty where none does.
+    pub outside: Outside,
     /// Its friction as pairs (velocity, torque) in ascending velocity.
     pub friction: Vec<(f64, f64)>,
+}
+
+/// Where a law is asked for more than it was fitted on: there it holds its last value, and the difference is its own.
+#[derive(Clone, Debug, Default)]
+pub struct Outside {
+    /// One a sample; empty where all are within.
+    pub samples: Vec<bool>,
+    /// Each channel that is beyond, with the range that the law was fitted on and its unit.
+    pub channels: Vec<(String, [f64; 2], String)>,
 }
 
 impl Signals {

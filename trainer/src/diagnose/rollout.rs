@@ -6,10 +6,9 @@
 //! through `r` alone. Memories and gravity are taken at the recorded motion too, which holds over short horizons.
 
 use super::conclude::Refit;
-use super::linear::least_squares;
 use super::prove::rest;
 use super::search::Search;
-use crate::physics::JointState;
+use crate::physics::{JointState, nominal_inertia};
 use serde::Serialize;
 use std::ops::Range;
 
@@ -54,15 +53,10 @@ pub(crate) fn roll_out(search: &Search, baseline: &Refit, improved: &Refit) -> O
 
 /// Inertia in the actuator's unit a unit of acceleration: that of the given rigid body, else that of the base.
 fn inertia(state: &JointState, names: &[&str], refit: &Refit) -> Option<f64> {
-    let Some(body) = &state.rigid_body else {
-        return names.iter().position(|name| *name == "inertia").and_then(|place| refit.base.get(place)).copied();
-    };
-    let gravity = match &state.load {
-        Some(load) if state.load != state.rigid_body => load.clone(),
-        _ => state.map(|i| state.position[i].sin()),
-    };
-    let columns = [state.acceleration.clone(), gravity, state.map(|i| state.position[i].cos()), vec![1.0; state.len()]];
-    least_squares(&columns, body, &[0..state.len()]).map(|weights| weights[0])
+    match &state.rigid_body {
+        Some(_) => nominal_inertia(state),
+        None => names.iter().position(|name| *name == "inertia").and_then(|place| refit.base.get(place)).copied(),
+    }
 }
 
 /// Mean square position error of each rollout.

@@ -160,8 +160,20 @@ impl<'s, 'a> Round<'s, 'a> {
             })
             .collect();
         self.refine_leaders(&mut table, alone, rows);
+        self.discount_grain(&mut table);
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
+    }
+
+    /// Takes from every candidate what the encoder's grain gives it by itself.
+    fn discount_grain(&self, table: &mut [Scored]) {
+        let Some(grain) = &self.search.base.grain else { return };
+        let least = self.search.settings.candidate_score;
+        table.par_iter_mut().filter(|scored| scored.score > least).for_each(|scored| {
+            let trust = grain.trust(self.search, &self.bench, &self.noise, &scored.label, &scored.shape);
+            scored.score *= trust;
+            scored.surprise *= trust;
+        });
     }
 
     /// The variants of a group whose coefficients have a possible sign.

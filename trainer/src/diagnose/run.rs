@@ -1,6 +1,6 @@
 //! One diagnosis from signals to outcome.
 
-use super::base::{Base, BaseKind};
+use super::base::{Base, BaseKind, delay_by_shifting};
 use super::blocks::Lock;
 use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
@@ -20,6 +20,7 @@ use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
 use crate::physics::{Action, EffectId, catalogue};
+use std::borrow::Cow;
 
 /// What a diagnosis is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +67,16 @@ pub enum Refusal {
 const LEAST_ROWS: usize = 150;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
+/// Samples of delay up to which it is the sampling's own, and from which it is felt: the drive holds its torque over a sample while
+/// the position is read at one edge of it.
+const LONGEST_SAMPLING_DELAY: f64 = 1.25;
+const LEAST_SAMPLING_DELAY: f64 = 0.3;
+/// Samples of a longer shift that are left to the regressor of a delay.
+const LEFT_OF_A_SHIFT: f64 = 2.0;
+/// Error over that of another diagnosis up to which it is as much.
+const AS_MUCH: f64 = 1.02;
+/// The same from which it is clearly less.
+const CLEARLY_LESS: f64 = 0.8;
 /// What a locked stretch is left with over what any open one is, root mean square, from which other blocks are locked.
 const STICKS_OUT: f64 = 1.5;
 /// The same from which it is no noise, whatever it is.
@@ -76,7 +87,7 @@ const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 /// Diagnoses one recording. `actuator` is the text of the actuator's unit ("N m", "N" or "A").
 ///
 /// A torque that was recorded at another time than the motion is a finding of its own; physics is looked for once it is
-/// put back.
+/// put back. Up to about a sample it is the sampling's own: put back and no finding.
 ///
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
@@ -84,20 +95,51 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
-    let as_recorded = diagnose_aligned(signals, actuator, options)?;
-    let Some(mut misaligned) = misalignment(&as_recorded).cloned() else { return Ok(as_recorded) };
-    let mut delay = misaligned.fitted.coefficients[0];
-    let Ok(mut aligned) = diagnose_aligned(&signals.realigned(delay), actuator, options) else {
+    let shift = delay_by_shifting(&Prepared::new(signals, options.lock), signals, options.base);
+    let samples = shift / signals.period;
+    if samples.abs() <= LONGEST_SAMPLING_DELAY {
+        let is_felt = samples.abs() > LEAST_SAMPLING_DELAY;
+        return diagnose_put_back(signals, if is_felt { shift } else { 0.0 }, actuator, options);
+    }
+    let as_recorded = diagnose_put_back(signals, 0.0, actuator, options)?;
+    if misalignment(&as_recorded).is_some() {
         return Ok(as_recorded);
+    }
+    // What is left of the shift is short enough for the linear regressor of a delay.
+    let left = LEFT_OF_A_SHIFT * signals.period * samples.signum();
+    match diagnose_put_back(signals, shift - left, actuator, options) {
+        Ok(shifted) if misalignment(&shifted).is_some() && says_more_with_less(&shifted, &as_recorded) => Ok(shifted),
+        _ => Ok(as_recorded),
+    }
+}
+
+/// Whether a diagnosis leaves as much as another with fewer findings, or clearly less with no more.
+fn says_more_with_less(one: &Diagnosis, other: &Diagnosis) -> bool {
+    let (fewer, left) = (one.findings.len().cmp(&other.findings.len()), one.improved.rmse / other.improved.rmse);
+    fewer.is_lt() && left < AS_MUCH || fewer.is_eq() && left < CLEARLY_LESS
+}
+
+/// Diagnoses a recording with its torque put back by `delay` (s), and by what the diagnosis then finds of it.
+fn diagnose_put_back(signals: &Signals, delay: f64, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+    let put_back = |delay: f64| {
+        let signals = if delay == 0.0 { Cow::Borrowed(signals) } else { Cow::Owned(signals.realigned(delay)) };
+        diagnose_aligned(&signals, actuator, options)
     };
+    let mut first = put_back(delay)?;
+    let Some(mut misaligned) = misalignment(&first).cloned() else {
+        first.sampling_delay_s += delay;
+        return Ok(first);
+    };
+    let mut total = delay + misaligned.fitted.coefficients[0];
+    let Ok(mut aligned) = put_back(total) else { return Ok(first) };
     for _ in 0..MOST_REALIGNMENTS {
         let Some(rest) = misalignment(&aligned) else { break };
-        let longer = delay + rest.fitted.coefficients[0];
-        let Ok(again) = diagnose_aligned(&signals.realigned(longer), actuator, options) else { break };
-        (delay, aligned) = (longer, again);
+        let longer = total + rest.fitted.coefficients[0];
+        let Ok(again) = put_back(longer) else { break };
+        (total, aligned) = (longer, again);
     }
-    let moved = delay - misaligned.fitted.coefficients[0];
-    misaligned.fitted.coefficients[0] = delay;
+    let moved = total - misaligned.fitted.coefficients[0];
+    misaligned.fitted.coefficients[0] = total;
     if let Some(parameter) = misaligned.parameters.first_mut() {
         parameter.value += moved;
         parameter.ci95 = parameter.ci95.map(|end| end + moved);
@@ -107,8 +149,8 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
     (aligned.findings, aligned.traces.effects) = std::iter::once((misaligned, vec![0.0; rows])).chain(physics).unzip();
     aligned.verdict = verdict(&aligned.findings, false);
-    aligned.baseline = as_recorded.baseline;
-    if let (Some(proof), Some(before)) = (&mut aligned.proof, &as_recorded.proof) {
+    aligned.baseline = first.baseline;
+    if let (Some(proof), Some(before)) = (&mut aligned.proof, &first.proof) {
         let larger = before.baseline_rmse / proof.baseline_rmse;
         proof.ratio_ci95 = proof.ratio_ci95.map(|end| end / larger);
         proof.baseline_rmse = before.baseline_rmse;
@@ -138,7 +180,10 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     let events = |diagnosis: &Diagnosis| {
         diagnosis.findings.iter().filter(|finding| finding.effect == EffectId::TransientEvent).count()
     };
-    Ok(if events(&second) > events(&first) { second } else { first })
+    let sticks_out_less = || second.traces.worst_locked().is_some_and(|left| left.over_open < worst.over_open);
+    let is_better = events(&second) > events(&first)
+        || events(&second) == events(&first) && events(&first) > 0 && sticks_out_less();
+    Ok(if is_better { second } else { first })
 }
 
 fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {

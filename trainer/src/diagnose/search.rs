@@ -12,7 +12,7 @@ use super::null::NullDraws;
 use super::prepare::Prepared;
 use super::round::{Round, Scored, score_of};
 use super::settings::Settings;
-use crate::physics::{EffectId, Hypothesis, Shape};
+use crate::physics::{EffectId, Hypothesis, JointState, Shape};
 use rayon::prelude::*;
 
 /// Terms at most, repeated ones included.
@@ -126,19 +126,22 @@ impl<'a> Search<'a> {
         !self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)
     }
 
-    /// Unfiltered columns of a label and shape.
-    pub(crate) fn raw_columns(&self, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
+    /// Unfiltered columns of a label and shape at states of the rows.
+    fn raw_columns(&self, state: &JointState, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
         match label {
-            Label::Named(effect) => {
-                self.hypothesis(*effect).map(|h| h.columns(&self.prepared.state, shape)).unwrap_or_default()
-            }
-            Label::Generic(rival) => rival.columns(&self.prepared.state, shape),
+            Label::Named(effect) => self.hypothesis(*effect).map(|h| h.columns(state, shape)).unwrap_or_default(),
+            Label::Generic(rival) => rival.columns(state, shape),
         }
     }
 
     /// Filtered columns of a label and shape.
     pub(crate) fn filtered_columns(&self, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
-        self.raw_columns(label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
+        self.filtered_columns_at(&self.prepared.state, label, shape)
+    }
+
+    /// The same at other states of the rows.
+    pub(crate) fn filtered_columns_at(&self, state: &JointState, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
+        self.raw_columns(state, label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
     }
 
     /// The outcome of a search that was not made: no findings, noise of the base alone.

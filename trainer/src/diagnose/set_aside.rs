@@ -38,7 +38,7 @@ pub(super) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -
             let proof = prove_alone(search, accepted, i, &all)?;
             let Accepted { label, family_wise, .. } = &accepted[i];
             let is_carried = if accepted[i].effect() == EffectId::TransientEvent {
-                !search.settings.is_worse(&proof)
+                !search.settings.is_worse_by_an_event(&proof)
             } else {
                 search.settings.carried(label, *family_wise, &proof)
             };

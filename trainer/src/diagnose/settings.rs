@@ -92,8 +92,16 @@ impl Settings {
     pub(super) fn is_worse(&self, locked: &Proof) -> bool {
         locked.gain_nats < -self.largest_locked_loss && locked.improved_rmse >= locked.baseline_rmse
     }
+
+    /// Whether an event makes the locked rows clearly worse: they may hold the rest of it, so that a little more of it in the base
+    /// costs many nats.
+    pub(super) fn is_worse_by_an_event(&self, locked: &Proof) -> bool {
+        self.is_worse(locked) && locked.improved_rmse > WORSE_BY_AN_EVENT * locked.baseline_rmse
+    }
 }
 
+/// Error of the locked rows over that without a one-off event, from which it is refused.
+const WORSE_BY_AN_EVENT: f64 = 1.1;
 /// Error of the locked rows over that without an effect, from which nothing speaks for it.
 const FAR_WORSE: f64 = 1.5;
 

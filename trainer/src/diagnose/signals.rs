@@ -25,6 +25,8 @@ pub struct Signals {
     pub torque: Vec<f64>,
     /// Torque of the nominal rigid body, where one is given.
     pub rigid_body: Option<Vec<f64>>,
+    /// Whether that was worked out from the recorded position.
+    pub body_follows_position: bool,
     /// Transmitted load torque.
     pub load: Option<Vec<f64>>,
     /// Temperature in degrees Celsius.
@@ -140,6 +142,7 @@ impl Signals {
     /// Gives the nominal rigid body as an inertia (kg m2, or kg on a linear axis) and a gravity torque a sample.
     pub fn give_rigid_body(&mut self, inertia: f64, gravity: Option<&[f64]>) {
         let acceleration = second_derivative(&self.position, &self.segments, self.period);
+        self.body_follows_position = true;
         self.rigid_body =
             Some(acceleration.iter().enumerate().map(|(i, a)| inertia * a + gravity.map_or(0.0, |g| g[i])).collect());
     }

@@ -1,7 +1,9 @@
 //! G1, Nordin and Gutman 2002: play between motor and load. While it is crossed the motor loses the load, and at its end the
 //! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
-use super::transmission::{nominal_inertia, opening};
+use super::transmission::{
+    INFERRED, MEASURED, half_span_of_twist, is_possible, is_shown, measured, nominal_inertia, opening,
+};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
 
@@ -46,8 +48,14 @@ impl Hypothesis for Backlash {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
-        let mut shapes = Vec::new();
+        let Some(inertia) = nominal_inertia(state).filter(|_| is_possible(state, self.id())) else {
+            return Vec::new();
+        };
+        let mut shapes: Vec<Shape> = half_span_of_twist(state)
+            .filter(|_| is_shown(state, self.id()))
+            .map(|half| vec![half, 0.5 * inertia, MEASURED])
+            .into_iter()
+            .collect();
         for share in LINK_SHARES {
             let link = share * inertia;
             let opening = opening(state, link);
@@ -56,7 +64,7 @@ impl Hypothesis for Backlash {
             if changes >= 4 && typical > 0.0 {
                 let half_width = |crossing_s: f64| 0.25 * typical * crossing_s * crossing_s;
                 let widths = geometric_grid(half_width(CROSSING_S.0), half_width(CROSSING_S.1), 16);
-                shapes.extend(widths.into_iter().map(|width| vec![width, link]));
+                shapes.extend(widths.into_iter().map(|width| vec![width, link, INFERRED]));
             }
         }
         shapes
@@ -67,7 +75,7 @@ impl Hypothesis for Backlash {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![crossing(state, &opening(state, shape[1]), shape[0])]
+        vec![if shape[2] == MEASURED { measured(state) } else { crossing(state, &opening(state, shape[1]), shape[0]) }]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
@@ -78,11 +86,17 @@ impl Hypothesis for Backlash {
         vec![
             ShapeName::new("half_width", "b", Dimension::Position),
             ShapeName::new("link_inertia", "J_l", Dimension::Inertia),
+            ShapeName::new("variant", "variant", Dimension::One),
         ]
     }
 
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         let inertia = nominal_inertia(state)?;
-        Some(if index == 0 { (0.3 * shape[0], 3.0 * shape[0]) } else { (0.1 * inertia, inertia) })
+        match index {
+            _ if shape[2] == MEASURED => None,
+            0 => Some((0.3 * shape[0], 3.0 * shape[0])),
+            1 => Some((0.1 * inertia, inertia)),
+            _ => None,
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! G2, Spong 1987: behind an elastic transmission the link swings against the motor. With a motor encoder alone its twist
 //! follows from the motor's own motion, and the motor carries what the link's inertia does beyond it.
 
+use super::transmission::{INFERRED, MEASURED, antiresonance_of_twist, is_possible, is_shown, measured};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use std::f64::consts::TAU;
 
@@ -24,13 +25,19 @@ impl Hypothesis for Elasticity {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        if state.rigid_body.is_none() {
+        if state.rigid_body.is_none() || !is_possible(state, self.id()) {
             return Vec::new();
         }
         let highest = highest_antiresonance(state);
-        geometric_grid(0.08 * highest, highest, 7)
+        let inferred = geometric_grid(0.08 * highest, highest, 7);
+        inferred
             .into_iter()
-            .flat_map(|w| DAMPING_RATIOS.map(|ratio| vec![w, ratio]))
+            .flat_map(|w| DAMPING_RATIOS.map(|ratio| vec![w, ratio, INFERRED]))
+            .chain(
+                antiresonance_of_twist(state)
+                    .filter(|_| is_shown(state, self.id()))
+                    .map(|w| vec![w, DAMPING_RATIOS[0], MEASURED]),
+            )
             .collect()
     }
 
@@ -39,7 +46,7 @@ impl Hypothesis for Elasticity {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![swinging(state, shape[0], shape[1])]
+        vec![if shape[2] == MEASURED { measured(state) } else { swinging(state, shape[0], shape[1]) }]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
@@ -50,12 +57,18 @@ impl Hypothesis for Elasticity {
         vec![
             ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
             ShapeName::new("damping_ratio", "zeta", Dimension::One),
+            ShapeName::new("variant", "variant", Dimension::One),
         ]
     }
 
-    fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         let highest = highest_antiresonance(state);
-        Some(if index == 0 { (0.05 * highest, 1.5 * highest) } else { (0.005, 1.0) })
+        match index {
+            _ if shape[2] == MEASURED => None,
+            0 => Some((0.05 * highest, 1.5 * highest)),
+            1 => Some((0.005, 1.0)),
+            _ => None,
+        }
     }
 }
 

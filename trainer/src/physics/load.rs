@@ -82,6 +82,11 @@ impl Hypothesis for DriveBackdrive {
         if varied_load(state).is_some() { vec![vec![0.0], vec![1.0], vec![2.0]] } else { Vec::new() }
     }
 
+    /// Losses of opposite signs would be a torque scale.
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(load) = &state.load else { return Vec::new() };
         let loss = |i: usize, driving: bool| {

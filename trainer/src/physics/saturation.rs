@@ -1,15 +1,26 @@
-//! F1: the actuator gives less than commanded beyond a torque limit. The regressor is the torque that the model needs, not
-//! the recorded one, whose noise would explain itself.
+//! F1: beyond a limit the recorded torque is not the one that moves the joint. Either the command was recorded and the actuator
+//! gives less, or the record itself stands at the limit where the joint needed more.
 
-use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 use crate::statistics::quantile;
 
 pub(super) struct Saturation;
 
-/// Lowest and highest limit worth testing: near the largest torques, since a limit far below would be a wrong scale.
-fn levels(state: &JointState) -> (f64, f64) {
-    let at = |share| quantile(state.predicted.iter().map(|t| t.abs()), share);
-    (at(0.7).max(0.45 * at(0.998)), at(0.995))
+/// Shares of the samples that stay below the limits that are tried: a limit far below would be a wrong scale.
+const BELOW: [f64; 7] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99];
+
+/// Which torque goes beyond the limit: the one that the model needs, or the recorded one.
+const NEEDED: f64 = 0.0;
+const RECORDED: f64 = 1.0;
+
+fn torque_beyond<'s>(state: &'s JointState, variant: f64) -> &'s [f64] {
+    if variant == RECORDED { &state.torque } else { &state.predicted }
+}
+
+fn levels(state: &JointState, variant: f64) -> Vec<f64> {
+    let at = |share| quantile(torque_beyond(state, variant).iter().map(|t| t.abs()), share);
+    let lowest = if variant == RECORDED { 0.0 } else { 0.45 * at(0.998) };
+    BELOW.into_iter().map(at).filter(|level| *level > lowest).collect()
 }
 
 impl Hypothesis for Saturation {
@@ -18,24 +29,17 @@ impl Hypothesis for Saturation {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = c sign(tau) max(0, |tau| - tau_max), tau = torque needed"
+        "dF = c sign(tau) max(0, |tau| - tau_max)"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let (low, high) = levels(state);
-        if high <= low {
-            Vec::new()
-        } else {
-            geometric_grid(low, high, 6).into_iter().map(|level| vec![level]).collect()
-        }
-    }
-
-    fn only_positive(&self) -> bool {
-        true
+        let variants = [NEEDED, RECORDED].into_iter();
+        variants.flat_map(|variant| levels(state, variant).into_iter().map(move |level| vec![level, variant])).collect()
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![state.map(|i| (state.predicted[i].abs() - shape[0]).max(0.0) * state.predicted[i].signum())]
+        let torque = torque_beyond(state, shape[1]);
+        vec![state.map(|i| (torque[i].abs() - shape[0]).max(0.0) * torque[i].signum())]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
@@ -43,10 +47,14 @@ impl Hypothesis for Saturation {
     }
 
     fn shape_names(&self) -> Vec<ShapeName> {
-        vec![ShapeName::new("torque_limit", "tau_max", Dimension::Torque)]
+        vec![
+            ShapeName::new("torque_limit", "tau_max", Dimension::Torque),
+            ShapeName::new("variant", "variant", Dimension::One),
+        ]
     }
 
-    fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        Some(levels(state))
+    fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        let levels = levels(state, shape[1]);
+        Some((*levels.first()?, *levels.last()?)).filter(|_| index == 0)
     }
 }

@@ -1,5 +1,6 @@
 //! The recorded states at which every hypothesis evaluates its torque.
 
+use super::EffectId;
 use crate::statistics::quantile;
 use std::ops::Range;
 
@@ -24,10 +25,14 @@ pub struct JointState {
     pub rigid_body: Option<Vec<f64>>,
     /// Torque transmitted through the gear, where recorded or known from the rigid body.
     pub load: Option<Vec<f64>>,
+    /// The part of the rigid body's torque that does not go with the acceleration, where a rigid body is given.
+    pub gravity: Option<Vec<f64>>,
     /// Temperature in degrees Celsius, smoothed over seconds.
     pub temperature: Option<Vec<f64>>,
-    /// Link-side position, where a second encoder is fitted.
-    pub link_position: Option<Vec<f64>>,
+    /// Motion of the link, where a second encoder is fitted.
+    pub link: Option<OtherJoint>,
+    /// What the twist between both encoders shows.
+    pub twist: Twist,
     /// Motions of other joints on the same clock.
     pub other_joints: Vec<OtherJoint>,
     /// Recorded actuator torque, smoothed like the states.
@@ -48,7 +53,19 @@ pub struct JointState {
     pub resolution: f64,
 }
 
-/// Motion of another joint.
+/// What a second encoder tells of a transmission.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Twist {
+    /// There is none, or the twist follows nothing that is known of a transmission.
+    #[default]
+    Untold,
+    /// The link moves with the motor.
+    Rigid,
+    /// The twist is that of one effect.
+    Shows(EffectId),
+}
+
+/// Motion of another joint, or of the link behind the transmission.
 #[derive(Clone, Debug)]
 pub struct OtherJoint {
     /// Position in rad or m.

@@ -1,13 +1,34 @@
 //! What the effects of a transmission have in common: how motor and link would part if nothing held them together.
 
-use super::JointState;
+use super::{EffectId, JointState, Twist};
+use crate::statistics::quantile;
 
-/// Inertia of the nominal rigid body: what its torque beyond the load shows per acceleration.
-pub(super) fn nominal_inertia(state: &JointState) -> Option<f64> {
-    let (body, load) = (state.rigid_body.as_ref()?, state.load.as_ref()?);
+/// Variant of a shape that works out the twist from the motor's own motion, and the one that takes it from both encoders.
+pub(super) const INFERRED: f64 = 0.0;
+pub(super) const MEASURED: f64 = 1.0;
+
+/// Whether a second encoder leaves this effect of the transmission possible.
+pub(super) fn is_possible(state: &JointState, effect: EffectId) -> bool {
+    matches!(state.twist, Twist::Untold) || is_shown(state, effect)
+}
+
+/// Whether a second encoder shows this effect of the transmission.
+pub(super) fn is_shown(state: &JointState, effect: EffectId) -> bool {
+    state.twist == Twist::Shows(effect)
+}
+
+/// Minus the acceleration of the measured twist; empty without a second encoder.
+pub(super) fn measured(state: &JointState) -> Vec<f64> {
+    let of_link = state.link.iter().flat_map(|link| link.acceleration.iter());
+    of_link.zip(&state.acceleration).map(|(link, motor)| link - motor).collect()
+}
+
+/// Inertia of the nominal rigid body: what its torque beyond gravity shows per acceleration.
+pub(crate) fn nominal_inertia(state: &JointState) -> Option<f64> {
+    let (body, gravity) = (state.rigid_body.as_ref()?, state.gravity.as_ref()?);
     let (mut product, mut square) = (0.0, 0.0);
-    for ((b, l), a) in body.iter().zip(load).zip(&state.acceleration) {
-        product += (b - l) * a;
+    for ((b, g), a) in body.iter().zip(gravity).zip(&state.acceleration) {
+        product += (b - g) * a;
         square += a * a;
     }
     Some(product / square).filter(|inertia| *inertia > 0.0)
@@ -15,8 +36,27 @@ pub(super) fn nominal_inertia(state: &JointState) -> Option<f64> {
 
 /// Acceleration of the twist while the play is open: the motor's own and that of the free link.
 pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
-    match &state.load {
-        Some(load) => state.map(|i| state.acceleration[i] + load[i] / link_inertia),
+    match &state.gravity {
+        Some(gravity) => state.map(|i| state.acceleration[i] + gravity[i] / link_inertia),
         None => Vec::new(),
     }
+}
+
+/// Antiresonance in rad/s of a measured twist: what the link's acceleration beside its gravity shows per twist. `None` without a
+/// second encoder.
+pub(super) fn antiresonance_of_twist(state: &JointState) -> Option<f64> {
+    let link = state.link.as_ref()?;
+    let twist = state.map(|i| state.position[i] - link.position[i]);
+    let mean = twist.iter().sum::<f64>() / twist.len().max(1) as f64;
+    let (product, square) = twist.iter().zip(&link.acceleration).fold((0.0, 0.0), |(product, square), (twist, a)| {
+        (product + (twist - mean) * a, square + (twist - mean).powi(2))
+    });
+    Some((product / square).sqrt()).filter(|w| w.is_finite() && *w > 0.0)
+}
+
+/// Half of what a measured twist spans, its rare ends left out. `None` without a second encoder.
+pub(super) fn half_span_of_twist(state: &JointState) -> Option<f64> {
+    let link = state.link.as_ref()?;
+    let twist = || state.position.iter().zip(&link.position).map(|(motor, link)| motor - link);
+    Some(0.5 * (quantile(twist(), 0.9) - quantile(twist(), 0.1))).filter(|half| *half > 0.0)
 }

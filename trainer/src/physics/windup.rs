@@ -3,7 +3,10 @@
 //! follows from the motor's motion and the load.
 
 use super::elasticity::highest_antiresonance;
-use super::transmission::{nominal_inertia, opening};
+use super::transmission::{
+    INFERRED, MEASURED, antiresonance_of_twist, half_span_of_twist, is_possible, is_shown, measured, nominal_inertia,
+    opening,
+};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
 
@@ -56,7 +59,9 @@ impl Hypothesis for WindupHysteresis {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        let Some(inertia) = nominal_inertia(state).filter(|_| is_possible(state, self.id())) else {
+            return Vec::new();
+        };
         let drive = opening(state, LINK_SHARE * inertia);
         if usual_twist(&drive, 1.0) <= 0.0 {
             return Vec::new();
@@ -64,7 +69,13 @@ impl Hypothesis for WindupHysteresis {
         let highest = highest_antiresonance(state);
         geometric_grid(0.12 * highest, 0.8 * highest, 9)
             .into_iter()
-            .flat_map(|w| [0.03, 0.1, 0.3].map(|share| vec![w, share * usual_twist(&drive, w)]))
+            .flat_map(|w| [0.03, 0.1, 0.3].map(|share| vec![w, share * usual_twist(&drive, w), INFERRED]))
+            .chain(
+                antiresonance_of_twist(state)
+                    .zip(half_span_of_twist(state))
+                    .filter(|_| is_shown(state, self.id()))
+                    .map(|(w, half)| vec![w, half, MEASURED]),
+            )
             .collect()
     }
 
@@ -74,7 +85,11 @@ impl Hypothesis for WindupHysteresis {
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
-        vec![winding(state, &opening(state, LINK_SHARE * inertia), shape[0], shape[1])]
+        vec![if shape[2] == MEASURED {
+            measured(state)
+        } else {
+            winding(state, &opening(state, LINK_SHARE * inertia), shape[0], shape[1])
+        }]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
@@ -89,11 +104,17 @@ impl Hypothesis for WindupHysteresis {
         vec![
             ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
             ShapeName::new("loop_twist", "L", Dimension::Position),
+            ShapeName::new("variant", "variant", Dimension::One),
         ]
     }
 
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         let highest = highest_antiresonance(state);
-        Some(if index == 0 { (0.05 * highest, 1.5 * highest) } else { (0.1 * shape[1], 10.0 * shape[1]) })
+        match index {
+            _ if shape[2] == MEASURED => None,
+            0 => Some((0.05 * highest, 1.5 * highest)),
+            1 => Some((0.1 * shape[1], 10.0 * shape[1])),
+            _ => None,
+        }
     }
 }

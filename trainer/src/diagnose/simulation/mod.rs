@@ -11,7 +11,7 @@ use super::covariance::of_whitened;
 use super::linear::{least_squares, residual, weighted};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
-use super::reference::{Reference, coulomb_and_viscous, tabulated_velocities};
+use super::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
 use held::{HeldEffects, held_by};
@@ -262,6 +262,7 @@ impl InverseLaw {
             left: met.map(|met| met.torque),
             formula_error,
             doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
+            outside: Outside::default(),
             friction: self.friction_curve(),
         }
     }
