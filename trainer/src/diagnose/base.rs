@@ -2,7 +2,7 @@
 
 use super::grain::Grain;
 use super::linear::{dot, least_squares, orthonormal, project_out, residual};
-use super::prepare::Prepared;
+use super::prepare::{Prepared, channel_filter};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
@@ -195,8 +195,11 @@ fn predict(
     coefficients: &[f64],
 ) {
     let state = &mut prepared.state;
-    let known = signals.known_torque();
-    let mut predicted = known.cloned().unwrap_or_else(|| vec![0.0; state.len()]);
+    // What was differentiated from the position without a filter would drown what is looked for in the rest.
+    let mut predicted = match signals.known_torque() {
+        Some(known) => channel_filter(prepared.filter.cut_off_hz, state.period).over(known, &state.segments),
+        None => vec![0.0; state.len()],
+    };
     for ((_, column), coefficient) in raw.iter().zip(coefficients) {
         predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
     }

@@ -6,13 +6,15 @@ use super::candidates::Label;
 use super::conclude::{Fitted, Refit, unit_text};
 use super::confidence::{alternatives, probability};
 use super::formula;
-use super::health::HealthNote;
+use super::health::{HealthNote, unexplained_event};
 use super::localise::{Location, locate};
 use super::nearest::nearest;
 use super::outcome::Finding;
 use super::prove::prove_alone;
+use super::region::{Region, Side};
 use super::search::{Accepted, Search};
 use super::signals::Signals;
+use super::traces::{Traces, WorstLocked};
 use crate::parameter::Parameter;
 use crate::physics::{Action, Dimension, EffectId};
 
@@ -127,20 +129,49 @@ pub(super) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, act
         .collect()
 }
 
-/// A fault of the measurement as a finding, without a fitted term.
+/// A fault of the measurement as a finding.
 pub(super) fn measurement_finding(note: &HealthNote) -> Finding {
+    let probability = if note.blocking { 0.99 } else { 0.5 };
+    unfitted(note.effect, probability, Action::Measurement, note.sentence.clone())
+}
+
+/// What happened once in rows that were locked away, where no row that might name it shows it.
+pub(super) fn unexplained_finding(worst: WorstLocked, traces: &Traces, actuator: &str) -> Finding {
+    let energy = |left: Vec<f64>| left.iter().map(|left| left * left).sum::<f64>();
+    let [from, to] = worst.when_s;
+    let rows = traces.time.iter().filter(|time| (from..=to).contains(*time)).count();
+    let region = Region {
+        side: Side { channel: "time", from, to },
+        and: None,
+        share_of_excess: energy(traces.left_within(worst.when_s)) / energy(traces.after.clone()),
+        share_of_samples: rows as f64 / traces.len() as f64,
+    };
+    let effect = EffectId::Unknown;
+    let note = unexplained_event(worst, actuator);
     Finding {
-        effect: note.effect,
-        probability: if note.blocking { 0.99 } else { 0.5 },
+        equation: "dF = c(time)".to_string(),
+        location: Location { regions: vec![region], when_s: vec![worst.when_s] },
+        ..unfitted(effect, CLEARLY_NO_NOISE, effect.action(), note.sentence)
+    }
+}
+
+/// Probability of what leaves some stretch with several times of what any other is left with.
+const CLEARLY_NO_NOISE: f64 = 0.98;
+
+/// A finding without a fitted term.
+fn unfitted(effect: EffectId, probability: f64, action: Action, evidence: String) -> Finding {
+    Finding {
+        effect,
+        probability,
         alternatives: Vec::new(),
-        action: Action::Measurement,
+        action,
         equation: String::new(),
         parameters: Vec::new(),
         location: Location::default(),
-        evidence: note.sentence.clone(),
-        separate_by: Advice { sentence: separation(note.effect).to_string() },
+        evidence,
+        separate_by: Advice { sentence: separation(effect).to_string() },
         fitted: Fitted {
-            label: Label::Named(note.effect),
+            label: Label::Named(effect),
             shape: Vec::new(),
             shape_deviation: Vec::new(),
             coefficients: Vec::new(),

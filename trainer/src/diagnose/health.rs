@@ -27,7 +27,7 @@ const CLIPPED_SHARE: f64 = 0.02;
 /// A torque step of this share of the usual torque hides friction.
 const COARSE_TORQUE_SHARE: f64 = 0.05;
 /// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
-const LEAST_BAND_HZ: f64 = 12.5;
+const LEAST_BAND_HZ: f64 = 17.0;
 const COARSE_STEP: f64 = 1e-4;
 
 /// Looks at the signals alone.

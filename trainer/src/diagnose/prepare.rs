@@ -192,7 +192,7 @@ impl Prepared {
 }
 
 /// The filter before all channels but the motion.
-fn channel_filter(cut_off: f64, period: f64) -> ZeroPhase {
+pub(super) fn channel_filter(cut_off: f64, period: f64) -> ZeroPhase {
     ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period)
 }
 

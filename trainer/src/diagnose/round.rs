@@ -41,13 +41,20 @@ pub struct Scored {
 }
 
 /// Score: the mean of held-out gain and Bayesian criterion; the criterion with a scan penalty for a one-off event, which no other
-/// block can confirm.
+/// block can confirm. One beyond doubt is weighed as its rivals are: what explains a part of it gains as much where it is held out.
 pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
+    let both = 0.5 * (evidence.held_out + evidence.criterion);
     match label {
-        Label::Named(EffectId::TransientEvent) => evidence.criterion - 0.5 * grid_size.ln(),
-        _ => 0.5 * (evidence.held_out + evidence.criterion),
+        Label::Named(EffectId::TransientEvent) => {
+            let alone = evidence.criterion - 0.5 * grid_size.ln();
+            if alone > BEYOND_DOUBT_NATS { alone.max(both) } else { alone }
+        }
+        _ => both,
     }
 }
+
+/// Criterion of a one-off event that is beyond doubt.
+const BEYOND_DOUBT_NATS: f64 = 50.0;
 
 /// Evidence of every variant of every group; `None` where a variant depends on the base.
 type Tested = Vec<Vec<Option<VariantEvidence>>>;
@@ -243,7 +250,12 @@ fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -
     (white, bench, variants)
 }
 
-/// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats.
+/// Nats for each row from which a one-off event explains a fifth of all that the base leaves: slow functions that take up parts of
+/// it would else leave its edges to the noise.
+const DOMINANT_NATS_A_ROW: f64 = 0.1;
+
+/// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
+/// dominant event.
 fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
@@ -252,9 +264,14 @@ fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Ve
         gains.extend(best.map(|(gain, variant)| (gain, group, variant)));
     }
     gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let is_dominant_event = |(gain, group, _): &&(f64, usize, usize)| {
+        let event = Label::Named(EffectId::TransientEvent);
+        *gain > DOMINANT_NATS_A_ROW * rows && search.design.groups[*group].label == event
+    };
     gains
         .iter()
         .take(2)
+        .chain(gains.iter().skip(2).filter(is_dominant_event))
         .flat_map(|(_, group, variant)| {
             search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
         })

@@ -4,7 +4,7 @@ use super::base::{Base, BaseKind, delay_by_shifting};
 use super::blocks::Lock;
 use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
-use super::findings::{base_parameters, finding, measurement_finding};
+use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
 use super::health::{coarse_position, examine, unexplained_event};
 use super::linear::weighted;
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
@@ -80,7 +80,7 @@ const CLEARLY_LESS: f64 = 0.8;
 /// What a locked stretch is left with over what any open one is, root mean square, from which other blocks are locked.
 const STICKS_OUT: f64 = 1.5;
 /// The same from which it is no noise, whatever it is.
-const NO_NOISE: f64 = 4.0;
+const NO_NOISE: f64 = 6.0;
 /// Non-centrality that is found with 90 % probability.
 const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 
@@ -169,10 +169,15 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     let mut first = diagnose_locked(signals, actuator, options)?;
     let worst = first.traces.worst_locked().filter(|worst| worst.over_open > STICKS_OUT);
     let (Lock::Spread, Some(worst)) = (options.lock, worst) else { return Ok(first) };
-    if worst.over_open > NO_NOISE && first.verdict != Verdict::BadData {
-        first.health.push(unexplained_event(worst, actuator));
-        if first.verdict == Verdict::Consistent {
-            first.verdict = Verdict::Unexplained;
+    if worst.over_open > NO_NOISE {
+        match first.verdict {
+            Verdict::BadData => {}
+            Verdict::Consistent => {
+                first.verdict = Verdict::Unexplained;
+                first.findings.push(unexplained_finding(worst, &first.traces, actuator));
+                first.traces.effects.push(first.traces.left_within(worst.when_s));
+            }
+            Verdict::MissingPhysics | Verdict::Unexplained => first.health.push(unexplained_event(worst, actuator)),
         }
     }
     let elsewhere = Options { lock: Lock::SpreadElsewhere, ..*options };

@@ -150,7 +150,8 @@ fn change(parameter: &Parameter) -> Option<String> {
 pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let found = &diagnosis.findings[index];
     // A fault of the measurement adds no torque of which to say where and how much.
-    if found.fitted.coefficients.is_empty() || found.effect == EffectId::TimeMisalignment {
+    let is_of_measurement = found.fitted.coefficients.is_empty() && found.effect != EffectId::Unknown;
+    if is_of_measurement || found.effect == EffectId::TimeMisalignment {
         let name = capital(plain_name(found.effect));
         return format!("{name}{}. {}{}", figures(found), certainty(found), action(found));
     }

@@ -85,7 +85,10 @@ impl Settings {
         let is_to_be_compensated = matches!(label, Label::Named(_));
         let is_far_worse = locked.improved_rmse > FAR_WORSE * locked.baseline_rmse;
         let may_be_worse = !is_contradicted && !is_to_be_compensated && !is_far_worse;
-        together >= deviations_of(level) && (may_be_worse || !self.is_worse(locked))
+        let errs_more = locked.ratio_ci95[0] > 1.0 && locked.improved_rmse > ERRS_MORE * locked.baseline_rmse;
+        together >= deviations_of(level)
+            && (may_be_worse || !self.is_worse(locked))
+            && !(is_to_be_compensated && errs_more)
     }
 
     /// Whether an effect makes the locked rows clearly worse.
@@ -102,6 +105,8 @@ impl Settings {
 
 /// Error of the locked rows over that without a one-off event, from which it is refused.
 const WORSE_BY_AN_EVENT: f64 = 1.1;
+/// The same of what is to be compensated, where it is certain from block to block.
+const ERRS_MORE: f64 = 1.03;
 /// Error of the locked rows over that without an effect, from which nothing speaks for it.
 const FAR_WORSE: f64 = 1.5;
 

@@ -125,6 +125,12 @@ impl Traces {
         })
     }
 
+    /// What base and effects leave within a stretch of time (s), 0 elsewhere.
+    pub(super) fn left_within(&self, [from, to]: [f64; 2]) -> Vec<f64> {
+        let within = |(time, left): (&f64, &f64)| if (from..=to).contains(time) { *left } else { 0.0 };
+        self.time.iter().zip(&self.after).map(within).collect()
+    }
+
     /// Where all effects together lower the squared residual: regions, sharpest first, and stretches of time in s.
     #[must_use]
     pub fn excess(&self) -> (Vec<Region>, Vec<[f64; 2]>) {

@@ -15,7 +15,7 @@ const PROPOSED: usize = 6;
 
 /// Mean deviation of a window, in medians of a sample's, from which its edges show by themselves. What such an event is left with
 /// beside a window that misses its edges would pass for strong noise.
-const CLEAR: f64 = 8.0;
+const CLEAR: f64 = 6.0;
 
 /// Of all windows at half-window steps, those in which the residual of the base deviates most on one side, a clear one from edge
 /// to edge. Samples slower than `slow` do not count: near standstill the residual is that of stiction.
