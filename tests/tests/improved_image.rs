@@ -46,6 +46,8 @@ fn left(effect: &'static str, lambda: f64) -> Left {
     let diagnosis = diagnose(&signals, "N m", &Options::default()).unwrap();
     let origin = Origin::Recording(RigidBody::default());
     let improved = improve(&diagnosis, &signals, origin, Unit::NewtonMetre).unwrap();
+    // The diagnosis puts the sampling's own delay back, and so is the image's error measured.
+    let signals = signals.realigned(diagnosis.sampling_delay_s);
     let state = signals.states();
     let prepared = Prepared::new(&signals, Lock::Nothing);
     let mut without = improved.model.clone();

@@ -219,6 +219,33 @@ fn predict(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::Lock;
+
+    /// A body of 0.5 kg m2 with Coulomb and viscous friction, whose torque is recorded late by some samples of 2 ms.
+    #[test]
+    fn a_late_torque_is_found_by_shifting_it() {
+        let period = 0.002;
+        let time: Vec<f64> = (0..15_000).map(|i| period * f64::from(i)).collect();
+        let tones = [(0.8, 1.3), (0.3, 3.7), (0.1, 9.1)];
+        let sum = |t: f64, of: fn(f64, f64, f64) -> f64| tones.iter().map(|(a, w)| of(*a, *w, t)).sum::<f64>();
+        let torque = |t: f64| {
+            let velocity = sum(t, |a, w, t| a * w * (w * t).cos());
+            2.0 * (velocity / 0.01).tanh() + 1.2 * velocity + 0.5 * sum(t, |a, w, t| -a * w * w * (w * t).sin())
+        };
+        for samples in [0.0, 1.0, 5.0, -7.5] {
+            let signals = Signals {
+                period,
+                position: time.iter().map(|t| sum(*t, |a, w, t| a * (w * t).sin())).collect(),
+                torque: time.iter().map(|t| torque(t - samples * period)).collect(),
+                segments: vec![0..time.len()],
+                time: time.clone(),
+                rotary: true,
+                ..Signals::default()
+            };
+            let delay = delay_by_shifting(&Prepared::new(&signals, Lock::Nothing), &signals, BaseKind::CoulombViscous);
+            assert!((delay / period - samples).abs() < 0.2, "{} of {samples} samples", delay / period);
+        }
+    }
 
     #[test]
     fn the_spline_holds_coulomb_and_viscous_friction_exactly() {

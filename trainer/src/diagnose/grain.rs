@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 /// Seed of what is added: one for all recordings.
-const SEED: u64 = 0x6772_6169_6e;
+const SEED: u64 = 0x0067_7261_696e;
 
 /// A second helping of the encoder's grain and of the torque's noise.
 #[derive(Clone, Debug)]

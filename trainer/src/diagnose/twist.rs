@@ -13,6 +13,8 @@ const LEFT_AT_MOST: f64 = 0.5;
 const LINE: f64 = 0.02;
 /// What a jump or a loop has to leave over what a line leaves.
 const CLEARLY_LESS: f64 = 0.6;
+/// Twist over the travel that is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Share of the inertia behind the transmission, where nothing tells it: the torque's sign and turns hardly depend on it.
 const LINK_SHARE: f64 = 0.6;
 /// Torque within which a jump turns, and torques over which a loop builds up, over the largest common torque.
@@ -37,7 +39,9 @@ fn shown(state: &JointState) -> Option<Twist> {
         left_by_fit(&columns, &twist, all).map(|left| dot(&left, &left, all))
     };
     let whole = left_by_fit(&line[..1], &twist, all).map(|left| dot(&left, &left, all))?;
-    if whole <= state.len() as f64 * state.resolution.powi(2) {
+    let (low, high) = state.travel();
+    let grain = state.resolution.max(ROUNDING * (high - low));
+    if whole <= state.len() as f64 * grain * grain {
         return Some(Twist::Rigid);
     }
     let by_line = left(None)?;

@@ -13,7 +13,7 @@ const BELOW: [f64; 7] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99];
 const NEEDED: f64 = 0.0;
 const RECORDED: f64 = 1.0;
 
-fn torque_beyond<'s>(state: &'s JointState, variant: f64) -> &'s [f64] {
+fn torque_beyond(state: &JointState, variant: f64) -> &[f64] {
     if variant == RECORDED { &state.torque } else { &state.predicted }
 }
 
