@@ -89,8 +89,7 @@ impl Base {
         let with_delay = least_squares(&columns, &target, &runs)?;
         let delay = with_delay[columns.len() - 1];
         let grain = Grain::of(prepared, signals, &residual(&columns, &target, &with_delay));
-        // The drive holds its torque over a sample while the position is read at one edge of it.
-        let delay_is_nuisance = delay.abs() <= 1.25 * prepared.state.period;
+        let delay_is_nuisance = delay.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period;
         if !delay_is_nuisance {
             columns.pop();
         }
@@ -132,6 +131,9 @@ pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: Ba
     (best as f64 - longest as f64 + between) * state.period
 }
 
+/// Samples of delay up to which it is the sampling's own: the drive holds its torque over a sample while the position is read at one
+/// edge of it.
+pub(super) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
 /// Longest delay that is looked for, in s, but for two samples.
 const LONGEST_DELAY_S: f64 = 0.03;
 /// Share of what is left without a shift below which a shift counts.

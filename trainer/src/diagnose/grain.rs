@@ -15,6 +15,7 @@ use crate::statistics::quantile;
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use std::ops::Range;
 
 /// Seed of what is added: one for all recordings.
 const SEED: u64 = 0x0067_7261_696e;
@@ -48,26 +49,47 @@ impl Grain {
         Some(Self { state, left: prepared.filtered(&left) })
     }
 
-    /// Share of a candidate's evidence that the grain does not give it by itself, from 0 to 1.
-    pub fn trust(&self, search: &Search, bench: &Bench, noise: &Noise, label: &Label, shape: &[f64]) -> f64 {
+    /// What it does beside a bench.
+    pub fn beside<'g>(&'g self, search: &'g Search<'g>, bench: &'g Bench, noise: &'g Noise) -> GrainBeside<'g> {
         let runs = bench.runs();
         let base = orthonormal(&bench.base, &runs);
+        let left = search.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
+        GrainBeside { state: &self.state, search, bench, noise, base, left, runs }
+    }
+}
+
+/// A second helping of grain and noise beside a bench.
+pub(super) struct GrainBeside<'g> {
+    state: &'g JointState,
+    search: &'g Search<'g>,
+    bench: &'g Bench,
+    noise: &'g Noise,
+    /// Orthonormal directions that the base takes up.
+    base: Vec<Vec<f64>>,
+    /// Whitened change of what the base leaves.
+    left: Vec<f64>,
+    runs: Vec<Range<usize>>,
+}
+
+impl GrainBeside<'_> {
+    /// Share of a candidate's evidence that the grain does not give it by itself, from 0 to 1.
+    pub fn trust(&self, label: &Label, shape: &[f64]) -> f64 {
+        let Self { state, search, bench, noise, base, left, runs } = self;
         let free = |columns: &[Vec<f64>]| {
             let mut white = search.whitened(columns, noise);
-            white.iter_mut().for_each(|column| project_out(column, &base, &runs));
+            white.iter_mut().for_each(|column| project_out(column, base, runs));
             white
         };
         let columns = search.filtered_columns(label, shape);
-        let with_more = search.filtered_columns_at(&self.state, label, shape);
+        let with_more = search.filtered_columns_at(state, label, shape);
         let change = |(more, column): (&Vec<f64>, &Vec<f64>)| more.iter().zip(column).map(|(m, c)| m - c).collect();
         let changes: Vec<Vec<f64>> = with_more.iter().zip(&columns).map(change).collect();
-        let left = search.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
         let (columns, changes) = (free(&columns), free(&changes));
         let along = |columns: &[Vec<f64>], target: &[f64]| {
-            DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, &runs)))
+            DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, runs)))
         };
-        let (asked_for, by_grain) = (along(&columns, &bench.target), along(&changes, &left));
-        let Some(coefficients) = solve_symmetric(&gram(&columns, &runs), &asked_for) else { return 1.0 };
+        let (asked_for, by_grain) = (along(&columns, &bench.target), along(&changes, left));
+        let Some(coefficients) = solve_symmetric(&gram(&columns, runs), &asked_for) else { return 1.0 };
         let share = coefficients.dot(&by_grain) / coefficients.dot(&asked_for).max(f64::MIN_POSITIVE);
         (1.0 - share).clamp(0.0, 1.0).powi(2)
     }

@@ -176,8 +176,12 @@ impl<'s, 'a> Round<'s, 'a> {
     fn discount_grain(&self, table: &mut [Scored]) {
         let Some(grain) = &self.search.base.grain else { return };
         let least = self.search.settings.candidate_score;
+        if table.iter().all(|scored| scored.score <= least) {
+            return;
+        }
+        let grain = grain.beside(self.search, &self.bench, &self.noise);
         table.par_iter_mut().filter(|scored| scored.score > least).for_each(|scored| {
-            let trust = grain.trust(self.search, &self.bench, &self.noise, &scored.label, &scored.shape);
+            let trust = grain.trust(&scored.label, &scored.shape);
             scored.score *= trust;
             scored.surprise *= trust;
         });

@@ -1,6 +1,6 @@
 //! One diagnosis from signals to outcome.
 
-use super::base::{Base, BaseKind, delay_by_shifting};
+use super::base::{Base, BaseKind, LONGEST_SAMPLING_DELAY, delay_by_shifting};
 use super::blocks::Lock;
 use super::candidates::Label;
 use super::conclude::{Refit, polish, refit};
@@ -67,9 +67,7 @@ pub enum Refusal {
 const LEAST_ROWS: usize = 150;
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
-/// Samples of delay up to which it is the sampling's own, and from which it is felt: the drive holds its torque over a sample while
-/// the position is read at one edge of it.
-const LONGEST_SAMPLING_DELAY: f64 = 1.25;
+/// Samples of the sampling's own delay from which it is felt.
 const LEAST_SAMPLING_DELAY: f64 = 0.3;
 /// Samples of a longer shift that are left to the regressor of a delay.
 const LEFT_OF_A_SHIFT: f64 = 2.0;

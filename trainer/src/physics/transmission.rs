@@ -42,8 +42,7 @@ pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
     }
 }
 
-/// Antiresonance in rad/s of a measured twist: what the link's acceleration beside its gravity shows per twist. `None` without a
-/// second encoder.
+/// Antiresonance in rad/s of a measured twist: what the link's acceleration shows per twist. `None` without a second encoder.
 pub(super) fn antiresonance_of_twist(state: &JointState) -> Option<f64> {
     let link = state.link.as_ref()?;
     let twist = state.map(|i| state.position[i] - link.position[i]);
