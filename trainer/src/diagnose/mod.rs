@@ -21,6 +21,7 @@ mod form;
 mod formula;
 mod generic;
 mod grain;
+mod gravity;
 mod health;
 pub mod improve;
 mod join;

@@ -2,6 +2,7 @@
 
 use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
+use super::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
 use super::linear::{least_squares, left_by_fit};
 use super::signals::Signals;
 use super::twist::told_by_twist;
@@ -101,6 +102,7 @@ impl Prepared {
             rigid_body: signals.rigid_body.as_ref().map(|series| channels.over(series, segments)),
             load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| channels.over(series, segments)),
             gravity: None,
+            gravity_slope: Vec::new(),
             temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
             link: signals.link_position.as_ref().map(|series| other_motion(series)),
             twist: Twist::Untold,
@@ -122,6 +124,7 @@ impl Prepared {
             Some(_) => state.load.clone(),
             None => gravity_of_body(&state),
         };
+        state.gravity_slope = slope_of_gravity(&state);
         state.twist = told_by_twist(&state);
         let known = signals.known_torque();
         let friction_torque = match known {
@@ -236,21 +239,6 @@ fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
     // A derivative at the cut-off: white noise of res/sqrt(12) through a low-pass of bandwidth f has the share 2 f dt.
     let bandwidth = filter.cut_off_hz;
     resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
-}
-
-/// What a given rigid body has beside its inertia, which goes with the acceleration; `None` where none is given.
-fn gravity_of_body(state: &JointState) -> Option<Vec<f64>> {
-    let body = state.rigid_body.as_ref()?;
-    let mut columns = vec![state.acceleration.clone(), vec![1.0; state.len()]];
-    columns.extend(torques_of_position(state));
-    let inertia = least_squares(&columns, body, &state.segments)?[0];
-    Some(state.map(|i| body[i] - inertia * state.acceleration[i]))
-}
-
-/// What of a rigid body depends on the position: sine and cosine of a joint, a slope of a linear axis.
-fn torques_of_position(state: &JointState) -> Vec<Vec<f64>> {
-    let of_position: &[fn(f64) -> f64] = if state.rotary { &[f64::sin, f64::cos] } else { &[|position| position] };
-    of_position.iter().map(|torque| state.map(|i| torque(state.position[i]))).collect()
 }
 
 /// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand

@@ -2,7 +2,7 @@
 //! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
 use super::transmission::{
-    INFERRED, MEASURED, half_span_of_twist, is_possible, is_shown, measured, nominal_inertia, opening,
+    INFERRED, MEASURED, half_span_of_twist, is_possible, is_shown, left_behind, measured, nominal_inertia, opening,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
@@ -14,9 +14,10 @@ const LINK_SHARES: [f64; 3] = [0.25, 0.42, 0.7];
 /// Shortest and longest time in s in which a play worth testing is crossed.
 const CROSSING_S: (f64, f64) = (0.001, 0.06);
 
-/// Minus the acceleration of the twist within a play: free between the flanks, caught where it reaches one.
-fn crossing(state: &JointState, opening: &[f64], half_width: f64) -> Vec<f64> {
+/// What the twist within a play leaves behind: free between the flanks, caught where it reaches one.
+fn crossing(state: &JointState, link_inertia: f64, half_width: f64) -> Vec<f64> {
     const STEPS: usize = 4;
+    let opening = opening(state, link_inertia);
     let h = state.period / STEPS as f64;
     let mut column = vec![0.0; state.len()];
     for segment in &state.segments {
@@ -32,7 +33,7 @@ fn crossing(state: &JointState, opening: &[f64], half_width: f64) -> Vec<f64> {
                     rate = 0.0;
                 }
             }
-            column[i] = -(rate - before) / state.period;
+            column[i] = left_behind(state, link_inertia, i, twist, (rate - before) / state.period);
         }
     }
     column
@@ -44,7 +45,7 @@ impl Hypothesis for Backlash {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = -J_l e'', e'' = a + tau_g / J_l within |e| < b, e' = 0 at the flanks"
+        "dF = -J_l e'' - dtau_g/dq e, e'' = a + tau_g / J_l within |e| < b, e' = 0 at the flanks"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
@@ -75,7 +76,7 @@ impl Hypothesis for Backlash {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![if shape[2] == MEASURED { measured(state) } else { crossing(state, &opening(state, shape[1]), shape[0]) }]
+        vec![if shape[2] == MEASURED { measured(state, shape[1]) } else { crossing(state, shape[1], shape[0]) }]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {

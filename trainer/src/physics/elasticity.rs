@@ -1,7 +1,10 @@
 //! G2, Spong 1987: behind an elastic transmission the link swings against the motor. With a motor encoder alone its twist
 //! follows from the motor's own motion, and the motor carries what the link's inertia does beyond it.
 
-use super::transmission::{INFERRED, MEASURED, antiresonance_of_twist, is_possible, is_shown, measured};
+use super::transmission::{
+    INFERRED, LINK_SHARE, MEASURED, antiresonance_of_twist, is_possible, is_shown, left_behind, measured,
+    nominal_inertia, opening,
+};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use std::f64::consts::TAU;
 
@@ -21,11 +24,11 @@ impl Hypothesis for Elasticity {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = -J_l e'', e'' + 2 zeta w_a e' + w_a^2 e = a"
+        "dF = -J_l e'' - dtau_g/dq e, e'' + 2 zeta w_a e' + w_a^2 e = a + tau_g / J_l"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        if state.rigid_body.is_none() || !is_possible(state, self.id()) {
+        if nominal_inertia(state).is_none() || !is_possible(state, self.id()) {
             return Vec::new();
         }
         let highest = highest_antiresonance(state);
@@ -46,7 +49,13 @@ impl Hypothesis for Elasticity {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![if shape[2] == MEASURED { measured(state) } else { swinging(state, shape[0], shape[1]) }]
+        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        let link_inertia = LINK_SHARE * inertia;
+        vec![if shape[2] == MEASURED {
+            measured(state, link_inertia)
+        } else {
+            swinging(state, link_inertia, shape[0], shape[1])
+        }]
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
@@ -72,23 +81,23 @@ impl Hypothesis for Elasticity {
     }
 }
 
-/// Minus the second derivative of the twist that the motor's acceleration excites, by the trapezoidal rule.
-fn swinging(state: &JointState, antiresonance: f64, damping_ratio: f64) -> Vec<f64> {
+/// What the twist that the motor's acceleration and gravity excite leaves behind, by the trapezoidal rule.
+fn swinging(state: &JointState, link_inertia: f64, antiresonance: f64, damping_ratio: f64) -> Vec<f64> {
+    let drive = opening(state, link_inertia);
     let (h, stiffness, damping) = (state.period, antiresonance * antiresonance, 2.0 * damping_ratio * antiresonance);
     let mut column = vec![0.0; state.len()];
     for segment in &state.segments {
-        let (mut twist, mut rate) = (0.0, 0.0);
+        let (mut twist, mut rate) = (drive[segment.start] / stiffness, 0.0);
         let mut bend = 0.0;
         for i in segment.clone() {
             // rate' = a - damping rate - stiffness twist, all taken at the middle of the step.
-            let known = state.acceleration[i]
-                - damping * (rate + 0.5 * h * bend)
-                - stiffness * (twist + h * rate + 0.25 * h * h * bend);
+            let known =
+                drive[i] - damping * (rate + 0.5 * h * bend) - stiffness * (twist + h * rate + 0.25 * h * h * bend);
             let next = known / (1.0 + 0.5 * h * damping + 0.25 * h * h * stiffness);
             twist += h * rate + 0.25 * h * h * (bend + next);
             rate += 0.5 * h * (bend + next);
             bend = next;
-            column[i] = -bend;
+            column[i] = left_behind(state, link_inertia, i, twist, bend);
         }
     }
     column

@@ -27,6 +27,8 @@ pub struct JointState {
     pub load: Option<Vec<f64>>,
     /// The part of the rigid body's torque that does not go with the acceleration, where a rigid body is given.
     pub gravity: Option<Vec<f64>>,
+    /// Its change with the position in N m/rad; zero on a linear axis, and where it is not known.
+    pub gravity_slope: Vec<f64>,
     /// Temperature in degrees Celsius, smoothed over seconds.
     pub temperature: Option<Vec<f64>>,
     /// Motion of the link, where a second encoder is fitted.

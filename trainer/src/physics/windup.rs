@@ -4,24 +4,23 @@
 
 use super::elasticity::highest_antiresonance;
 use super::transmission::{
-    INFERRED, MEASURED, antiresonance_of_twist, half_span_of_twist, is_possible, is_shown, measured, nominal_inertia,
-    opening,
+    INFERRED, LINK_SHARE, MEASURED, antiresonance_of_twist, half_span_of_twist, is_possible, is_shown, left_behind,
+    measured, nominal_inertia, opening,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
 
 pub(super) struct WindupHysteresis;
 
-/// Share of the inertia that lies behind the transmission, where nothing tells it.
-const LINK_SHARE: f64 = 0.5;
 /// Stiffness of the loop at a reversal over that of the spring.
 const LOOP_STIFFNESS: f64 = 1.5;
 /// Damping ratio of the spring.
 const DAMPING_RATIO: f64 = 0.15;
 
-/// Minus the acceleration of the twist: `e'' = u - w^2 (e + r L z) - 2 zeta w e'`, `dz = (sign(de) - z) |de| / L`.
-fn winding(state: &JointState, drive: &[f64], antiresonance: f64, loop_twist: f64) -> Vec<f64> {
+/// What the twist leaves behind, by `e'' = u - w^2 (e + r L z) - 2 zeta w e'`, `dz = (sign(de) - z) |de| / L`.
+fn winding(state: &JointState, link_inertia: f64, antiresonance: f64, loop_twist: f64) -> Vec<f64> {
     const STEPS: usize = 4;
+    let drive = opening(state, link_inertia);
     let h = state.period / STEPS as f64;
     let (stiffness, damping) = (antiresonance * antiresonance, 2.0 * DAMPING_RATIO * antiresonance);
     let mut column = vec![0.0; state.len()];
@@ -38,7 +37,7 @@ fn winding(state: &JointState, drive: &[f64], antiresonance: f64, loop_twist: f6
                 let settled = step.signum();
                 memory = settled + (memory - settled) * (-step.abs() / loop_twist).exp();
             }
-            column[i] = -(rate - before) / state.period;
+            column[i] = left_behind(state, link_inertia, i, twist, (rate - before) / state.period);
         }
     }
     column
@@ -55,7 +54,7 @@ impl Hypothesis for WindupHysteresis {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = -J_l e'', e'' + 2 zeta w_a e' + w_a^2 (e + r L z) = a + tau_g / J_l, dz = (sign(de) - z) |de| / L"
+        "dF = -J_l e'' - dtau_g/dq e, e'' + 2 zeta w_a e' + w_a^2 (e + r L z) = a + tau_g / J_l, dz = (sign(de) - z) |de| / L"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
@@ -85,10 +84,11 @@ impl Hypothesis for WindupHysteresis {
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
         let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
+        let link_inertia = LINK_SHARE * inertia;
         vec![if shape[2] == MEASURED {
-            measured(state)
+            measured(state, link_inertia)
         } else {
-            winding(state, &opening(state, LINK_SHARE * inertia), shape[0], shape[1])
+            winding(state, link_inertia, shape[0], shape[1])
         }]
     }
 

@@ -1,0 +1,35 @@
+//! What of the rigid body's torque hangs on the position, and how it changes there.
+
+use super::linear::least_squares;
+use crate::physics::JointState;
+
+/// What a given rigid body has beside its inertia, which goes with the acceleration; `None` where none is given.
+pub(super) fn gravity_of_body(state: &JointState) -> Option<Vec<f64>> {
+    let body = state.rigid_body.as_ref()?;
+    let mut columns = vec![state.acceleration.clone(), vec![1.0; state.len()]];
+    columns.extend(torques_of_position(state));
+    let inertia = least_squares(&columns, body, &state.segments)?[0];
+    Some(state.map(|i| body[i] - inertia * state.acceleration[i]))
+}
+
+/// What of a rigid body depends on the position: sine and cosine of a joint, a slope of a linear axis.
+pub(super) fn torques_of_position(state: &JointState) -> Vec<Vec<f64>> {
+    let of_position: &[fn(f64) -> f64] = if state.rotary { &[f64::sin, f64::cos] } else { &[|position| position] };
+    of_position.iter().map(|torque| state.map(|i| torque(state.position[i]))).collect()
+}
+
+/// Change of gravity with the position (N m/rad) at every sample: a pendulum's in each segment, which may carry a payload of its own.
+/// Zero on a linear axis, and where no gravity is given.
+pub(super) fn slope_of_gravity(state: &JointState) -> Vec<f64> {
+    let mut slope = vec![0.0; state.len()];
+    let Some(gravity) = state.gravity.as_ref().filter(|_| state.rotary) else { return slope };
+    let mut columns = torques_of_position(state);
+    columns.push(vec![1.0; state.len()]);
+    for segment in &state.segments {
+        if let Some(fitted) = least_squares(&columns, gravity, std::slice::from_ref(segment)) {
+            let (sine, cosine) = (fitted[0], fitted[1]);
+            segment.clone().for_each(|i| slope[i] = sine * columns[1][i] - cosine * columns[0][i]);
+        }
+    }
+    slope
+}
