@@ -9,6 +9,8 @@ pub(super) struct RecurrentFault;
 const WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
 /// Widths of a pulse that is only passed to and fro: what is wider has other names.
 const NARROW_TURNS: [f64; 2] = [0.004, 0.008];
+/// Widest pulse: what is wider is the ripple of that order.
+const WIDEST_TURNS: f64 = 0.08;
 /// Passes of an angle from which a pulse there comes back; what is passed once is a one-off event.
 const LEAST_PASSES: usize = 2;
 
@@ -82,7 +84,7 @@ impl Hypothesis for RecurrentFault {
         match index {
             1 => Some((-TAU, 2.0 * TAU)),
             2 if shape[2] < WIDTHS_TURNS[0] => Some((0.5 * NARROW_TURNS[0], 1.5 * NARROW_TURNS[1])),
-            2 => Some((0.003, 0.2)),
+            2 => Some((0.003, WIDEST_TURNS)),
             _ => None,
         }
     }
