@@ -63,7 +63,7 @@ impl Round<'_, '_> {
             (None, Some(generic)) => generic,
             (None, None) => return None,
         };
-        let best = self.plainest(best, passing_names());
+        let best = self.plainest(self.surest(best, passing_names()), passing_names());
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
@@ -113,6 +113,21 @@ impl Round<'_, '_> {
         explains_as_much && errs_by_its_formula()
     }
 
+    /// Whether the open rows prove a hypothesis by themselves.
+    fn is_proved(&self, scored: &Scored) -> bool {
+        scored.family_wise < self.search.settings.family_wise_level
+    }
+
+    /// The best hypothesis, or one within the margin that the open rows prove by themselves where they do not prove the best one:
+    /// that was sought among more shapes, of which one fits by chance.
+    fn surest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+        if self.is_proved(best) || !matches!(best.label, Label::Named(_)) {
+            return best;
+        }
+        let margin = self.search.settings.ambiguity_margin;
+        passing.find(|rival| best.score - rival.score < margin && self.is_proved(rival)).unwrap_or(best)
+    }
+
     /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
     /// effect that the best one yields to.
     fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
@@ -121,6 +136,9 @@ impl Round<'_, '_> {
         }
         let plainer = |rival: &&Scored| {
             let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
+            if self.is_proved(best) && !self.is_proved(rival) {
+                return false;
+            }
             self.yields(best, rival).is_some_and(as_good)
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
         };

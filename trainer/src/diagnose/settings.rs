@@ -37,7 +37,7 @@ impl Default for Settings {
             family_wise_level: 0.005,
             least_score: 4.0,
             candidate_level: 0.1,
-            candidate_score: 2.0,
+            candidate_score: 1.0,
             unconfirmed_level: 2e-5,
             unconfirmed_score: 6.0,
             largest_locked_loss: 5.0,
@@ -80,7 +80,7 @@ impl Settings {
     pub(super) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
         let together = (1.0 - locked.locked_share).sqrt() * deviations_of(family_wise)
             + locked.locked_share.sqrt() * locked.locked_deviations;
-        let is_contradicted = locked.locked_deviations < 0.0;
+        let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
         let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
         let is_to_be_compensated = matches!(label, Label::Named(_));
         let is_far_worse = locked.improved_rmse > FAR_WORSE * locked.baseline_rmse;
@@ -102,6 +102,9 @@ impl Settings {
         self.is_worse(locked) && locked.improved_rmse > WORSE_BY_AN_EVENT * locked.baseline_rmse
     }
 }
+
+/// Share of the evidence from which the locked rows can contradict the open ones.
+const TELLING_SHARE: f64 = 0.03;
 
 /// Error of the locked rows over that without a one-off event, from which it is refused.
 const WORSE_BY_AN_EVENT: f64 = 1.1;
