@@ -38,8 +38,8 @@ impl Family {
     /// Share of the false alarms.
     fn share(self) -> f64 {
         match self {
-            Family::Named => 0.9,
-            Family::Generic => 0.1,
+            Family::Named => 0.97,
+            Family::Generic => 0.03,
         }
     }
 }
