@@ -34,7 +34,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            family_wise_level: 0.005,
+            family_wise_level: 0.004,
             least_score: 4.0,
             candidate_level: 0.1,
             candidate_score: 1.0,
@@ -73,13 +73,13 @@ impl Settings {
     }
 
     /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
-    /// (Liptak 1958), nearly that of a test of all rows with the effect chosen beforehand. What the locked rows ask for the opposite
+    /// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice. What the locked rows ask for the opposite
     /// of has to be beyond doubt on the open ones, and nothing carries what makes the locked rows clearly worse, whitened and not:
     /// beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls. A structure without a name
     /// is not compensated: of it the locked rows may ask for less.
     pub(super) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
-        let together = (1.0 - locked.locked_share).sqrt() * deviations_of(family_wise)
-            + locked.locked_share.sqrt() * locked.locked_deviations;
+        let weight = (LOCKED_WEIGHT * locked.locked_share).min(LARGEST_WEIGHT);
+        let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
         let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
         let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
         let is_to_be_compensated = matches!(label, Label::Named(_));
@@ -102,6 +102,10 @@ impl Settings {
         self.is_worse(locked) && locked.improved_rmse > WORSE_BY_AN_EVENT * locked.baseline_rmse
     }
 }
+
+/// Weight of the locked rows over their share of the evidence, and the largest that they get.
+const LOCKED_WEIGHT: f64 = 2.0;
+const LARGEST_WEIGHT: f64 = 0.9;
 
 /// Share of the evidence from which the locked rows can contradict the open ones.
 const TELLING_SHARE: f64 = 0.03;
