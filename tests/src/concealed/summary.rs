@@ -118,10 +118,10 @@ impl Row {
 /// What the baseline leaves besides the noise, less what the improved model leaves of it, over what somebody who knows the
 /// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing.
 fn removed_share(outcome: &Outcome) -> Option<f64> {
-    let strength = outcome.concealed.strength.as_ref()?;
+    let strength = outcome.as_diagnosed.as_ref()?;
     let traces = &outcome.diagnosis.traces;
-    // A realigned recording has other rows, another base another rest.
-    if strength.noise.len() != traces.len() || outcome.case.base != BaseKind::CoulombViscous {
+    // What is found of a delay is put back too: such a recording may keep other rows.
+    if strength.noise.len() != traces.len() {
         return None;
     }
     let left = |rest: &[f64]| -> f64 {

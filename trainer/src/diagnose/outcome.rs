@@ -127,6 +127,8 @@ pub struct Diagnosis {
     pub rows: usize,
     /// Delay of the torque against the position in s, as far as it is the sampling's own.
     pub sampling_delay_s: f64,
+    /// Delay by which the torque was put back before anything was fitted, in s.
+    pub put_back_s: f64,
     /// Series for pictures and sentences.
     pub traces: Traces,
 }

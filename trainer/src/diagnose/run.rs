@@ -121,7 +121,7 @@ fn says_more_with_less(one: &Diagnosis, other: &Diagnosis) -> bool {
 fn diagnose_put_back(signals: &Signals, delay: f64, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
     let put_back = |delay: f64| {
         let signals = if delay == 0.0 { Cow::Borrowed(signals) } else { Cow::Owned(signals.realigned(delay)) };
-        diagnose_aligned(&signals, actuator, options)
+        diagnose_aligned(&signals, actuator, options).map(|diagnosis| Diagnosis { put_back_s: delay, ..diagnosis })
     };
     let mut first = put_back(delay)?;
     let Some(mut misaligned) = misalignment(&first).cloned() else {
@@ -247,6 +247,7 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         cut_off_hz: prepared.filter.cut_off_hz,
         rows,
         sampling_delay_s: if base.delay_is_nuisance { base.delay } else { 0.0 },
+        put_back_s: 0.0,
         baseline_refit: baseline,
         improved_refit: improved,
     })
