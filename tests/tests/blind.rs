@@ -2,6 +2,7 @@
 
 use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::simulated::{self, Comparison, Group};
+use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, diagnosis_of, run, set_of, signals};
 use frikan_trainer::diagnose::simulation::learn;
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, Verdict, diagnose};
@@ -44,6 +45,15 @@ fn every_effect_is_in_the_stated_set_and_nearly_all_come_first() {
         assert!(in_set(outcome, effect), "{effect} is not in the set of {:?}", outcome.named());
     }
     assert!(outcomes.len() >= 28 && first + 3 >= outcomes.len(), "{first} of {} come first", outcomes.len());
+}
+
+/// The drive holds its torque over a sample: it is put back by half of one, and so has to be what it is measured against.
+#[test]
+fn what_is_removed_is_measured_on_the_torque_that_was_put_back() {
+    let outcome = hidden("torque_offset", 300.0, 460_101);
+    assert!(outcome.diagnosis.put_back_s != 0.0);
+    let removed = Row::of(&outcome).removed_share;
+    assert!(removed.is_some_and(|share| (0.9..1.05).contains(&share)), "{removed:?}");
 }
 
 #[test]

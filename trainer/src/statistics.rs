@@ -9,3 +9,8 @@ pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let rank = ((sorted.len() - 1) as f64 * share).round() as usize;
     *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
 }
+
+/// The mean; 0 of none.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}

@@ -209,7 +209,8 @@ fn as_diagnosed(case: &Case, concealed: &Concealed, signals: &Signals, diagnosis
     if concealed.strength.is_none() || case.base != BaseKind::CoulombViscous {
         return None;
     }
-    let put_back = |torque: &[f64]| Signals { torque: torque.to_vec(), ..signals.clone() }.realigned(diagnosis.put_back_s);
+    let put_back =
+        |torque: &[f64]| Signals { torque: torque.to_vec(), ..signals.clone() }.realigned(diagnosis.put_back_s);
     let truth = &concealed.recording.truth;
     let [recorded, effect, noise] = [&signals.torque, &truth.effect_torque, &truth.noise_torque].map(|t| put_back(t));
     strength(&recorded, &effect.torque, &noise.torque, case.base, diagnosis.lock)

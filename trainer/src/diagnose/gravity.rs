@@ -33,3 +33,48 @@ pub(super) fn slope_of_gravity(state: &JointState) -> Vec<f64> {
     }
     slope
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::prepare::Prepared;
+    use crate::diagnose::{Lock, Signals};
+
+    /// A joint that swings under one payload and then under another; `rotary` or along a line.
+    fn swinging(rotary: bool) -> JointState {
+        let period = 0.002;
+        let time: Vec<f64> = (0..12_000).map(|i| period * f64::from(i)).collect();
+        let position: Vec<f64> = time.iter().map(|t| 0.7 * (1.3 * t).sin() + 0.1 * (4.1 * t).sin()).collect();
+        let payload = |i: usize| if i < 6_000 { 9.0 } else { 14.0 };
+        let load: Vec<f64> = position.iter().enumerate().map(|(i, q)| payload(i) * (q + 0.4).sin()).collect();
+        let signals = Signals {
+            period,
+            torque: load.clone(),
+            position,
+            load: Some(load),
+            segments: vec![0..6_000, 6_000..12_000],
+            time,
+            rotary,
+            ..Signals::default()
+        };
+        Prepared::new(&signals, Lock::Nothing).state
+    }
+
+    #[test]
+    fn each_payload_has_the_slope_of_its_own_pendulum() {
+        let state = swinging(true);
+        for (i, payload) in [(1_000, 9.0), (4_321, 9.0), (7_000, 14.0), (11_000, 14.0)] {
+            let expected = payload * (state.position[i] + 0.4).cos();
+            assert!(
+                (state.gravity_slope[i] - expected).abs() < 0.02 * payload,
+                "{} for {expected}",
+                state.gravity_slope[i]
+            );
+        }
+    }
+
+    #[test]
+    fn gravity_along_a_line_has_no_slope() {
+        assert!(swinging(false).gravity_slope.iter().all(|slope| *slope == 0.0));
+    }
+}

@@ -149,6 +149,20 @@ mod tests {
     }
 
     #[test]
+    fn what_the_locked_rows_tell_counts_double() {
+        // Weighted by their shares alone the deviations would make 2.5, and 2.65 are needed.
+        assert!(is_carried(0.05, 2.3, 2.5));
+        assert!(!is_carried(3e-3, 0.4, -0.5), "the open rows have chosen: alone they hardly count");
+    }
+
+    #[test]
+    fn rows_that_hardly_show_an_effect_do_not_contradict_it() {
+        let hardly = Proof { locked_deviations: -0.5, locked_share: 0.01, ..Proof::default() };
+        assert!(Settings::default().carried(&NAMED, 1e-3, &hardly));
+        assert!(!Settings::default().carried(&NAMED, 1e-3, &Proof { locked_share: 0.2, ..hardly }));
+    }
+
+    #[test]
     fn deviations_belong_to_their_probability() {
         assert!((deviations_of(0.025) - 1.959_964).abs() < 1e-5);
         assert!((deviations_of(0.5)).abs() < 1e-12);

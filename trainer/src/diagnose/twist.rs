@@ -2,7 +2,7 @@
 //! a jump (play, Nordin and Gutman 2002) or a loop (hysteretic wind-up, Taghirad and Belanger 1998).
 
 use super::linear::{dot, left_by_fit};
-use crate::physics::{EffectId, JointState, Twist, nominal_inertia};
+use crate::physics::{EffectId, JointState, LINK_SHARE, Twist, nominal_inertia};
 use crate::statistics::quantile;
 use std::ops::Range;
 
@@ -15,8 +15,6 @@ const LINE: f64 = 0.02;
 const CLEARLY_LESS: f64 = 0.6;
 /// Twist over the travel that is rounding.
 const ROUNDING: f64 = 1e-9;
-/// Share of the inertia behind the transmission, where nothing tells it: the torque's sign and turns hardly depend on it.
-const LINK_SHARE: f64 = 0.6;
 /// Torque within which a jump turns, and torques over which a loop builds up, over the largest common torque.
 const JUMP: f64 = 0.03;
 const LOOPS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
@@ -79,9 +77,14 @@ fn winding(torque: &[f64], reach: f64, segments: &[Range<usize>]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::diagnose::{Lock, Prepared, Signals};
+    use crate::physics::catalogue;
+
+    fn told(twist: impl Fn(f64, f64) -> f64) -> Twist {
+        state_of(twist).twist
+    }
 
     /// A link of 0.4 kg m2 under gravity, swung behind a gear whose twist over the torque is given.
-    fn told(twist: impl Fn(f64, f64) -> f64) -> Twist {
+    fn state_of(twist: impl Fn(f64, f64) -> f64) -> JointState {
         let period = 0.002;
         let time: Vec<f64> = (0..20_000).map(|i| period * f64::from(i)).collect();
         let link = |t: f64| 0.6 * (1.1 * t).sin() + 0.2 * (2.9 * t).sin();
@@ -106,7 +109,7 @@ mod tests {
             rotary: true,
             ..Signals::default()
         };
-        Prepared::new(&signals, Lock::Nothing).state.twist
+        Prepared::new(&signals, Lock::Nothing).state
     }
 
     #[test]
@@ -115,6 +118,18 @@ mod tests {
         assert_eq!(told(|torque, _| torque / 50_000.0 + 2e-3 * torque.signum()), Twist::Shows(EffectId::Backlash));
         assert_eq!(told(|torque, wound| torque / 4000.0 - 6e-4 * wound), Twist::Shows(EffectId::WindupHysteresis));
         assert_eq!(told(|_, _| 1e-3), Twist::Rigid, "an offset is no twist");
+    }
+
+    #[test]
+    fn what_both_encoders_show_is_offered_as_it_was_measured_under_gravity_too() {
+        // Gravity carries more than inertia here: over the link's acceleration the twist falls.
+        let wound = state_of(|torque, wound| torque / 4000.0 - 6e-4 * wound);
+        let hypotheses = catalogue();
+        let windup = hypotheses.iter().find(|hypothesis| hypothesis.id() == EffectId::WindupHysteresis).unwrap();
+        let shapes = windup.shapes(&wound);
+        let [antiresonance, half_twist, 1.0] = shapes.last().unwrap()[..] else { panic!("{:?}", shapes.last()) };
+        assert!((70.0..150.0).contains(&antiresonance), "sqrt(4000 / 0.4) rad/s but for the loop: {antiresonance}");
+        assert!((5e-4..3e-3).contains(&half_twist), "{half_twist}");
     }
 
     #[test]

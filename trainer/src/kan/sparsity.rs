@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::model::{Model, Unknowns};
+use crate::statistics::mean;
 
 /// Weights of the two, relative to the mean squared error of the normalised target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,10 +100,6 @@ impl Pull {
 fn total_and_entropy(sizes: &[f64]) -> (f64, f64) {
     let total: f64 = sizes.iter().sum();
     (total, sizes.iter().map(|size| -size / total * (size / total).ln()).sum())
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 #[cfg(test)]

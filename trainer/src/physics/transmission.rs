@@ -1,14 +1,14 @@
 //! What the effects of a transmission have in common: how motor and link would part if nothing held them together.
 
 use super::{EffectId, JointState, OtherJoint, Twist};
-use crate::statistics::quantile;
+use crate::statistics::{mean, quantile};
 
 /// Variant of a shape that works out the twist from the motor's own motion, and the one that takes it from both encoders.
 pub(super) const INFERRED: f64 = 0.0;
 pub(super) const MEASURED: f64 = 1.0;
 
 /// Share of the inertia that lies behind the transmission, where nothing tells it.
-pub(super) const LINK_SHARE: f64 = 0.5;
+pub(crate) const LINK_SHARE: f64 = 0.5;
 
 /// Whether a second encoder leaves this effect of the transmission possible.
 pub(super) fn is_possible(state: &JointState, effect: EffectId) -> bool {
@@ -29,17 +29,26 @@ pub(super) fn left_behind(state: &JointState, link_inertia: f64, sample: usize, 
 /// The same of the measured twist; empty without a second encoder.
 pub(super) fn measured(state: &JointState, link_inertia: f64) -> Vec<f64> {
     let Some(link) = &state.link else { return Vec::new() };
-    let mean = mean_twist(state, link);
+    let (offset, _) = line_of_twist(state, link, link_inertia);
     state.map(|i| {
-        let twist = state.position[i] - link.position[i] - mean;
+        let twist = state.position[i] - link.position[i] - offset;
         left_behind(state, link_inertia, i, twist, state.acceleration[i] - link.acceleration[i])
     })
 }
 
-/// Offset of two encoders.
-fn mean_twist(state: &JointState, link: &OtherJoint) -> f64 {
-    let twists = state.position.iter().zip(&link.position).map(|(motor, link)| motor - link);
-    twists.sum::<f64>() / state.len().max(1) as f64
+/// Line of a measured twist over the torque that the transmission carries: the twist where that is nothing, which is an offset of
+/// the encoders, and the compliance.
+fn line_of_twist(state: &JointState, link: &OtherJoint, link_inertia: f64) -> (f64, f64) {
+    let gravity = |i: usize| state.gravity.as_ref().map_or(0.0, |gravity| gravity[i]);
+    let carried = state.map(|i| gravity(i) + link_inertia * link.acceleration[i]);
+    let twist = state.map(|i| state.position[i] - link.position[i]);
+    let (mean_carried, mean_twist) = (mean(&carried), mean(&twist));
+    let (product, square) = carried.iter().zip(&twist).fold((0.0, 0.0), |(product, square), (carried, twist)| {
+        let beyond = carried - mean_carried;
+        (product + beyond * (twist - mean_twist), square + beyond * beyond)
+    });
+    let compliance = if square > 0.0 { product / square } else { 0.0 };
+    (mean_twist - compliance * mean_carried, compliance)
 }
 
 /// Inertia of the nominal rigid body: what its torque beyond gravity shows per acceleration.
@@ -61,15 +70,11 @@ pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
     }
 }
 
-/// Antiresonance in rad/s of a measured twist: what the link's acceleration shows per twist. `None` without a second encoder.
+/// Antiresonance in rad/s of a measured twist, by its compliance. `None` without a second encoder.
 pub(super) fn antiresonance_of_twist(state: &JointState) -> Option<f64> {
-    let link = state.link.as_ref()?;
-    let twist = state.map(|i| state.position[i] - link.position[i]);
-    let mean = mean_twist(state, link);
-    let (product, square) = twist.iter().zip(&link.acceleration).fold((0.0, 0.0), |(product, square), (twist, a)| {
-        (product + (twist - mean) * a, square + (twist - mean).powi(2))
-    });
-    Some((product / square).sqrt()).filter(|w| w.is_finite() && *w > 0.0)
+    let link_inertia = LINK_SHARE * nominal_inertia(state)?;
+    let (_, compliance) = line_of_twist(state, state.link.as_ref()?, link_inertia);
+    Some((compliance * link_inertia).sqrt().recip()).filter(|w| w.is_finite() && *w > 0.0)
 }
 
 /// Half of what a measured twist spans, its rare ends left out. `None` without a second encoder.
