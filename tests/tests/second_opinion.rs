@@ -42,7 +42,8 @@ fn faults_of_joint_and_measurement_have_their_names() {
         "backlash-2",
         "backlash-3",
         "windup_hysteresis-4",
-        "windup_hysteresis-5",
+        "elasticity-1",
+        "elasticity-2",
     ];
     all_right(|case| names.contains(&case.name.as_str()), names.len());
 }
