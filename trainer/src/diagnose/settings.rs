@@ -73,11 +73,10 @@ impl Settings {
     }
 
     /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
-    /// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice; where they contradict they
-    /// count once. What the locked rows ask for the opposite
-    /// of has to be beyond doubt on the open ones, and nothing carries what makes the locked rows clearly worse, whitened and not:
-    /// beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls. A structure without a name
-    /// is not compensated: of it the locked rows may ask for less.
+    /// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice. What the locked
+    /// rows ask for the opposite of, where they count once, has to be beyond doubt on the open ones, and nothing carries what makes
+    /// the locked rows clearly worse, whitened and not: beside larger effects, whose formulas err slowly, whitening may see a loss
+    /// where the error falls. A structure without a name is not compensated: of it the locked rows may ask for less.
     pub(super) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
         let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
         let weight = if is_contradicted { 1.0 } else { LOCKED_WEIGHT } * locked.locked_share;
