@@ -73,9 +73,6 @@ pub struct Outcome {
     pub concealed: Concealed,
     /// The diagnosis.
     pub diagnosis: Diagnosis,
-    /// Strength of what is hidden on the rows of the diagnosis, its torque and noise put back as it put back the torque; `None` for
-    /// a control, and where it did not start from Coulomb and viscous friction.
-    pub as_diagnosed: Option<Strength>,
 }
 
 /// Signals of a simulated recording as a user's joint file would describe them: nominal inertia and load torque given.
@@ -201,22 +198,25 @@ pub fn run(case: &Case) -> Result<Outcome, String> {
         symbolic::compare_with_own_law(&mut signals)?;
     }
     let diagnosis = diagnosis_of(case, &signals)?;
-    let as_diagnosed = as_diagnosed(case, &concealed, &signals, &diagnosis);
-    Ok(Outcome { case: case.clone(), concealed, diagnosis, as_diagnosed })
-}
-
-fn as_diagnosed(case: &Case, concealed: &Concealed, signals: &Signals, diagnosis: &Diagnosis) -> Option<Strength> {
-    if concealed.strength.is_none() || case.base != BaseKind::CoulombViscous {
-        return None;
-    }
-    let put_back =
-        |torque: &[f64]| Signals { torque: torque.to_vec(), ..signals.clone() }.realigned(diagnosis.put_back_s);
-    let truth = &concealed.recording.truth;
-    let [recorded, effect, noise] = [&signals.torque, &truth.effect_torque, &truth.noise_torque].map(|t| put_back(t));
-    strength(&recorded, &effect.torque, &noise.torque, case.base, diagnosis.lock)
+    Ok(Outcome { case: case.clone(), concealed, diagnosis })
 }
 
 impl Outcome {
+    /// Strength of what is hidden on the rows of the diagnosis, its torque and noise put back as it put back the torque; `None` for
+    /// a control, and where it did not start from Coulomb and viscous friction.
+    pub fn strength_as_diagnosed(&self) -> Option<Strength> {
+        let Self { case, concealed: Concealed { recording, joint, strength: hidden }, diagnosis } = self;
+        if hidden.is_none() || case.base != BaseKind::CoulombViscous {
+            return None;
+        }
+        let recorded = signals(recording, joint);
+        let put_back =
+            |torque: &[f64]| Signals { torque: torque.to_vec(), ..recorded.clone() }.realigned(diagnosis.put_back_s);
+        let [effect, noise] =
+            [&recording.truth.effect_torque, &recording.truth.noise_torque].map(|t| put_back(t).torque);
+        strength(&put_back(&recorded.torque), &effect, &noise, case.base, diagnosis.lock)
+    }
+
     /// Names of the findings in the order in which they were accepted.
     pub fn named(&self) -> Vec<EffectId> {
         self.diagnosis.findings.iter().map(|finding| finding.effect).collect()

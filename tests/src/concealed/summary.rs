@@ -118,7 +118,7 @@ impl Row {
 /// What the baseline leaves besides the noise, less what the improved model leaves of it, over what somebody who knows the
 /// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing.
 fn removed_share(outcome: &Outcome) -> Option<f64> {
-    let strength = outcome.as_diagnosed.as_ref()?;
+    let strength = outcome.strength_as_diagnosed()?;
     let traces = &outcome.diagnosis.traces;
     // What is found of a delay is put back too: such a recording may keep other rows.
     if strength.noise.len() != traces.len() {

@@ -136,11 +136,10 @@ impl Round<'_, '_> {
         }
         let plainer = |rival: &&Scored| {
             let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
-            if self.is_proved(best) && !self.is_proved(rival) {
-                return false;
-            }
-            self.yields(best, rival).is_some_and(as_good)
-                || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL)
+            let is_as_sure = self.is_proved(rival) || !self.is_proved(best);
+            let is_a_part =
+                || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL);
+            is_as_sure && (self.yields(best, rival).is_some_and(as_good) || is_a_part())
         };
         passing.find(plainer).unwrap_or(best)
     }

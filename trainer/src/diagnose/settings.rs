@@ -79,8 +79,8 @@ impl Settings {
     /// where the error falls. A structure without a name is not compensated: of it the locked rows may ask for less.
     pub(super) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
         let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
-        let weight = if is_contradicted { 1.0 } else { LOCKED_WEIGHT } * locked.locked_share;
-        let weight = weight.min(LARGEST_WEIGHT);
+        let counted = if is_contradicted { 1.0 } else { LOCKED_WEIGHT };
+        let weight = (counted * locked.locked_share).min(LARGEST_WEIGHT);
         let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
         let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
         let is_to_be_compensated = matches!(label, Label::Named(_));

@@ -2,7 +2,7 @@
 //! a jump (play, Nordin and Gutman 2002) or a loop (hysteretic wind-up, Taghirad and Belanger 1998).
 
 use super::linear::{dot, left_by_fit};
-use crate::physics::{EffectId, JointState, LINK_SHARE, Twist, nominal_inertia};
+use crate::physics::{EffectId, JointState, Twist, carried_torque, usual_link_inertia};
 use crate::statistics::quantile;
 use std::ops::Range;
 
@@ -26,10 +26,10 @@ pub(super) fn told_by_twist(state: &JointState) -> Twist {
 
 /// `None` without a second encoder or a rigid body, or where the twist shows nothing clearly.
 fn shown(state: &JointState) -> Option<Twist> {
-    let (link, gravity, inertia) = (state.link.as_ref()?, state.gravity.as_ref()?, nominal_inertia(state)?);
+    let (link, link_inertia) = (state.link.as_ref()?, usual_link_inertia(state)?);
     let all = &state.segments;
     let twist = state.map(|i| state.position[i] - link.position[i]);
-    let carried = state.map(|i| gravity[i] + LINK_SHARE * inertia * link.acceleration[i]);
+    let carried = carried_torque(state, link, link_inertia);
     let largest = quantile(carried.iter().map(|torque| torque.abs()), 0.98);
     let line = [vec![1.0; state.len()], carried.clone(), link.acceleration.clone()];
     let left = |with: Option<Vec<f64>>| {

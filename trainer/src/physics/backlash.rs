@@ -2,7 +2,7 @@
 //! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
 use super::transmission::{
-    INFERRED, MEASURED, half_span_of_twist, is_possible, is_shown, left_behind, measured, nominal_inertia, opening,
+    INFERRED, MEASURED, column, half_span_of_twist, is_possible, is_shown, left_behind, nominal_inertia, opening,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
@@ -76,7 +76,7 @@ impl Hypothesis for Backlash {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        vec![if shape[2] == MEASURED { measured(state, shape[1]) } else { crossing(state, shape[1], shape[0]) }]
+        column(state, shape[1], shape[2], || crossing(state, shape[1], shape[0]))
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {

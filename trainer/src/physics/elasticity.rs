@@ -2,8 +2,7 @@
 //! follows from the motor's own motion, and the motor carries what the link's inertia does beyond it.
 
 use super::transmission::{
-    INFERRED, LINK_SHARE, MEASURED, antiresonance_of_twist, is_possible, is_shown, left_behind, measured,
-    nominal_inertia, opening,
+    INFERRED, MEASURED, antiresonance_of_twist, column, is_possible, is_shown, left_behind, opening, usual_link_inertia,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use std::f64::consts::TAU;
@@ -28,7 +27,7 @@ impl Hypothesis for Elasticity {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        if nominal_inertia(state).is_none() || !is_possible(state, self.id()) {
+        if usual_link_inertia(state).is_none() || !is_possible(state, self.id()) {
             return Vec::new();
         }
         let highest = highest_antiresonance(state);
@@ -49,13 +48,8 @@ impl Hypothesis for Elasticity {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
-        let link_inertia = LINK_SHARE * inertia;
-        vec![if shape[2] == MEASURED {
-            measured(state, link_inertia)
-        } else {
-            swinging(state, link_inertia, shape[0], shape[1])
-        }]
+        let Some(link_inertia) = usual_link_inertia(state) else { return Vec::new() };
+        column(state, link_inertia, shape[2], || swinging(state, link_inertia, shape[0], shape[1]))
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {

@@ -34,7 +34,7 @@ mod windup;
 pub use identity::{Action, EffectId};
 pub(crate) use state::top_speed;
 pub use state::{JointState, MemoryAxes, OtherJoint, Twist};
-pub(crate) use transmission::{LINK_SHARE, nominal_inertia};
+pub(crate) use transmission::{carried_torque, nominal_inertia, usual_link_inertia};
 
 /// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).
 pub type Shape = Vec<f64>;

@@ -8,7 +8,7 @@ pub(super) const INFERRED: f64 = 0.0;
 pub(super) const MEASURED: f64 = 1.0;
 
 /// Share of the inertia that lies behind the transmission, where nothing tells it.
-pub(crate) const LINK_SHARE: f64 = 0.5;
+const LINK_SHARE: f64 = 0.5;
 
 /// Whether a second encoder leaves this effect of the transmission possible.
 pub(super) fn is_possible(state: &JointState, effect: EffectId) -> bool {
@@ -26,8 +26,18 @@ pub(super) fn left_behind(state: &JointState, link_inertia: f64, sample: usize, 
     -bend - state.gravity_slope[sample] / link_inertia * twist
 }
 
-/// The same of the measured twist; empty without a second encoder.
-pub(super) fn measured(state: &JointState, link_inertia: f64) -> Vec<f64> {
+/// The column of a shape: what the measured twist leaves behind, or the one that `inferred` works out.
+pub(super) fn column(
+    state: &JointState,
+    link_inertia: f64,
+    variant: f64,
+    inferred: impl FnOnce() -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    vec![if variant == MEASURED { measured(state, link_inertia) } else { inferred() }]
+}
+
+/// What the measured twist leaves behind; empty without a second encoder.
+fn measured(state: &JointState, link_inertia: f64) -> Vec<f64> {
     let Some(link) = &state.link else { return Vec::new() };
     let (offset, _) = line_of_twist(state, link, link_inertia);
     state.map(|i| {
@@ -36,11 +46,16 @@ pub(super) fn measured(state: &JointState, link_inertia: f64) -> Vec<f64> {
     })
 }
 
+/// Torque that the transmission carries: the link's gravity and its inertia.
+pub(crate) fn carried_torque(state: &JointState, link: &OtherJoint, link_inertia: f64) -> Vec<f64> {
+    let gravity = |i: usize| state.gravity.as_ref().map_or(0.0, |gravity| gravity[i]);
+    state.map(|i| gravity(i) + link_inertia * link.acceleration[i])
+}
+
 /// Line of a measured twist over the torque that the transmission carries: the twist where that is nothing, which is an offset of
 /// the encoders, and the compliance.
 fn line_of_twist(state: &JointState, link: &OtherJoint, link_inertia: f64) -> (f64, f64) {
-    let gravity = |i: usize| state.gravity.as_ref().map_or(0.0, |gravity| gravity[i]);
-    let carried = state.map(|i| gravity(i) + link_inertia * link.acceleration[i]);
+    let carried = carried_torque(state, link, link_inertia);
     let twist = state.map(|i| state.position[i] - link.position[i]);
     let (mean_carried, mean_twist) = (mean(&carried), mean(&twist));
     let (product, square) = carried.iter().zip(&twist).fold((0.0, 0.0), |(product, square), (carried, twist)| {
@@ -62,6 +77,11 @@ pub(crate) fn nominal_inertia(state: &JointState) -> Option<f64> {
     Some(product / square).filter(|inertia| *inertia > 0.0)
 }
 
+/// Inertia of the link, where nothing tells its share of the rigid body's.
+pub(crate) fn usual_link_inertia(state: &JointState) -> Option<f64> {
+    nominal_inertia(state).map(|inertia| LINK_SHARE * inertia)
+}
+
 /// Acceleration of the twist while the play is open: the motor's own and that of the free link.
 pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
     match &state.gravity {
@@ -72,7 +92,7 @@ pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
 
 /// Antiresonance in rad/s of a measured twist, by its compliance. `None` without a second encoder.
 pub(super) fn antiresonance_of_twist(state: &JointState) -> Option<f64> {
-    let link_inertia = LINK_SHARE * nominal_inertia(state)?;
+    let link_inertia = usual_link_inertia(state)?;
     let (_, compliance) = line_of_twist(state, state.link.as_ref()?, link_inertia);
     Some((compliance * link_inertia).sqrt().recip()).filter(|w| w.is_finite() && *w > 0.0)
 }

@@ -4,8 +4,8 @@
 
 use super::elasticity::highest_antiresonance;
 use super::transmission::{
-    INFERRED, LINK_SHARE, MEASURED, antiresonance_of_twist, half_span_of_twist, is_possible, is_shown, left_behind,
-    measured, nominal_inertia, opening,
+    INFERRED, MEASURED, antiresonance_of_twist, column, half_span_of_twist, is_possible, is_shown, left_behind,
+    opening, usual_link_inertia,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::statistics::quantile;
@@ -58,10 +58,10 @@ impl Hypothesis for WindupHysteresis {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let Some(inertia) = nominal_inertia(state).filter(|_| is_possible(state, self.id())) else {
+        let Some(link_inertia) = usual_link_inertia(state).filter(|_| is_possible(state, self.id())) else {
             return Vec::new();
         };
-        let drive = opening(state, LINK_SHARE * inertia);
+        let drive = opening(state, link_inertia);
         if usual_twist(&drive, 1.0) <= 0.0 {
             return Vec::new();
         }
@@ -83,13 +83,8 @@ impl Hypothesis for WindupHysteresis {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(inertia) = nominal_inertia(state) else { return Vec::new() };
-        let link_inertia = LINK_SHARE * inertia;
-        vec![if shape[2] == MEASURED {
-            measured(state, link_inertia)
-        } else {
-            winding(state, link_inertia, shape[0], shape[1])
-        }]
+        let Some(link_inertia) = usual_link_inertia(state) else { return Vec::new() };
+        column(state, link_inertia, shape[2], || winding(state, link_inertia, shape[0], shape[1]))
     }
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
