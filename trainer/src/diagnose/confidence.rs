@@ -9,9 +9,9 @@ const ALONE: f64 = 0.98;
 /// The same where the next name stands closer than [`CLEAR_NATS`].
 const NARROWLY_ALONE: f64 = 0.95;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
-const BESIDE_FAR_RIVALS: f64 = 0.81;
+const BESIDE_FAR_RIVALS: f64 = 0.8;
 /// The same beside a nearer rival.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.63;
+const BESIDE_A_NEAR_RIVAL: f64 = 0.6;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
 /// Distance in nats from which a rival was seldom the truth.

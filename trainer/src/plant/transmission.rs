@@ -33,7 +33,8 @@ impl Load {
 pub(crate) struct Stepped {
     /// Mean dry friction, N m.
     pub(crate) dry_friction: f64,
-    /// What the transmission asks of the motor beyond the rigid law at the motor's own motion, N m.
+    /// What the transmission asks of the motor beyond the rigid law at the motor's own motion, N m: of a motor that its friction
+    /// holds too, for a controller's torque does not jump where the motor stops.
     pub(crate) excess: f64,
 }
 
@@ -133,11 +134,8 @@ impl Compliant {
             dry_friction += advance(motor, push.torque - transmitted, push.dry, push.viscous, load.motor_inertia, h);
             link.velocity += h * (transmitted - load.gravity(link_middle)) / load.link_inertia;
             link.position = link_middle + 0.5 * h * link.velocity;
-            // While the motor sticks its friction carries whatever the link does.
-            if motor.velocity != 0.0 || before != 0.0 {
-                let acceleration = (motor.velocity - before) / h;
-                excess += transmitted - load.link_inertia * acceleration - load.gravity(motor_middle);
-            }
+            let acceleration = (motor.velocity - before) / h;
+            excess += transmitted - load.link_inertia * acceleration - load.gravity(motor_middle);
         }
         self.link = Some(link);
         Stepped { dry_friction: dry_friction / pieces, excess: excess / pieces }
@@ -198,6 +196,25 @@ mod tests {
         assert!((energy / (0.5 * stiffness * 1e-6) - 1.0).abs() < 0.05, "{energy}");
         let expected = 5.0 * (stiffness / 0.12).sqrt() / std::f64::consts::PI;
         assert!((crossings as f64 - expected).abs() < 3.0, "{crossings} against {expected}");
+    }
+
+    #[test]
+    fn what_the_link_asks_does_not_break_off_where_the_motor_stops() {
+        let stiffness = 3000.0;
+        let twist = 1e-3;
+        let mut gear = Compliant {
+            stiffness,
+            damping: 0.0,
+            half_gap: 0.0,
+            hysteresis: (0.0, 1.0),
+            link: Some(Motion1D { position: -twist, velocity: 0.0 }),
+            hysteresis_state: 0.0,
+        };
+        let mut motor = Motion1D::default();
+        let held = Push { torque: 0.0, dry: DryLevels { forward: 50.0, backward: 50.0 }, viscous: 0.0 };
+        let stepped = gear.step(&mut motor, &held, &LOAD, 1e-5);
+        assert_eq!(motor.velocity, 0.0, "its friction holds the motor");
+        assert!((stepped.excess - stiffness * twist).abs() < 0.01, "{}", stepped.excess);
     }
 
     #[test]
