@@ -203,10 +203,11 @@ pub fn run(case: &Case) -> Result<Outcome, String> {
 
 impl Outcome {
     /// Strength of what is hidden on the rows of the diagnosis, its torque and noise put back as it put back the torque; `None` for
-    /// a control, and where it did not start from Coulomb and viscous friction.
+    /// a control, of a fault of the measurement, and where it did not start from Coulomb and viscous friction.
     pub fn strength_as_diagnosed(&self) -> Option<Strength> {
         let Self { case, concealed: Concealed { recording, joint, strength: hidden }, diagnosis } = self;
-        if hidden.is_none() || case.base != BaseKind::CoulombViscous {
+        let is_fault = matches!(case.hidden, Hidden::Effect(name, _) if WITHOUT_TORQUE.contains(&name));
+        if hidden.is_none() || is_fault || case.base != BaseKind::CoulombViscous {
             return None;
         }
         let recorded = signals(recording, joint);

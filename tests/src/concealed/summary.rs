@@ -1,7 +1,7 @@
 //! What the tables need of an outcome, and rates with intervals.
 
 use super::intervals::{Held, held};
-use super::{Case, Hidden, Outcome, WITHOUT_TORQUE};
+use super::{Case, Hidden, Outcome};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::physics::EffectId;
 
@@ -116,12 +116,8 @@ impl Row {
 }
 
 /// What the baseline leaves besides the noise, less what the improved model leaves of it, over what somebody who knows the
-/// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing. `None` of a fault of
-/// the measurement, which hides no torque.
+/// hidden torque could take away. The noise is known here, so that its chance on the locked rows hides nothing.
 fn removed_share(outcome: &Outcome) -> Option<f64> {
-    if matches!(outcome.case.hidden, Hidden::Effect(name, _) if WITHOUT_TORQUE.contains(&name)) {
-        return None;
-    }
     let strength = outcome.strength_as_diagnosed()?;
     let traces = &outcome.diagnosis.traces;
     // What is found of a delay is put back too: such a recording may keep other rows.

@@ -168,18 +168,23 @@ mod tests {
 
     const LOAD: Load = Load { motor_inertia: 0.3, link_inertia: 0.2, gravity_torque: 0.0, gravity_phase: 0.0 };
     const FREE: Push = Push { torque: 0.0, dry: DryLevels { forward: 0.0, backward: 0.0 }, viscous: 0.0 };
+    const STIFFNESS: f64 = 3000.0;
 
-    #[test]
-    fn two_masses_keep_their_energy_and_frequency() {
-        let stiffness = 3000.0;
-        let mut gear = Compliant {
-            stiffness,
+    /// An undamped spring, its link at rest at a position.
+    fn spring_with_link_at(position: f64) -> Compliant {
+        Compliant {
+            stiffness: STIFFNESS,
             damping: 0.0,
             half_gap: 0.0,
             hysteresis: (0.0, 1.0),
-            link: Some(Motion1D { position: 1e-3, velocity: 0.0 }),
+            link: Some(Motion1D { position, velocity: 0.0 }),
             hysteresis_state: 0.0,
-        };
+        }
+    }
+
+    #[test]
+    fn two_masses_keep_their_energy_and_frequency() {
+        let mut gear = spring_with_link_at(1e-3);
         let mut motor = Motion1D::default();
         let mut crossings = 0;
         let mut previous = -1e-3;
@@ -190,31 +195,23 @@ mod tests {
             previous = twist;
         }
         let link = gear.link.unwrap();
-        let energy = 0.5 * stiffness * (motor.position - link.position).powi(2)
+        let energy = 0.5 * STIFFNESS * (motor.position - link.position).powi(2)
             + 0.5 * 0.3 * motor.velocity.powi(2)
             + 0.5 * 0.2 * link.velocity.powi(2);
-        assert!((energy / (0.5 * stiffness * 1e-6) - 1.0).abs() < 0.05, "{energy}");
-        let expected = 5.0 * (stiffness / 0.12).sqrt() / std::f64::consts::PI;
+        assert!((energy / (0.5 * STIFFNESS * 1e-6) - 1.0).abs() < 0.05, "{energy}");
+        let expected = 5.0 * (STIFFNESS / 0.12).sqrt() / std::f64::consts::PI;
         assert!((crossings as f64 - expected).abs() < 3.0, "{crossings} against {expected}");
     }
 
     #[test]
     fn what_the_link_asks_does_not_break_off_where_the_motor_stops() {
-        let stiffness = 3000.0;
         let twist = 1e-3;
-        let mut gear = Compliant {
-            stiffness,
-            damping: 0.0,
-            half_gap: 0.0,
-            hysteresis: (0.0, 1.0),
-            link: Some(Motion1D { position: -twist, velocity: 0.0 }),
-            hysteresis_state: 0.0,
-        };
+        let mut gear = spring_with_link_at(-twist);
         let mut motor = Motion1D::default();
         let held = Push { torque: 0.0, dry: DryLevels { forward: 50.0, backward: 50.0 }, viscous: 0.0 };
         let stepped = gear.step(&mut motor, &held, &LOAD, 1e-5);
         assert_eq!(motor.velocity, 0.0, "its friction holds the motor");
-        assert!((stepped.excess - stiffness * twist).abs() < 0.01, "{}", stepped.excess);
+        assert!((stepped.excess - STIFFNESS * twist).abs() < 0.01, "{}", stepped.excess);
     }
 
     #[test]
