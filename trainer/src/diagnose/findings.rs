@@ -129,10 +129,12 @@ pub(super) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, act
         .collect()
 }
 
+/// Probability of a fault that the signals show by themselves.
+const AS_GOOD_AS_CERTAIN: f64 = 0.99;
+
 /// A fault of the measurement as a finding.
 pub(super) fn measurement_finding(note: &HealthNote) -> Finding {
-    let probability = if note.blocking { 0.99 } else { 0.5 };
-    unfitted(note.effect, probability, Action::Measurement, note.sentence.clone())
+    unfitted(note.effect, AS_GOOD_AS_CERTAIN, Action::Measurement, note.sentence.clone())
 }
 
 /// What happened once in rows that were locked away, where no row that might name it shows it.

@@ -22,22 +22,27 @@ pub struct HealthNote {
     pub sentence: String,
 }
 
-/// Share of samples at one extreme torque from which it counts as clipped.
+/// Share of samples at one extreme torque from which it counts as clipped, and how far they may lie apart in print.
 const CLIPPED_SHARE: f64 = 0.02;
-/// A torque step of this share of the usual torque hides friction.
+const PRINTED: f64 = 1e-6;
+/// A torque step of this share of the usual torque is worth a note, and of this hides friction.
+const TELLING_TORQUE_SHARE: f64 = 0.01;
 const COARSE_TORQUE_SHARE: f64 = 0.05;
 /// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
 const LEAST_BAND_HZ: f64 = 17.0;
 const COARSE_STEP: f64 = 1e-4;
 
-/// Looks at the signals alone.
-pub fn examine(signals: &Signals) -> Vec<HealthNote> {
+/// Looks at the torque as it was recorded.
+pub(super) fn examine_as_recorded(signals: &Signals) -> Vec<HealthNote> {
+    let replaced = signals.spikes.iter().map(replaced);
+    replaced.chain(clipped_torque(signals)).chain(coarse_torque(signals)).collect()
+}
+
+/// Looks at what the signals say of each other.
+pub(super) fn examine(signals: &Signals) -> Vec<HealthNote> {
     let mut notes = Vec::new();
-    notes.extend(signals.spikes.iter().map(replaced));
-    notes.extend(clipped_torque(signals));
     notes.extend(contradicting_velocity(signals));
     notes.extend(wrong_sign_or_unit(signals));
-    notes.extend(coarse_torque(signals));
     notes.extend(signals.reference.as_ref().and_then(|reference| beyond_the_model(&reference.outside)));
     notes
 }
@@ -75,20 +80,26 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, sentence }
 }
 
-/// Torque steps of more than the noise hide what happens between them.
+/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque.
 fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
-    let steps: Vec<f64> =
-        signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
-    let typical = quantile(steps.iter().copied(), 0.5);
-    let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
-    let spread = quantile(signals.torque.iter().map(|t| t.abs()), 0.9);
-    // Most changes are a single step, and the step is a sizeable share of the torque.
-    let coarse = typical < 1.5 * smallest && smallest > COARSE_TORQUE_SHARE * spread && steps.len() > 20;
-    coarse.then(|| HealthNote {
+    let (step, share) = torque_step(signals)?;
+    (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: true,
-        sentence: format!("the torque is recorded in steps of {smallest:.4}, coarser than its own noise"),
+        blocking: share > COARSE_TORQUE_SHARE,
+        sentence: format!("the torque is recorded in steps of {}, coarser than its own noise", digits(step)),
     })
+}
+
+/// The step in which the torque is recorded, where most of its changes are a single one, and its share of the usual torque.
+fn torque_step(signals: &Signals) -> Option<(f64, f64)> {
+    const FEWEST_CHANGES: usize = 20;
+    let usual = quantile(signals.torque.iter().map(|torque| torque.abs()), 0.9);
+    let changes = signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    // An even clock may fall a little beside the recorded samples, and so between two steps.
+    let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * TELLING_TORQUE_SHARE * usual).collect();
+    let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
+    (steps.len() > FEWEST_CHANGES && is_single).then_some((smallest, smallest / usual))
 }
 
 /// Something that happened once, in rows that were locked away.
@@ -99,6 +110,20 @@ pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNot
         blocking: false,
         sentence: format!(
             "between {from} and {to} s the model is wrong by {rms} (root mean square), which nothing in the other rows is like"
+        ),
+    }
+}
+
+/// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.
+pub(crate) fn put_back(delay: f64, period: f64) -> HealthNote {
+    let way = if delay > 0.0 { "later" } else { "earlier" };
+    let samples = digits((delay / period).abs());
+    HealthNote {
+        effect: EffectId::TimeMisalignment,
+        blocking: false,
+        sentence: format!(
+            "the torque was recorded {} ({samples} samples) {way} than the position, as drives do: it was put back",
+            quantity(delay.abs(), "s")
         ),
     }
 }
@@ -121,11 +146,40 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
 
 fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
     let top = signals.torque.iter().fold(0.0f64, |m, t| m.max(t.abs()));
-    let at_top = signals.torque.iter().filter(|t| t.abs() >= top * (1.0 - 1e-6)).count();
-    let share = at_top as f64 / signals.torque.len().max(1) as f64;
-    (top > 0.0 && share > CLIPPED_SHARE).then(|| HealthNote {
+    let share_from = |level: f64| {
+        let at_least = signals.torque.iter().filter(|torque| torque.abs() >= level).count();
+        at_least as f64 / signals.torque.len().max(1) as f64
+    };
+    let share = share_from(top * (1.0 - PRINTED));
+    // Of a torque in coarse steps some samples are the highest anyway: at a limit there are twice as many as a step below it.
+    let is_coarse_peak = torque_step(signals).is_some_and(|(step, _)| share_from(top - 1.5 * step) > 1.5 * share);
+    (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then(|| HealthNote {
         effect: EffectId::Saturation,
         blocking: false,
         sentence: format!("the torque stands at its limit of {top:.4} in {:.1} % of the samples", 100.0 * share),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A torque of up to `largest` that swings, in steps of one.
+    fn in_steps(largest: f64, limit: f64) -> Signals {
+        let torque = (0..4000).map(|i| (largest * (0.01 * f64::from(i)).sin()).round().clamp(-limit, limit)).collect();
+        Signals { torque, ..Signals::default() }
+    }
+
+    #[test]
+    fn coarse_steps_are_told_and_block_where_they_hide_friction() {
+        let blocking = |largest: f64| coarse_torque(&in_steps(largest, largest)).map(|note| note.blocking);
+        assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
+    }
+
+    #[test]
+    fn the_highest_step_of_a_coarse_torque_is_no_limit() {
+        assert!(clipped_torque(&in_steps(5.0, 9.0)).is_none());
+        assert!(clipped_torque(&in_steps(5.0, 3.0)).is_some());
+        assert!(clipped_torque(&in_steps(400.0, 250.0)).is_some());
+    }
 }

@@ -10,6 +10,7 @@ mod candidates;
 mod certainty;
 mod channel;
 mod choice;
+mod command;
 mod conclude;
 mod confidence;
 mod covariance;

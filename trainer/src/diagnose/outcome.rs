@@ -133,6 +133,32 @@ pub struct Diagnosis {
     pub traces: Traces,
 }
 
+impl Verdict {
+    /// What findings amount to; where the measurement is `blocked` nothing can be said of the physics.
+    pub(super) fn of(findings: &[Finding], blocked: bool) -> Self {
+        if blocked {
+            return Self::BadData;
+        }
+        if findings.is_empty() {
+            return Self::Consistent;
+        }
+        if findings.iter().all(|found| found.action == Action::Measurement) {
+            return Self::BadData;
+        }
+        let is_without_name = |found: &Finding| found.effect == EffectId::Unknown;
+        if findings.iter().all(is_without_name) { Self::Unexplained } else { Self::MissingPhysics }
+    }
+}
+
+impl Diagnosis {
+    /// Puts a fault of the measurement, which adds no torque, before the other findings.
+    pub(super) fn put_first(&mut self, fault: Finding) {
+        self.findings.insert(0, fault);
+        self.traces.effects.insert(0, vec![0.0; self.traces.len()]);
+        self.verdict = Verdict::of(&self.findings, self.health.iter().any(|note| note.blocking));
+    }
+}
+
 /// A simulation or model as it was given.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Given {

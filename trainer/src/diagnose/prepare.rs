@@ -162,6 +162,14 @@ impl Prepared {
         self.rows.iter().map(|&i| series[i]).collect()
     }
 
+    /// Whether nothing of friction that turns over enters a row: the joint is faster than the noise of its velocity within half of
+    /// the filter's reach.
+    pub(super) fn sign_is_sure(&self) -> Vec<bool> {
+        let (half, velocity) = (self.filter.reach() / 2, &self.state.velocity);
+        let is_fast = |velocity: &f64| velocity.abs() > self.state.sign_velocity;
+        self.rows.iter().map(|&i| velocity[i - half..=i + half].iter().all(is_fast)).collect()
+    }
+
     /// The part of a stretch of time (s) that open rows show, half of the filter's reach beyond the first and the last of them.
     pub(super) fn shown_by_open_rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let reach = 0.5 * self.filter.reach() as f64 * self.state.period;

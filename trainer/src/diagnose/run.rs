@@ -3,9 +3,12 @@
 use super::base::{Base, BaseKind, LONGEST_SAMPLING_DELAY, delay_by_shifting};
 use super::blocks::Lock;
 use super::candidates::Label;
+use super::command::Command;
 use super::conclude::{Refit, polish, refit};
 use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
-use super::health::{coarse_position, examine, unexplained_event};
+use super::health::{
+    HealthNote, coarse_position, examine, examine_as_recorded, put_back as put_back_note, unexplained_event,
+};
 use super::linear::weighted;
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
@@ -19,7 +22,7 @@ use super::set_aside::{
 use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
-use crate::physics::{Action, EffectId, catalogue};
+use crate::physics::{EffectId, catalogue};
 use std::borrow::Cow;
 
 /// What a diagnosis is asked for.
@@ -93,19 +96,38 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
+    let request = Request { actuator, options: *options, as_recorded: &examine_as_recorded(signals) };
+    let Some(command) = Command::of(signals) else { return diagnose_measured(signals, &request) };
+    let mut diagnosis = diagnose_measured(&command.given(signals), &request)?;
+    command.tell(&mut diagnosis);
+    Ok(diagnosis)
+}
+
+/// What is asked for, whatever becomes of the signals on the way.
+#[derive(Clone, Copy)]
+struct Request<'a> {
+    actuator: &'a str,
+    options: Options,
+    /// What is wrong with the recording as it is: of a torque that was put back between its samples nobody can tell.
+    as_recorded: &'a [HealthNote],
+}
+
+/// Diagnoses signals whose torque the joint felt.
+fn diagnose_measured(signals: &Signals, request: &Request) -> Result<Diagnosis, Refusal> {
+    let options = &request.options;
     let shift = delay_by_shifting(&Prepared::new(signals, options.lock), signals, options.base);
     let samples = shift / signals.period;
     if samples.abs() <= LONGEST_SAMPLING_DELAY {
         let is_felt = samples.abs() > LEAST_SAMPLING_DELAY;
-        return diagnose_put_back(signals, if is_felt { shift } else { 0.0 }, actuator, options);
+        return diagnose_put_back(signals, if is_felt { shift } else { 0.0 }, request);
     }
-    let as_recorded = diagnose_put_back(signals, 0.0, actuator, options)?;
+    let as_recorded = diagnose_put_back(signals, 0.0, request)?;
     if misalignment(&as_recorded).is_some() {
         return Ok(as_recorded);
     }
     // What is left of the shift is short enough for the linear regressor of a delay.
     let left = LEFT_OF_A_SHIFT * signals.period * samples.signum();
-    match diagnose_put_back(signals, shift - left, actuator, options) {
+    match diagnose_put_back(signals, shift - left, request) {
         Ok(shifted) if misalignment(&shifted).is_some() && says_more_with_less(&shifted, &as_recorded) => Ok(shifted),
         _ => Ok(as_recorded),
     }
@@ -118,14 +140,15 @@ fn says_more_with_less(one: &Diagnosis, other: &Diagnosis) -> bool {
 }
 
 /// Diagnoses a recording with its torque put back by `delay` (s), and by what the diagnosis then finds of it.
-fn diagnose_put_back(signals: &Signals, delay: f64, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+fn diagnose_put_back(signals: &Signals, delay: f64, request: &Request) -> Result<Diagnosis, Refusal> {
     let put_back = |delay: f64| {
         let signals = if delay == 0.0 { Cow::Borrowed(signals) } else { Cow::Owned(signals.realigned(delay)) };
-        diagnose_aligned(&signals, actuator, options).map(|diagnosis| Diagnosis { put_back_s: delay, ..diagnosis })
+        diagnose_aligned(&signals, request).map(|diagnosis| Diagnosis { put_back_s: delay, ..diagnosis })
     };
     let mut first = put_back(delay)?;
     let Some(mut misaligned) = misalignment(&first).cloned() else {
         first.sampling_delay_s += delay;
+        first.health.extend((delay != 0.0).then(|| put_back_note(delay, signals.period)));
         return Ok(first);
     };
     let mut total = delay + misaligned.fitted.coefficients[0];
@@ -142,11 +165,10 @@ fn diagnose_put_back(signals: &Signals, delay: f64, actuator: &str, options: &Op
         parameter.value += moved;
         parameter.ci95 = parameter.ci95.map(|end| end + moved);
     }
-    let rows = aligned.traces.time.len();
     let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
     let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
-    (aligned.findings, aligned.traces.effects) = std::iter::once((misaligned, vec![0.0; rows])).chain(physics).unzip();
-    aligned.verdict = verdict(&aligned.findings, false);
+    (aligned.findings, aligned.traces.effects) = physics.unzip();
+    aligned.put_first(misaligned);
     aligned.baseline = first.baseline;
     if let (Some(proof), Some(before)) = (&mut aligned.proof, &first.proof) {
         let larger = before.baseline_rmse / proof.baseline_rmse;
@@ -163,8 +185,9 @@ fn misalignment(diagnosis: &Diagnosis) -> Option<&Finding> {
 
 /// Diagnoses signals whose torque and motion belong together; with other blocks locked where a one-off event lay in those that
 /// were.
-fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
-    let mut first = diagnose_locked(signals, actuator, options)?;
+fn diagnose_aligned(signals: &Signals, request: &Request) -> Result<Diagnosis, Refusal> {
+    let Request { actuator, options, .. } = *request;
+    let mut first = diagnose_locked(signals, request)?;
     let worst = first.traces.worst_locked().filter(|worst| worst.over_open > STICKS_OUT);
     let (Lock::Spread, Some(worst)) = (options.lock, worst) else { return Ok(first) };
     if worst.over_open > NO_NOISE {
@@ -178,8 +201,8 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
             Verdict::MissingPhysics | Verdict::Unexplained => first.health.push(unexplained_event(worst, actuator)),
         }
     }
-    let elsewhere = Options { lock: Lock::SpreadElsewhere, ..*options };
-    let Ok(second) = diagnose_locked(signals, actuator, &elsewhere) else { return Ok(first) };
+    let elsewhere = Request { options: Options { lock: Lock::SpreadElsewhere, ..options }, ..*request };
+    let Ok(second) = diagnose_locked(signals, &elsewhere) else { return Ok(first) };
     let events = |diagnosis: &Diagnosis| {
         diagnosis.findings.iter().filter(|finding| finding.effect == EffectId::TransientEvent).count()
     };
@@ -189,9 +212,11 @@ fn diagnose_aligned(signals: &Signals, actuator: &str, options: &Options) -> Res
     Ok(if is_better { second } else { first })
 }
 
-fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Refusal> {
+    let Request { actuator, options, as_recorded } = *request;
     let mut prepared = Prepared::new(signals, options.lock);
-    let mut health = examine(signals);
+    let mut health = as_recorded.to_vec();
+    health.extend(examine(signals));
     health.extend(coarse_position(signals, &prepared));
     let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
     if rows < LEAST_ROWS {
@@ -220,8 +245,9 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         .enumerate()
         .map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator))
         .collect();
-    let findings = if blocked { health.iter().map(measurement_finding).collect() } else { findings };
-    let verdict = verdict(&findings, blocked);
+    let faults = health.iter().filter(|note| note.blocking).map(measurement_finding);
+    let findings = if blocked { faults.collect() } else { findings };
+    let verdict = Verdict::of(&findings, blocked);
     let given = (options.base == BaseKind::Reference).then(|| given(&search, &baseline));
     let score = |refit: &Refit| score(&search, &rest(&search, refit));
     Ok(Diagnosis {
@@ -251,19 +277,6 @@ fn diagnose_locked(signals: &Signals, actuator: &str, options: &Options) -> Resu
         baseline_refit: baseline,
         improved_refit: improved,
     })
-}
-
-fn verdict(findings: &[Finding], blocked: bool) -> Verdict {
-    if blocked {
-        return Verdict::BadData;
-    }
-    if findings.is_empty() {
-        return Verdict::Consistent;
-    }
-    if findings.iter().all(|f| f.action == Action::Measurement) {
-        return Verdict::BadData;
-    }
-    if findings.iter().all(|f| f.effect == EffectId::Unknown) { Verdict::Unexplained } else { Verdict::MissingPhysics }
 }
 
 /// The reference before its parameters moved; differentiation bias and the sampling's delay are none of its errors.

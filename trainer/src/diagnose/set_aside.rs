@@ -60,8 +60,7 @@ pub(super) fn set_aside_negligible(search: &Search, accepted: &mut Vec<Accepted>
     set_aside_below(least_torque(search), search, accepted)
 }
 
-/// Sets aside, smallest first, what explains less than a torque (root mean square), with what it explains. Effects that repeat count
-/// together.
+/// Sets aside what explains less than a torque (root mean square), with what it explains. Effects that repeat count together.
 fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
     let mut set_aside = Vec::new();
     if least_torque == 0.0 {
@@ -73,12 +72,28 @@ fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accept
             let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
             (explained < least_torque).then_some((effect, explained))
         };
-        let least = accepted.iter().map(Accepted::effect).filter_map(explained).min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((effect, explained)) = least else { break };
+        let small = accepted.iter().map(Accepted::effect).filter_map(explained);
+        let Some((effect, explained)) = with_least_in_favour(accepted, small) else { break };
         accepted.retain(|other| other.effect() != effect);
         set_aside.push((effect, explained));
     }
     set_aside
+}
+
+/// Of effects that each explain little beside the others, the one that goes: two that can stand for each other both do, and of
+/// those the one stays that had more in its favour when it came, and a name before none.
+fn with_least_in_favour(
+    accepted: &[Accepted],
+    effects: impl Iterator<Item = (EffectId, f64)>,
+) -> Option<(EffectId, f64)> {
+    let in_favour = |effect: EffectId| {
+        let scores = accepted.iter().filter(|found| found.effect() == effect).map(|found| found.score);
+        (effect != EffectId::Unknown, scores.fold(f64::NEG_INFINITY, f64::max))
+    };
+    effects
+        .map(|small| (in_favour(small.0), small))
+        .min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
+        .map(|(_, small)| small)
 }
 
 /// Mean square of what base and effects leave.
@@ -86,7 +101,7 @@ fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
     refit(search, accepted).map(|refit| refit.noise.rms.powi(2))
 }
 
-/// Sets aside, smallest first, what accounts for little of the torque and of the mismatch beside a larger finding: there the
+/// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
     let small = MINOR_TORQUE * MINOR_TORQUE * mean_square_torque(search);
@@ -108,13 +123,11 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
             let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
             *share < least && share * removable < small
         };
-        match effects.filter_map(share).filter(is_minor).min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((effect, share)) => {
-                accepted.retain(|other| other.effect() != effect);
-                minor.push((effect, share));
-            }
-            None => break,
-        }
+        let Some((effect, share)) = with_least_in_favour(accepted, effects.filter_map(share).filter(is_minor)) else {
+            break;
+        };
+        accepted.retain(|other| other.effect() != effect);
+        minor.push((effect, share));
     }
     minor
 }

@@ -26,6 +26,8 @@ pub struct Traces {
     pub effects: Vec<Vec<f64>>,
     /// Whether the row was locked away from fitting and choosing.
     pub locked: Vec<bool>,
+    /// Whether friction keeps its sign as far as the row's filter reaches.
+    pub sign_is_sure: Vec<bool>,
     /// Channels and derived axes that vary, by name.
     pub channels: Vec<(&'static str, Vec<f64>)>,
     /// First row of each uninterrupted run, ascending.
@@ -71,6 +73,7 @@ impl Traces {
             after: rest(search, improved),
             effects,
             locked,
+            sign_is_sure: prepared.sign_is_sure(),
             channels,
             run_starts,
         }
@@ -97,22 +100,24 @@ impl Traces {
         self.channels.iter().find(|(channel, _)| *channel == name).map(|(_, values)| values.as_slice())
     }
 
-    /// The locked stretch that is left with the most. `None` where nothing is locked.
+    /// The locked stretch that is left with the most, reversals left out: where friction turns over, a fraction of a sample decides.
+    /// `None` where nothing is locked.
     #[must_use]
     pub fn worst_locked(&self) -> Option<WorstLocked> {
         let ends = self.run_starts.iter().skip(1).copied().chain([self.len()]);
         let (shut, open): (Vec<_>, Vec<_>) =
             self.run_starts.iter().copied().zip(ends).partition(|(start, _)| self.locked[*start]);
         let usual_length = quantile(shut.iter().map(|(start, end)| (end - start) as f64), 0.5) as usize;
-        // Pieces of one length, as a short one may hold nothing but a reversal.
+        let sure = |piece: &Range<usize>| piece.clone().filter(|row| self.sign_is_sure[*row]);
+        // Pieces of one length, as a short one may hold little but a reversal.
         let pieces = |(start, end): (usize, usize)| {
             let starts = (start..end).step_by(usual_length.max(1));
             let pieces = starts.map(move |start| start..(start + usual_length.max(1)).min(end));
-            pieces.filter(|piece| 2 * piece.len() > usual_length)
+            pieces.filter(|piece| 4 * sure(piece).count() > usual_length)
         };
         let rms = |piece: Range<usize>| {
-            let left = &self.after[piece.clone()];
-            ((left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt(), piece)
+            let energy: f64 = sure(&piece).map(|row| self.after[row].powi(2)).sum();
+            ((energy / sure(&piece).count() as f64).sqrt(), piece)
         };
         let worst = |stretches: Vec<(usize, usize)>| {
             stretches.into_iter().flat_map(pieces).map(rms).max_by(|a, b| a.0.total_cmp(&b.0))
@@ -151,12 +156,15 @@ fn varies(values: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    /// Five stretches of twenty rows of which the last is locked, and a locked one of four; `events` are rows that stick out.
-    fn locked_over_open(events: std::ops::Range<usize>) -> f64 {
+    /// Five stretches of twenty rows of which the last is locked, and a locked one of four; `events` are rows that
+    /// stick out, `reversal` those around one.
+    fn locked_over_open(events: Range<usize>, reversal: Range<usize>) -> f64 {
         let mut after: Vec<f64> = (0..104).map(|i| if i % 2 == 0 { 0.1 } else { -0.1 }).collect();
         after[events].fill(1.0);
         let locked = (0..104).map(|i| i >= 80).collect();
-        Traces { time: vec![0.0; 104], after, locked, run_starts: vec![0, 20, 40, 60, 80, 100], ..Traces::default() }
+        let sign_is_sure = (0..104).map(|i| !reversal.contains(&i)).collect();
+        let run_starts = vec![0, 20, 40, 60, 80, 100];
+        Traces { time: vec![0.0; 104], after, locked, sign_is_sure, run_starts, ..Traces::default() }
             .worst_locked()
             .unwrap()
             .over_open
@@ -164,7 +172,9 @@ mod tests {
 
     #[test]
     fn a_locked_stretch_sticks_out_by_more_than_the_open_ones_and_by_more_than_a_reversal() {
-        assert!(locked_over_open(85..95) > 5.0);
-        assert!([0..0, 45..55, 101..103].into_iter().all(|events| locked_over_open(events) <= 1.0));
+        assert!(locked_over_open(85..95, 0..0) > 5.0);
+        assert!([0..0, 45..55, 101..103].into_iter().all(|events| locked_over_open(events, 0..0) <= 1.0));
+        assert!(locked_over_open(88..92, 88..92) <= 1.0, "a fraction of a sample at a reversal");
+        assert!(locked_over_open(85..95, 88..92) > 5.0, "more than a reversal");
     }
 }
