@@ -7,7 +7,7 @@ use super::traces::WorstLocked;
 use super::unit_or_sign::{contradicting_velocity, wrong_sign_or_unit};
 use crate::figures::{digits, quantity};
 use crate::physics::EffectId;
-use crate::samples::spikes::Spikes;
+use crate::samples::spikes::{PRINTED, Spikes};
 use crate::statistics::quantile;
 use serde::Serialize;
 
@@ -22,9 +22,8 @@ pub struct HealthNote {
     pub sentence: String,
 }
 
-/// Share of samples at one extreme torque from which it counts as clipped, and how far they may lie apart in print.
+/// Share of samples at one extreme torque from which it counts as clipped.
 const CLIPPED_SHARE: f64 = 0.02;
-const PRINTED: f64 = 1e-6;
 /// A torque step of this share of the usual torque is worth a note, and of this hides friction.
 const TELLING_TORQUE_SHARE: f64 = 0.01;
 const COARSE_TORQUE_SHARE: f64 = 0.05;
@@ -34,8 +33,9 @@ const COARSE_STEP: f64 = 1e-4;
 
 /// Looks at the torque as it was recorded.
 pub(super) fn examine_as_recorded(signals: &Signals) -> Vec<HealthNote> {
+    let step = torque_step(signals);
     let replaced = signals.spikes.iter().map(replaced);
-    replaced.chain(clipped_torque(signals)).chain(coarse_torque(signals)).collect()
+    replaced.chain(clipped_torque(signals, step)).chain(step.and_then(coarse_torque)).collect()
 }
 
 /// Looks at what the signals say of each other.
@@ -81,8 +81,7 @@ fn replaced(spikes: &Spikes) -> HealthNote {
 }
 
 /// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque.
-fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
-    let (step, share) = torque_step(signals)?;
+fn coarse_torque(TorqueStep { step, share }: TorqueStep) -> Option<HealthNote> {
     (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: share > COARSE_TORQUE_SHARE,
@@ -90,8 +89,15 @@ fn coarse_torque(signals: &Signals) -> Option<HealthNote> {
     })
 }
 
-/// The step in which the torque is recorded, where most of its changes are a single one, and its share of the usual torque.
-fn torque_step(signals: &Signals) -> Option<(f64, f64)> {
+/// The step in which a torque is recorded, and its share of the usual torque.
+#[derive(Clone, Copy)]
+struct TorqueStep {
+    step: f64,
+    share: f64,
+}
+
+/// The step in which the torque is recorded, where most of its changes are a single one.
+fn torque_step(signals: &Signals) -> Option<TorqueStep> {
     const FEWEST_CHANGES: usize = 20;
     let usual = quantile(signals.torque.iter().map(|torque| torque.abs()), 0.9);
     let changes = signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -99,7 +105,7 @@ fn torque_step(signals: &Signals) -> Option<(f64, f64)> {
     let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * TELLING_TORQUE_SHARE * usual).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
-    (steps.len() > FEWEST_CHANGES && is_single).then_some((smallest, smallest / usual))
+    (steps.len() > FEWEST_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
 }
 
 /// Something that happened once, in rows that were locked away.
@@ -115,7 +121,7 @@ pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNot
 }
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.
-pub(crate) fn put_back(delay: f64, period: f64) -> HealthNote {
+pub(crate) fn late_torque(delay: f64, period: f64) -> HealthNote {
     let way = if delay > 0.0 { "later" } else { "earlier" };
     let samples = digits((delay / period).abs());
     HealthNote {
@@ -144,7 +150,7 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
     })
 }
 
-fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
+fn clipped_torque(signals: &Signals, step: Option<TorqueStep>) -> Option<HealthNote> {
     let top = signals.torque.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let share_from = |level: f64| {
         let at_least = signals.torque.iter().filter(|torque| torque.abs() >= level).count();
@@ -152,7 +158,7 @@ fn clipped_torque(signals: &Signals) -> Option<HealthNote> {
     };
     let share = share_from(top * (1.0 - PRINTED));
     // Of a torque in coarse steps some samples are the highest anyway: at a limit there are twice as many as a step below it.
-    let is_coarse_peak = torque_step(signals).is_some_and(|(step, _)| share_from(top - 1.5 * step) > 1.5 * share);
+    let is_coarse_peak = step.is_some_and(|TorqueStep { step, .. }| share_from(top - 1.5 * step) > 1.5 * share);
     (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then(|| HealthNote {
         effect: EffectId::Saturation,
         blocking: false,
@@ -172,14 +178,16 @@ mod tests {
 
     #[test]
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
-        let blocking = |largest: f64| coarse_torque(&in_steps(largest, largest)).map(|note| note.blocking);
+        let blocking =
+            |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
         assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
     }
 
     #[test]
     fn the_highest_step_of_a_coarse_torque_is_no_limit() {
-        assert!(clipped_torque(&in_steps(5.0, 9.0)).is_none());
-        assert!(clipped_torque(&in_steps(5.0, 3.0)).is_some());
-        assert!(clipped_torque(&in_steps(400.0, 250.0)).is_some());
+        let clipped = |signals: Signals| clipped_torque(&signals, torque_step(&signals));
+        assert!(clipped(in_steps(5.0, 9.0)).is_none());
+        assert!(clipped(in_steps(5.0, 3.0)).is_some());
+        assert!(clipped(in_steps(400.0, 250.0)).is_some());
     }
 }

@@ -14,6 +14,7 @@ mod command;
 mod conclude;
 mod confidence;
 mod covariance;
+mod delay;
 mod doubt;
 mod evidence;
 mod filter;

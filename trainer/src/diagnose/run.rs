@@ -1,14 +1,13 @@
 //! One diagnosis from signals to outcome.
 
-use super::base::{Base, BaseKind, LONGEST_SAMPLING_DELAY, delay_by_shifting};
+use super::base::{Base, BaseKind};
 use super::blocks::Lock;
 use super::candidates::Label;
 use super::command::Command;
 use super::conclude::{Refit, polish, refit};
+use super::delay::diagnose_in_step;
 use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
-use super::health::{
-    HealthNote, coarse_position, examine, examine_as_recorded, put_back as put_back_note, unexplained_event,
-};
+use super::health::{HealthNote, coarse_position, examine, examine_as_recorded, unexplained_event};
 use super::linear::weighted;
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
@@ -23,7 +22,6 @@ use super::settings::Settings;
 use super::signals::Signals;
 use super::traces::Traces;
 use crate::physics::{EffectId, catalogue};
-use std::borrow::Cow;
 
 /// What a diagnosis is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -68,16 +66,6 @@ pub enum Refusal {
 
 /// Least rows of evidence.
 const LEAST_ROWS: usize = 150;
-/// Realignments after the first: the linear regressor of a delay falls short of a long one.
-const MOST_REALIGNMENTS: usize = 2;
-/// Samples of the sampling's own delay from which it is felt.
-const LEAST_SAMPLING_DELAY: f64 = 0.3;
-/// Samples of a longer shift that are left to the regressor of a delay.
-const LEFT_OF_A_SHIFT: f64 = 2.0;
-/// Error over that of another diagnosis up to which it is as much.
-const AS_MUCH: f64 = 1.02;
-/// The same from which it is clearly less.
-const CLEARLY_LESS: f64 = 0.8;
 /// What a locked stretch is left with over what any open one is, root mean square, from which other blocks are locked.
 const STICKS_OUT: f64 = 1.5;
 /// The same from which it is no noise, whatever it is.
@@ -97,8 +85,10 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
         return Err(Refusal::NotMeasured { torque });
     }
     let request = Request { actuator, options: *options, as_recorded: &examine_as_recorded(signals) };
-    let Some(command) = Command::of(signals) else { return diagnose_measured(signals, &request) };
-    let mut diagnosis = diagnose_measured(&command.given(signals), &request)?;
+    let diagnose =
+        |signals: &Signals| diagnose_in_step(signals, options, &|aligned| diagnose_aligned(aligned, &request));
+    let Some(command) = Command::of(signals) else { return diagnose(signals) };
+    let mut diagnosis = diagnose(&command.given(signals))?;
     command.tell(&mut diagnosis);
     Ok(diagnosis)
 }
@@ -110,77 +100,6 @@ struct Request<'a> {
     options: Options,
     /// What is wrong with the recording as it is: of a torque that was put back between its samples nobody can tell.
     as_recorded: &'a [HealthNote],
-}
-
-/// Diagnoses signals whose torque the joint felt.
-fn diagnose_measured(signals: &Signals, request: &Request) -> Result<Diagnosis, Refusal> {
-    let options = &request.options;
-    let shift = delay_by_shifting(&Prepared::new(signals, options.lock), signals, options.base);
-    let samples = shift / signals.period;
-    if samples.abs() <= LONGEST_SAMPLING_DELAY {
-        let is_felt = samples.abs() > LEAST_SAMPLING_DELAY;
-        return diagnose_put_back(signals, if is_felt { shift } else { 0.0 }, request);
-    }
-    let as_recorded = diagnose_put_back(signals, 0.0, request)?;
-    if misalignment(&as_recorded).is_some() {
-        return Ok(as_recorded);
-    }
-    // What is left of the shift is short enough for the linear regressor of a delay.
-    let left = LEFT_OF_A_SHIFT * signals.period * samples.signum();
-    match diagnose_put_back(signals, shift - left, request) {
-        Ok(shifted) if misalignment(&shifted).is_some() && says_more_with_less(&shifted, &as_recorded) => Ok(shifted),
-        _ => Ok(as_recorded),
-    }
-}
-
-/// Whether a diagnosis leaves as much as another with fewer findings, or clearly less with no more.
-fn says_more_with_less(one: &Diagnosis, other: &Diagnosis) -> bool {
-    let (fewer, left) = (one.findings.len().cmp(&other.findings.len()), one.improved.rmse / other.improved.rmse);
-    fewer.is_lt() && left < AS_MUCH || fewer.is_eq() && left < CLEARLY_LESS
-}
-
-/// Diagnoses a recording with its torque put back by `delay` (s), and by what the diagnosis then finds of it.
-fn diagnose_put_back(signals: &Signals, delay: f64, request: &Request) -> Result<Diagnosis, Refusal> {
-    let put_back = |delay: f64| {
-        let signals = if delay == 0.0 { Cow::Borrowed(signals) } else { Cow::Owned(signals.realigned(delay)) };
-        diagnose_aligned(&signals, request).map(|diagnosis| Diagnosis { put_back_s: delay, ..diagnosis })
-    };
-    let mut first = put_back(delay)?;
-    let Some(mut misaligned) = misalignment(&first).cloned() else {
-        first.sampling_delay_s += delay;
-        first.health.extend((delay != 0.0).then(|| put_back_note(delay, signals.period)));
-        return Ok(first);
-    };
-    let mut total = delay + misaligned.fitted.coefficients[0];
-    let Ok(mut aligned) = put_back(total) else { return Ok(first) };
-    for _ in 0..MOST_REALIGNMENTS {
-        let Some(rest) = misalignment(&aligned) else { break };
-        let longer = total + rest.fitted.coefficients[0];
-        let Ok(again) = put_back(longer) else { break };
-        (total, aligned) = (longer, again);
-    }
-    let moved = total - misaligned.fitted.coefficients[0];
-    misaligned.fitted.coefficients[0] = total;
-    if let Some(parameter) = misaligned.parameters.first_mut() {
-        parameter.value += moved;
-        parameter.ci95 = parameter.ci95.map(|end| end + moved);
-    }
-    let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
-    let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
-    (aligned.findings, aligned.traces.effects) = physics.unzip();
-    aligned.put_first(misaligned);
-    aligned.baseline = first.baseline;
-    if let (Some(proof), Some(before)) = (&mut aligned.proof, &first.proof) {
-        let larger = before.baseline_rmse / proof.baseline_rmse;
-        proof.ratio_ci95 = proof.ratio_ci95.map(|end| end / larger);
-        proof.baseline_rmse = before.baseline_rmse;
-    }
-    Ok(aligned)
-}
-
-/// The finding that the torque was recorded at another time than the motion, where it is the first.
-fn misalignment(diagnosis: &Diagnosis) -> Option<&Finding> {
-    diagnosis.findings.first().filter(|f| f.effect == EffectId::TimeMisalignment && !f.fitted.coefficients.is_empty())
 }
 
 /// Diagnoses signals whose torque and motion belong together; with other blocks locked where a one-off event lay in those that

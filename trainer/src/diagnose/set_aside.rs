@@ -72,28 +72,24 @@ fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accept
             let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
             (explained < least_torque).then_some((effect, explained))
         };
-        let small = accepted.iter().map(Accepted::effect).filter_map(explained);
-        let Some((effect, explained)) = with_least_in_favour(accepted, small) else { break };
-        accepted.retain(|other| other.effect() != effect);
-        set_aside.push((effect, explained));
+        let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(explained).collect();
+        let Some(taken) = take_least_in_favour(accepted, &small) else { break };
+        set_aside.push(taken);
     }
     set_aside
 }
 
-/// Of effects that each explain little beside the others, the one that goes: two that can stand for each other both do, and of
+/// Takes one away of the effects that each explain little beside the others: two that can stand for each other both do, and of
 /// those the one stays that had more in its favour when it came, and a name before none.
-fn with_least_in_favour(
-    accepted: &[Accepted],
-    effects: impl Iterator<Item = (EffectId, f64)>,
-) -> Option<(EffectId, f64)> {
+fn take_least_in_favour(accepted: &mut Vec<Accepted>, small: &[(EffectId, f64)]) -> Option<(EffectId, f64)> {
     let in_favour = |effect: EffectId| {
         let scores = accepted.iter().filter(|found| found.effect() == effect).map(|found| found.score);
         (effect != EffectId::Unknown, scores.fold(f64::NEG_INFINITY, f64::max))
     };
-    effects
-        .map(|small| (in_favour(small.0), small))
-        .min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
-        .map(|(_, small)| small)
+    let least = small.iter().map(|(effect, _)| in_favour(*effect)).enumerate();
+    let (index, _) = least.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+    accepted.retain(|other| other.effect() != small[index].0);
+    Some(small[index])
 }
 
 /// Mean square of what base and effects leave.
@@ -104,7 +100,7 @@ fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
 /// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let small = MINOR_TORQUE * MINOR_TORQUE * mean_square_torque(search);
+    let small_energy = MINOR_TORQUE * MINOR_TORQUE * mean_square_torque(search);
     let mut minor = Vec::new();
     while let (Some(all), true) = (energy_left(search, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
@@ -121,13 +117,11 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
         let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
         let is_minor = |(effect, share): &(EffectId, f64)| {
             let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
-            *share < least && share * removable < small
+            *share < least && share * removable < small_energy
         };
-        let Some((effect, share)) = with_least_in_favour(accepted, effects.filter_map(share).filter(is_minor)) else {
-            break;
-        };
-        accepted.retain(|other| other.effect() != effect);
-        minor.push((effect, share));
+        let small: Vec<_> = effects.filter_map(share).filter(is_minor).collect();
+        let Some(taken) = take_least_in_favour(accepted, &small) else { break };
+        minor.push(taken);
     }
     minor
 }

@@ -16,8 +16,8 @@ const NO_NOISE: f64 = 4.0;
 /// Differences of the rows in a glitch, and between the line across it and the series that comes in or goes on, over its height,
 /// at most: it leaves all at once and comes back to where it left.
 const UNEVEN: f64 = 0.2;
-/// Share of the largest value up to which a bend may be what printing a series of steps with few digits leaves.
-const PRINTED: f64 = 1e-6;
+/// Share of the largest value up to which equal values may lie apart once they are printed with few digits.
+pub(crate) const PRINTED: f64 = 1e-6;
 /// Rows to each side in which the joint must not turn or rest, and its speed there over that of the fastest at least.
 const MOVING: usize = 6;
 const SLOW: f64 = 0.05;
