@@ -109,6 +109,17 @@ fn a_noisy_simulation_is_not_taken_at_its_word() {
     }
 }
 
+/// The drive answers to the grain of a coarse encoder some samples later: beside the known inertia, where the grain is as large, that
+/// was taken for a torque out of step.
+#[test]
+fn the_answer_of_the_drive_to_a_coarse_encoder_is_no_delay() {
+    (71_530_000..71_530_003).into_par_iter().for_each(|seed| {
+        let case = Case { base: BaseKind::Reference, ..control(NoiseKind::CoarseEncoder, seed) };
+        let compared = simulated::run(&Comparison { group: Group::Control, case }).unwrap();
+        assert_eq!(compared.findings, Vec::<Vec<EffectId>>::new(), "seed {seed}");
+    });
+}
+
 /// A simulator that works an effect out itself was told that it lacks it: its law was learned from speed, position and
 /// acceleration alone.
 #[test]

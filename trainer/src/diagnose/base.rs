@@ -2,7 +2,7 @@
 
 use super::grain::Grain;
 use super::linear::{dot, least_squares, orthonormal, project_out, residual};
-use super::prepare::{Prepared, channel_filter};
+use super::prepare::{Prepared, channel_filter, grain_through_inertia};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
@@ -81,6 +81,8 @@ impl Base {
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, signals, &raw);
         let coefficients = least_squares(&columns, &target, &runs)?;
+        let energy_of = |left: &[f64]| dot(left, left, &runs);
+        let left_in_step = energy_of(&residual(&columns, &target, &coefficients));
         predict(prepared, signals, kind, &raw, &coefficients);
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
@@ -88,8 +90,10 @@ impl Base {
         columns.push(late);
         let with_delay = least_squares(&columns, &target, &runs)?;
         let delay = with_delay[columns.len() - 1];
-        let grain = Grain::of(prepared, signals, &residual(&columns, &target, &with_delay));
-        let delay_is_nuisance = delay.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period;
+        let left = residual(&columns, &target, &with_delay);
+        let grain = Grain::of(prepared, signals, &left);
+        let is_short = delay.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period;
+        let delay_is_nuisance = is_short || left_in_step - energy_of(&left) < answer_to_grain(prepared, signals);
         if !delay_is_nuisance {
             columns.pop();
         }
@@ -124,11 +128,19 @@ pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: Ba
     };
     let left: Vec<f64> = (-longest..=longest).map(left_at).collect();
     let best = (1..left.len() - 1).min_by(|&a, &b| left[a].total_cmp(&left[b]));
-    let Some(best) = best.filter(|&best| left[best] < CLEARLY_LESS * left[longest as usize]) else { return 0.0 };
+    let unshifted = left[longest as usize];
+    let needed = ((1.0 - CLEARLY_LESS) * unshifted).max(answer_to_grain(prepared, signals));
+    let Some(best) = best.filter(|&best| unshifted - left[best] > needed) else { return 0.0 };
     let [before, here, after] = [left[best - 1], left[best], left[best + 1]];
     let bend = before - 2.0 * here + after;
     let between = if bend > 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
     (best as f64 - longest as f64 + between) * state.period
+}
+
+/// Energy on open rows that a delay can explain by itself: the drive answers to the encoder's grain some samples later.
+fn answer_to_grain(prepared: &Prepared, signals: &Signals) -> f64 {
+    let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
+    rows as f64 * grain_through_inertia(prepared, signals).map_or(0.0, |grain| grain * grain)
 }
 
 /// Samples of delay up to which it is the sampling's own: the drive holds its torque over a sample while the position is read at one

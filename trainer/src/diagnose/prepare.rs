@@ -282,14 +282,20 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
     }
     let rows = prepared.open_runs();
     let columns = simplest_model(prepared);
-    let Some(inertia) = identified_inertia(prepared) else { return true };
+    let Some(grain) = grain_through_inertia(prepared, signals) else { return true };
     let friction = prepared.filtered(&prepared.friction_torque);
     let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
     let count: usize = rows.iter().map(|run| run.len()).sum();
     let energy: f64 = rows.iter().flat_map(|run| &left[run.clone()]).map(|e| e * e).sum();
     let deviation = (energy / count.max(1) as f64).sqrt();
-    let grain = signals.position_resolution / 12f64.sqrt() * prepared.filter.second_derivative_gain(signals.period);
-    inertia.abs() * grain < ENCODER_SHARE * deviation
+    grain < ENCODER_SHARE * deviation
+}
+
+/// Deviation, behind the filter, of the torque that the encoder's grain makes through the inertia; `None` where the recording shows
+/// no inertia.
+pub(super) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
+    let acceleration = prepared.filter.second_derivative_gain(signals.period);
+    identified_inertia(prepared).map(|inertia| inertia.abs() * signals.position_resolution / 12f64.sqrt() * acceleration)
 }
 
 /// Filtered Coulomb and viscous friction, inertia and offset.
