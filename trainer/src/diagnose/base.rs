@@ -155,7 +155,7 @@ const CLEARLY_LESS: f64 = 0.98;
 fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
-    columns.push(sharpness(prepared));
+    columns.extend(sharpness(prepared));
     if let Some(reference) = &signals.reference {
         columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
     }
@@ -182,6 +182,9 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
     columns
 }
 
+/// Width of a softer sign over that of the smoothed one.
+const WIDE_SIGN: f64 = 3.0;
+
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
 pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
@@ -189,16 +192,18 @@ pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
     let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
     // The smoothed sign stands for a jump: its width is a nuisance too.
-    let wide_sign = state.averaged_sign(&state.velocity, 3.0 * state.sign_velocity);
+    let wide_sign = state.averaged_sign(&state.velocity, WIDE_SIGN * state.sign_velocity);
     let width = state.map(|i| wide_sign[i] - state.sign[i]);
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }
 
-/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
-/// between its sign and the smoothed one is a nuisance too.
-fn sharpness(prepared: &Prepared) -> Vec<f64> {
+/// A law from elsewhere turns its friction over as sharply as it was made to, or as softly, and where its torque is not that of a
+/// whole sample, at one instant: what is between its sign and the smoothed one is a nuisance too.
+fn sharpness(prepared: &Prepared) -> [Vec<f64>; 2] {
     let state = &prepared.state;
-    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
+    let sharp = state.map(|i| state.velocity[i].signum() - state.sign[i]);
+    let soft = state.map(|i| (state.velocity[i] / (WIDE_SIGN * state.sign_velocity)).tanh() - state.sign[i]);
+    [prepared.filtered(&sharp), prepared.filtered(&soft)]
 }
 
 fn predict(

@@ -23,6 +23,11 @@ pub(crate) fn bristle(state: &JointState, distance: f64) -> Vec<f64> {
     deflection
 }
 
+/// Distance at least: over less, friction has turned over by the first sample after a reversal.
+fn shortest(state: &JointState) -> f64 {
+    (0.5 * state.resolved_speed() * state.period).max(state.resolution).max(1e-9)
+}
+
 /// Longest distance over which a joint may slip: what a bearing or gear yields before it slides; beyond it is a spring.
 fn longest(state: &JointState) -> f64 {
     if state.rotary { 0.1 } else { f64::INFINITY }
@@ -40,7 +45,7 @@ impl Hypothesis for Presliding {
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let (low, high) = state.travel();
         let travel = high - low;
-        let finest = (4.0 * state.resolution).max(3e-5 * travel);
+        let finest = (4.0 * state.resolution).max(3e-5 * travel).max(shortest(state));
         geometric_grid(finest, (0.4 * travel).min(longest(state)).max(finest), 10)
             .into_iter()
             .flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]])
@@ -74,6 +79,6 @@ impl Hypothesis for Presliding {
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let (low, high) = state.travel();
-        (index == 0).then(|| (state.resolution.max(1e-9), (1.5 * (high - low)).min(longest(state))))
+        (index == 0).then(|| (shortest(state), (1.5 * (high - low)).min(longest(state))))
     }
 }

@@ -166,6 +166,13 @@ impl JointState {
         top_speed(&self.velocity)
     }
 
+    /// Speed that samples show where the joint turns round: the median change of the velocity over a sample in which it turns; zero
+    /// where it never does.
+    pub fn resolved_speed(&self) -> f64 {
+        let pairs = self.segments.iter().flat_map(|segment| self.velocity[segment.clone()].windows(2));
+        quantile(pairs.filter(|pair| pair[0] * pair[1] < 0.0).map(|pair| (pair[1] - pair[0]).abs()), 0.5)
+    }
+
     /// Travel between the 0.5 % and 99.5 % quantiles of position.
     pub fn travel(&self) -> (f64, f64) {
         (quantile(self.position.iter().copied(), 0.005), quantile(self.position.iter().copied(), 0.995))

@@ -7,9 +7,10 @@ pub(super) struct Stribeck;
 /// Stribeck velocity at most, as a share of the top speed: beyond it the law is a curved viscous one.
 const WIDEST: f64 = 0.3;
 
-/// Narrower than this it could not be told from the width of the smoothed sign.
+/// Narrower than this it could not be told from the width of the smoothed sign, or from a reversal between two samples.
 fn narrowest(state: &JointState) -> f64 {
-    (4.0 * state.sign_velocity).max(0.008 * state.top_speed()).min(0.1 * state.top_speed())
+    let seen = (4.0 * state.sign_velocity).max(state.resolved_speed());
+    seen.max(0.008 * state.top_speed()).min(0.1 * state.top_speed())
 }
 
 impl Hypothesis for Stribeck {
