@@ -1,6 +1,7 @@
 //! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
 
 use super::conclude::{Refit, refit};
+use super::prepare::Prepared;
 use super::prove::prove_alone;
 use super::search::{Accepted, Search};
 use crate::physics::EffectId;
@@ -9,7 +10,7 @@ use crate::physics::EffectId;
 /// without a name takes up more of the error of a formula.
 const MINOR_SHARE: f64 = 0.06;
 const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
-/// Root mean square over that of the recorded torque below which it is small.
+/// Root mean square over that of the torque beside a known rigid body below which it is small.
 const MINOR_TORQUE: f64 = 0.025;
 /// Times the error that a law's formulas show in the simulation it was learned from up to which it may explain what is found: the
 /// rest of the motion may suit them less.
@@ -21,12 +22,20 @@ const NEGLIGIBLE_TORQUE: f64 = 7e-4;
 
 /// Torque (root mean square) that matters in a recording.
 pub(super) fn least_torque(search: &Search) -> f64 {
-    NEGLIGIBLE_TORQUE * mean_square_torque(search).sqrt()
+    NEGLIGIBLE_TORQUE * mean_square(&search.prepared.filtered(&search.prepared.torque)).sqrt()
 }
 
-fn mean_square_torque(search: &Search) -> f64 {
-    let torque = search.prepared.filtered(&search.prepared.torque);
-    torque.iter().map(|t| t * t).sum::<f64>() / torque.len().max(1) as f64
+/// Mean square of the torque beside a known rigid body: weight and inertia can be many times what friction is.
+fn mean_square_beside_rigid_body(search: &Search) -> f64 {
+    let Prepared { torque, state, .. } = search.prepared;
+    match &state.rigid_body {
+        Some(body) => mean_square(&search.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
+        None => mean_square(&search.prepared.filtered(torque)),
+    }
+}
+
+fn mean_square(series: &[f64]) -> f64 {
+    series.iter().map(|value| value * value).sum::<f64>() / series.len().max(1) as f64
 }
 
 /// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for it, but may make them
@@ -100,10 +109,11 @@ fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
 /// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let small_energy = MINOR_TORQUE * MINOR_TORQUE * mean_square_torque(search);
+    let small_energy = MINOR_TORQUE * MINOR_TORQUE * mean_square_beside_rigid_body(search);
     let mut minor = Vec::new();
-    while let (Some(all), true) = (energy_left(search, accepted), accepted.len() > 1) {
-        let removable = (baseline.noise.rms.powi(2) - all).max(f64::MIN_POSITIVE);
+    while let (Some(refitted), true) = (refit(search, accepted), accepted.len() > 1) {
+        let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);
+        let share_of_events = share_at_the_time_of_events(search, &refitted);
         let share = |effect: EffectId| {
             // A structure without a name can take over what any effect explains: a name is weighed beside names.
             let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
@@ -113,15 +123,32 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
                 .zip(energy_left(search, &with))
                 .map(|(without, with)| (effect, (without - with) / removable))
         };
-        // A one-off event is short: its share says nothing of its size.
-        let effects = accepted.iter().map(Accepted::effect).filter(|effect| *effect != EffectId::TransientEvent);
-        let is_minor = |(effect, share): &(EffectId, f64)| {
-            let least = if *effect == EffectId::Unknown { MINOR_SHARE_WITHOUT_NAME } else { MINOR_SHARE };
-            *share < least && share * removable < small_energy
+        let is_minor = |(effect, share): &(EffectId, f64)| match effect {
+            // A one-off event is short: its share of all says nothing of its size.
+            EffectId::TransientEvent => share_of_events < MINOR_SHARE,
+            EffectId::Unknown => *share < MINOR_SHARE_WITHOUT_NAME && share * removable < small_energy,
+            _ => *share < MINOR_SHARE && share * removable < small_energy,
         };
-        let small: Vec<_> = effects.filter_map(share).filter(is_minor).collect();
+        let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(share).filter(is_minor).collect();
         let Some(taken) = take_least_in_favour(accepted, &small) else { break };
         minor.push(taken);
     }
     minor
+}
+
+/// Energy of the one-off events over that of the other effects at their time; infinite where these do nothing then.
+fn share_at_the_time_of_events(search: &Search, refitted: &Refit) -> f64 {
+    let rows = search.prepared.rows.len();
+    let torque = |is_event: bool| {
+        let of_kind = refitted.effects.iter().filter(|fitted| is_event == (fitted.label.effect() == EffectId::TransientEvent));
+        of_kind.fold(vec![0.0; rows], |mut sum, fitted| {
+            sum.iter_mut().zip(search.torque_of(fitted)).for_each(|(sum, torque)| *sum += torque);
+            sum
+        })
+    };
+    let (events, others) = (torque(true), torque(false));
+    let half = 0.5 * events.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+    let during = events.iter().zip(&others).filter(|(event, _)| event.abs() > half);
+    let [event, other] = during.fold([0.0; 2], |[e, o], (event, other)| [e + event * event, o + other * other]);
+    event / other
 }
