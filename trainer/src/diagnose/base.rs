@@ -84,6 +84,7 @@ impl Base {
         let energy_of = |left: &[f64]| dot(left, left, &runs);
         let left_in_step = energy_of(&residual(&columns, &target, &coefficients));
         predict(prepared, signals, kind, &raw, &coefficients);
+        columns.extend(softness(prepared, &columns, &target));
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
         let late = prepared.filtered(&rate);
@@ -155,7 +156,7 @@ const CLEARLY_LESS: f64 = 0.98;
 fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
-    columns.extend(sharpness(prepared));
+    columns.push(sharpness(prepared));
     if let Some(reference) = &signals.reference {
         columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
     }
@@ -197,13 +198,26 @@ pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }
 
-/// A law from elsewhere turns its friction over as sharply as it was made to, or as softly, and where its torque is not that of a
-/// whole sample, at one instant: what is between its sign and the smoothed one is a nuisance too.
-fn sharpness(prepared: &Prepared) -> [Vec<f64>; 2] {
+/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
+/// between its sign and the smoothed one is a nuisance too.
+fn sharpness(prepared: &Prepared) -> Vec<f64> {
     let state = &prepared.state;
-    let sharp = state.map(|i| state.velocity[i].signum() - state.sign[i]);
-    let soft = state.map(|i| (state.velocity[i] / (WIDE_SIGN * state.sign_velocity)).tanh() - state.sign[i]);
-    [prepared.filtered(&sharp), prepared.filtered(&soft)]
+    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
+}
+
+/// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
+const MOST_SOFTNESS: f64 = 2.0;
+
+/// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
+/// a nuisance beside the given columns. `None` where it takes more torque than friction has there, and stands for something else.
+fn softness(prepared: &Prepared, columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
+    let state = &prepared.state;
+    let width = WIDE_SIGN * state.sign_velocity;
+    let soft = prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i]));
+    let with_soft: Vec<Vec<f64>> = columns.iter().chain([&soft]).cloned().collect();
+    let coefficients = least_squares(&with_soft, target, &prepared.open_runs())?;
+    let torque = coefficients.last()?.abs();
+    (torque <= MOST_SOFTNESS * state.base_friction_at(width).abs()).then_some(soft)
 }
 
 fn predict(

@@ -295,7 +295,8 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
 /// no inertia.
 pub(super) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
     let acceleration = prepared.filter.second_derivative_gain(signals.period);
-    identified_inertia(prepared).map(|inertia| inertia.abs() * signals.position_resolution / 12f64.sqrt() * acceleration)
+    identified_inertia(prepared)
+        .map(|inertia| inertia.abs() * signals.position_resolution / 12f64.sqrt() * acceleration)
 }
 
 /// Filtered Coulomb and viscous friction, inertia and offset.

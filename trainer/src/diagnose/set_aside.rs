@@ -140,7 +140,8 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
 fn share_at_the_time_of_events(search: &Search, refitted: &Refit) -> f64 {
     let rows = search.prepared.rows.len();
     let torque = |is_event: bool| {
-        let of_kind = refitted.effects.iter().filter(|fitted| is_event == (fitted.label.effect() == EffectId::TransientEvent));
+        let of_kind =
+            refitted.effects.iter().filter(|fitted| is_event == (fitted.label.effect() == EffectId::TransientEvent));
         of_kind.fold(vec![0.0; rows], |mut sum, fitted| {
             sum.iter_mut().zip(search.torque_of(fitted)).for_each(|(sum, torque)| *sum += torque);
             sum
