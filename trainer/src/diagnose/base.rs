@@ -1,7 +1,7 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
 use super::grain::Grain;
-use super::linear::{dot, least_squares, orthonormal, project_out, residual};
+use super::linear::{dot, least_squares, left_by_fit, orthonormal, project_out, residual};
 use super::prepare::{Prepared, channel_filter, grain_through_inertia};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
@@ -35,10 +35,19 @@ pub struct Base {
     pub(super) grain: Option<Grain>,
     /// Root mean square of what the formulas of a reference get wrong.
     pub formula_error: f64,
-    /// Delay of the torque against the position that the fit found, in s.
-    pub delay: f64,
-    /// Whether the delay is small enough to be the sampling's own and is carried as a nuisance.
-    pub delay_is_nuisance: bool,
+    /// Delay of the torque against the position that the fit found.
+    pub(super) delay: Delay,
+}
+
+/// What a delay of the torque against the position is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Delay {
+    /// Short enough to be the sampling's own, in s: carried as a nuisance.
+    OfSampling(f64),
+    /// The answer of the drive to the encoder's grain explains as much.
+    OfGrain,
+    /// An effect to be looked for.
+    Open,
 }
 
 /// Coefficients of the spline base.
@@ -81,30 +90,30 @@ impl Base {
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, signals, &raw);
         let coefficients = least_squares(&columns, &target, &runs)?;
-        let energy_of = |left: &[f64]| dot(left, left, &runs);
-        let left_in_step = energy_of(&residual(&columns, &target, &coefficients));
         predict(prepared, signals, kind, &raw, &coefficients);
         columns.extend(softness(prepared, &columns, &target));
+        let in_step = left_by_fit(&columns, &target, &runs)?;
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
-        let late = prepared.filtered(&rate);
-        columns.push(late);
+        columns.push(prepared.filtered(&rate));
         let with_delay = least_squares(&columns, &target, &runs)?;
-        let delay = with_delay[columns.len() - 1];
+        let late = with_delay[columns.len() - 1];
         let left = residual(&columns, &target, &with_delay);
         let grain = Grain::of(prepared, signals, &left);
-        let is_short = delay.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period;
-        let delay_is_nuisance = is_short || left_in_step - energy_of(&left) < answer_to_grain(prepared, signals);
-        if !delay_is_nuisance {
+        let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
+        let delay = if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
+            Delay::OfSampling(late)
+        } else {
             columns.pop();
-        }
+            if explained < answer_to_grain(prepared, signals) { Delay::OfGrain } else { Delay::Open }
+        };
         let (held, doubt) = match &signals.reference {
             Some(reference) => (reference.effects.clone(), &reference.doubt[..]),
             None => (Vec::new(), &[][..]),
         };
         let doubt = doubt.iter().map(|torque| prepared.filtered(torque)).collect();
         let formula_error = signals.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
-        Some(Self { columns, names, target, held, doubt, grain, formula_error, delay, delay_is_nuisance })
+        Some(Self { columns, names, target, held, doubt, grain, formula_error, delay })
     }
 }
 
@@ -206,18 +215,19 @@ fn sharpness(prepared: &Prepared) -> Vec<f64> {
 }
 
 /// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
-const MOST_SOFTNESS: f64 = 2.0;
+const MOST_SOFTNESS: f64 = 1.5;
 
 /// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
-/// a nuisance beside the given columns. `None` where it takes more torque than friction has there, and stands for something else.
+/// a nuisance beside the given columns. `None` where it takes more torque than friction has there or the opposite, and stands for
+/// something else.
 fn softness(prepared: &Prepared, columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
     let state = &prepared.state;
     let width = WIDE_SIGN * state.sign_velocity;
     let soft = prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i]));
     let with_soft: Vec<Vec<f64>> = columns.iter().chain([&soft]).cloned().collect();
     let coefficients = least_squares(&with_soft, target, &prepared.open_runs())?;
-    let torque = coefficients.last()?.abs();
-    (torque <= MOST_SOFTNESS * state.base_friction_at(width).abs()).then_some(soft)
+    let share = coefficients.last()? / state.base_friction_at(width);
+    (0.0..=MOST_SOFTNESS).contains(&share).then_some(soft)
 }
 
 fn predict(

@@ -1,6 +1,6 @@
 //! One diagnosis from signals to outcome.
 
-use super::base::{Base, BaseKind};
+use super::base::{Base, BaseKind, Delay};
 use super::blocks::Lock;
 use super::candidates::Label;
 use super::command::Command;
@@ -191,7 +191,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
         rivals: last_round,
         cut_off_hz: prepared.filter.cut_off_hz,
         rows,
-        sampling_delay_s: if base.delay_is_nuisance { base.delay } else { 0.0 },
+        sampling_delay_s: if let Delay::OfSampling(delay) = base.delay { delay } else { 0.0 },
         put_back_s: 0.0,
         baseline_refit: baseline,
         improved_refit: improved,

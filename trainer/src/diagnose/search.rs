@@ -1,6 +1,6 @@
 //! Accepts one effect after the other while the evidence lasts, then cleans up backwards.
 
-use super::base::Base;
+use super::base::{Base, Delay};
 use super::candidates::{Design, Label, ridge_of};
 use super::channel::Channel;
 use super::conclude::Fitted;
@@ -70,7 +70,7 @@ impl<'a> Search<'a> {
         hypotheses: &'a [Box<dyn Hypothesis + Send>],
         settings: Settings,
     ) -> Self {
-        let left_out: &[EffectId] = if base.delay_is_nuisance { &[EffectId::TimeMisalignment] } else { &[] };
+        let left_out: &[EffectId] = if base.delay == Delay::Open { &[] } else { &[EffectId::TimeMisalignment] };
         let design = Design::new(prepared, hypotheses, left_out);
         let features = noise_features(prepared);
         Self { prepared, base, design, hypotheses, settings, features }
