@@ -27,6 +27,10 @@ fn all_right(seed: u64, is_wanted: impl Fn(&Case) -> bool, count: usize) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+fn named_are_right(seed: u64, names: &[&str]) {
+    all_right(seed, |case| names.contains(&case.name.as_str()), names.len());
+}
+
 /// A clipped sensor, a command beyond the limit, a late torque, strong one-off events, and play and wind-up of a gear with and
 /// without a second encoder were named elasticity, lag, losses or nothing.
 #[test]
@@ -47,7 +51,7 @@ fn faults_of_joint_and_measurement_have_their_names() {
         "elasticity-1",
         "elasticity-2",
     ];
-    all_right(SEED, |case| names.contains(&case.name.as_str()), names.len());
+    named_are_right(SEED, &names);
 }
 
 /// What a model holds beyond the speeds that it was fitted on was viscous friction, and the grain of an encoder of 18 bits an elastic
@@ -61,7 +65,7 @@ fn nothing_is_missing_from_a_model_of_the_same_joint() {
 #[test]
 fn what_happens_between_two_samples_has_no_name() {
     let names = ["control-3", "control-6", "control-9", "control-12", "control-15", "control-20"];
-    all_right(OTHER_SEED, |case| names.contains(&case.name.as_str()), names.len());
+    named_are_right(OTHER_SEED, &names);
 }
 
 /// What a formula of a large effect gets wrong in one place was a one-off event, and break-away of half the Coulomb friction was of
@@ -69,5 +73,5 @@ fn what_happens_between_two_samples_has_no_name() {
 #[test]
 fn beside_a_large_effect_a_small_one_counts_by_its_place_and_by_the_friction() {
     let names = ["warm_up-2", "contact-5", "pair-5", "pair-7"];
-    all_right(OTHER_SEED, |case| names.contains(&case.name.as_str()), names.len());
+    named_are_right(OTHER_SEED, &names);
 }

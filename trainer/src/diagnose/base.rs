@@ -91,8 +91,7 @@ impl Base {
         let mut columns = filtered_columns(prepared, signals, &raw);
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, signals, kind, &raw, &coefficients);
-        columns.extend(softness(prepared, &columns, &target));
-        let in_step = left_by_fit(&columns, &target, &runs)?;
+        add_softness(prepared, &mut columns, &target);
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
         columns.push(prepared.filtered(&rate));
@@ -100,11 +99,12 @@ impl Base {
         let late = with_delay[columns.len() - 1];
         let left = residual(&columns, &target, &with_delay);
         let grain = Grain::of(prepared, signals, &left);
-        let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
         let delay = if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
             Delay::OfSampling(late)
         } else {
             columns.pop();
+            let in_step = left_by_fit(&columns, &target, &runs)?;
+            let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
             if explained < answer_to_grain(prepared, signals) { Delay::OfGrain } else { Delay::Open }
         };
         let (held, doubt) = match &signals.reference {
@@ -139,8 +139,11 @@ pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: Ba
     let left: Vec<f64> = (-longest..=longest).map(left_at).collect();
     let best = (1..left.len() - 1).min_by(|&a, &b| left[a].total_cmp(&left[b]));
     let unshifted = left[longest as usize];
-    let needed = ((1.0 - CLEARLY_LESS) * unshifted).max(answer_to_grain(prepared, signals));
-    let Some(best) = best.filter(|&best| unshifted - left[best] > needed) else { return 0.0 };
+    let is_clear = |best: &usize| {
+        let explained = unshifted - left[*best];
+        explained > (1.0 - CLEARLY_LESS) * unshifted && explained > answer_to_grain(prepared, signals)
+    };
+    let Some(best) = best.filter(is_clear) else { return 0.0 };
     let [before, here, after] = [left[best - 1], left[best], left[best + 1]];
     let bend = before - 2.0 * here + after;
     let between = if bend > 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
@@ -218,16 +221,18 @@ fn sharpness(prepared: &Prepared) -> Vec<f64> {
 const MOST_SOFTNESS: f64 = 1.5;
 
 /// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
-/// a nuisance beside the given columns. `None` where it takes more torque than friction has there or the opposite, and stands for
+/// a nuisance beside the given columns, but where it takes more torque than friction has there or the opposite, and stands for
 /// something else.
-fn softness(prepared: &Prepared, columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
+fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
     let state = &prepared.state;
     let width = WIDE_SIGN * state.sign_velocity;
-    let soft = prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i]));
-    let with_soft: Vec<Vec<f64>> = columns.iter().chain([&soft]).cloned().collect();
-    let coefficients = least_squares(&with_soft, target, &prepared.open_runs())?;
-    let share = coefficients.last()? / state.base_friction_at(width);
-    (0.0..=MOST_SOFTNESS).contains(&share).then_some(soft)
+    columns.push(prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i])));
+    let torque =
+        least_squares(columns, target, &prepared.open_runs()).and_then(|coefficients| coefficients.last().copied());
+    let is_of_friction = |torque: f64| (0.0..=MOST_SOFTNESS).contains(&(torque / state.base_friction_at(width)));
+    if !torque.is_some_and(is_of_friction) {
+        columns.pop();
+    }
 }
 
 fn predict(

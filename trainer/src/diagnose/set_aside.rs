@@ -113,7 +113,6 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
     let mut minor = Vec::new();
     while let (Some(refitted), true) = (refit(search, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);
-        let share_of_events = share_at_the_time_of_events(search, &refitted);
         let share = |effect: EffectId| {
             // A structure without a name can take over what any effect explains: a name is weighed beside names.
             let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
@@ -123,11 +122,14 @@ pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
                 .zip(energy_left(search, &with))
                 .map(|(without, with)| (effect, (without - with) / removable))
         };
-        let is_minor = |(effect, share): &(EffectId, f64)| match effect {
-            // A one-off event is short: its share of all says nothing of its size.
-            EffectId::TransientEvent => share_of_events < MINOR_SHARE,
-            EffectId::Unknown => *share < MINOR_SHARE_WITHOUT_NAME && share * removable < small_energy,
-            _ => *share < MINOR_SHARE && share * removable < small_energy,
+        let is_minor = |(effect, share): &(EffectId, f64)| {
+            let is_little = |least: f64| *share < least && share * removable < small_energy;
+            match effect {
+                // A one-off event is short: its share of all says nothing of its size.
+                EffectId::TransientEvent => share_at_the_time_of_events(search, &refitted) < MINOR_SHARE,
+                EffectId::Unknown => is_little(MINOR_SHARE_WITHOUT_NAME),
+                _ => is_little(MINOR_SHARE),
+            }
         };
         let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(share).filter(is_minor).collect();
         let Some(taken) = take_least_in_favour(accepted, &small) else { break };
