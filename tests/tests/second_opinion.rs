@@ -68,6 +68,14 @@ fn what_happens_between_two_samples_has_no_name() {
     named_are_right(OTHER_SEED, &names);
 }
 
+/// In ten seconds of slow noise two long series took up so much of it that whatever is slow seemed more than noise.
+#[test]
+fn slow_noise_of_a_short_recording_has_no_name() {
+    for seed in [203, 205, 210] {
+        named_are_right(seed, &["control-17"]);
+    }
+}
+
 /// What a formula of a large effect gets wrong in one place was a one-off event, and break-away of half the Coulomb friction was of
 /// little account where a weight pulls.
 #[test]

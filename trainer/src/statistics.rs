@@ -1,4 +1,4 @@
-//! Order statistics that every room uses.
+//! Statistics that every room uses.
 
 /// Quantile of finite values by sorting; 0 when there are none.
 pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
@@ -8,6 +8,11 @@ pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     }
     let rank = ((sorted.len() - 1) as f64 * share).round() as usize;
     *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
+}
+
+/// Root of the mean square; 0 of none.
+pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// The mean; 0 of none.

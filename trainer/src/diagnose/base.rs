@@ -1,7 +1,7 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
 use super::grain::Grain;
-use super::linear::{dot, least_squares, left_by_fit, orthonormal, project_out, residual};
+use super::linear::{dot, least_squares, left_by_fit, orthonormal, project_out, residual, rows_in};
 use super::prepare::{Prepared, channel_filter, grain_through_inertia};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
@@ -152,8 +152,7 @@ pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: Ba
 
 /// Energy on open rows that a delay can explain by itself: the drive answers to the encoder's grain some samples later.
 fn answer_to_grain(prepared: &Prepared, signals: &Signals) -> f64 {
-    let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
-    rows as f64 * grain_through_inertia(prepared, signals).map_or(0.0, |grain| grain * grain)
+    rows_in(&prepared.open_runs()) as f64 * grain_through_inertia(prepared, signals).map_or(0.0, |grain| grain * grain)
 }
 
 /// Samples of delay up to which it is the sampling's own: the drive holds its torque over a sample while the position is read at one

@@ -112,8 +112,7 @@ impl Design {
         design.columns.par_iter_mut().for_each(|column| {
             let energy = super::linear::dot(column, column, &runs);
             if energy > 0.0 && energy.is_finite() {
-                let count: usize = runs.iter().map(|run| run.len()).sum();
-                let scale = (count as f64 / energy).sqrt();
+                let scale = (super::linear::rows_in(&runs) as f64 / energy).sqrt();
                 column.iter_mut().for_each(|v| *v *= scale);
             } else {
                 column.fill(0.0);

@@ -2,7 +2,7 @@
 
 use super::candidates::{Label, ridge_of};
 use super::covariance;
-use super::linear::{dot, least_squares, residual, weighted};
+use super::linear::{dot, least_squares, residual, rows_in, weighted};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search, others};
@@ -102,7 +102,7 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     let mut solution = bench.solve(&ridge)?;
     let white = residual(&bench.base, &bench.target, &solution);
     let mut left = residual(&columns, &search.base.target, &solution);
-    let rows: usize = runs.iter().map(|run| run.len()).sum();
+    let rows = rows_in(&runs);
     let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > WHITENING_COSTS * noise.rms;
     if plain {
         solution = least_squares(&columns, &search.base.target, &runs)?;

@@ -1,6 +1,6 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
-use super::linear::{Factored, dot, gram, ridged_gram, solve_symmetric, unit_diagonal};
+use super::linear::{Factored, dot, gram, ridged_gram, rows_in, solve_symmetric, unit_diagonal};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -65,7 +65,7 @@ impl Bench {
                 base: gram(&base, runs),
                 base_target: DVector::from_iterator(base.len(), base.iter().map(|c| dot(c, &target, runs))),
                 target: dot(&target, &target, runs),
-                rows: runs.iter().map(|run| run.len() as f64).sum(),
+                rows: rows_in(runs) as f64,
             })
             .collect();
         Self { base, target, blocks, sums }

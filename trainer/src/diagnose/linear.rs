@@ -8,6 +8,11 @@ pub(crate) fn dot(a: &[f64], b: &[f64], runs: &[Range<usize>]) -> f64 {
     runs.iter().map(|run| dot_slices(&a[run.clone()], &b[run.clone()])).sum()
 }
 
+/// Rows in runs.
+pub(crate) fn rows_in(runs: &[Range<usize>]) -> usize {
+    runs.iter().map(Range::len).sum()
+}
+
 /// Sum of columns weighted by coefficients.
 pub(crate) fn weighted(columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<f64> {
     let mut sum = vec![0.0; columns.first().map_or(0, Vec::len)];

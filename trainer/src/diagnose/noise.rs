@@ -2,6 +2,7 @@
 //!
 //! e = A(L)^-1 sigma(x) w with the order of A by Akaike's information criterion and log sigma^2 linear in the state.
 
+use super::linear::rows_in;
 use super::prepare::Prepared;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -50,7 +51,7 @@ impl Noise {
         let mut innovation = residual.to_vec();
         colour.remove(&mut innovation, runs);
         let deviation = deviation(&innovation, runs, features);
-        let count: usize = runs.iter().map(|run| run.len()).sum();
+        let count = rows_in(runs);
         let energy: f64 = runs.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
         Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt() }
     }
@@ -67,7 +68,7 @@ impl Noise {
 impl Colour {
     /// Burg's method over all runs (Burg 1975): always stable, and not blurred where the runs are short, as the autocovariance is.
     fn fit(residual: &[f64], runs: &[Range<usize>]) -> Self {
-        let count: usize = runs.iter().map(|run| run.len()).sum();
+        let count = rows_in(runs);
         let (mut forward, mut backward) = (residual.to_vec(), residual.to_vec());
         let mut predictors = vec![Vec::new()];
         let mut errors = vec![1.0];

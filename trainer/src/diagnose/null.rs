@@ -1,7 +1,7 @@
 //! What the statistics do when nothing is missing: draws of moving blocks of the residual with random signs and places,
 //! the tail of every hypothesis' statistic, and the family-wise probability (Westfall and Young 1993).
 
-use super::linear::{dot, project_out};
+use super::linear::{dot, project_out, rows_in};
 use super::random::uniform;
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
@@ -72,7 +72,7 @@ pub(crate) fn chi_square_surprise(statistic: f64, degrees: usize) -> f64 {
 impl NullDraws {
     /// Draws the null `count` times. `residual` is whitened, what the base and the clear candidates leave.
     pub(crate) fn draw(groups: &[NullGroup], residual: &[f64], runs: &[Range<usize>], count: usize, seed: u64) -> Self {
-        let rows: usize = runs.iter().map(|run| run.len()).sum();
+        let rows = rows_in(runs);
         let gather =
             |column: &[f64]| -> Vec<f64> { runs.iter().flat_map(|run| column[run.clone()].iter().copied()).collect() };
         let pool = gather(residual);

@@ -3,7 +3,7 @@
 use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
-use super::linear::{least_squares, left_by_fit};
+use super::linear::{dot, least_squares, left_by_fit, rows_in};
 use super::signals::Signals;
 use super::twist::told_by_twist;
 use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};
@@ -285,9 +285,7 @@ fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
     let Some(grain) = grain_through_inertia(prepared, signals) else { return true };
     let friction = prepared.filtered(&prepared.friction_torque);
     let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
-    let count: usize = rows.iter().map(|run| run.len()).sum();
-    let energy: f64 = rows.iter().flat_map(|run| &left[run.clone()]).map(|e| e * e).sum();
-    let deviation = (energy / count.max(1) as f64).sqrt();
+    let deviation = (dot(&left, &left, &rows) / rows_in(&rows).max(1) as f64).sqrt();
     grain < ENCODER_SHARE * deviation
 }
 

@@ -258,12 +258,18 @@ fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -
 /// it would else leave its edges to the noise.
 const DOMINANT_NATS_A_ROW: f64 = 0.1;
 
+/// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
+/// whatever is slow seems more than that.
+const ROWS_PER_COEFFICIENT: f64 = 150.0;
+
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
 /// dominant event.
 fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
-        let criteria = tested.iter().enumerate().filter_map(|(i, v)| v.as_ref().map(|v| (v.criterion(rows), i)));
+        let told = |v: &&VariantEvidence| v.degrees as f64 * ROWS_PER_COEFFICIENT <= rows;
+        let tested = tested.iter().enumerate().filter_map(|(i, v)| v.as_ref().filter(told).map(|v| (v, i)));
+        let criteria = tested.map(|(v, i)| (v.criterion(rows), i));
         let best = criteria.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > least);
         gains.extend(best.map(|(gain, variant)| (gain, group, variant)));
     }

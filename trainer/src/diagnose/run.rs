@@ -8,7 +8,7 @@ use super::conclude::{Refit, polish, refit};
 use super::delay::diagnose_in_step;
 use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
 use super::health::{HealthNote, coarse_position, examine, examine_as_recorded, unexplained_event};
-use super::linear::weighted;
+use super::linear::{rows_in, weighted};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
 use super::prove::{prove, rest};
@@ -137,7 +137,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let mut health = as_recorded.to_vec();
     health.extend(examine(signals));
     health.extend(coarse_position(signals, &prepared));
-    let rows: usize = prepared.open_runs().iter().map(|run| run.len()).sum();
+    let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
         return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });
     }

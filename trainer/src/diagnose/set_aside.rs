@@ -5,6 +5,7 @@ use super::prepare::Prepared;
 use super::prove::prove_alone;
 use super::search::{Accepted, Search};
 use crate::physics::EffectId;
+use crate::statistics::root_mean_square;
 
 /// Share of the removable error below which an effect beside others is minor, if it is also small against the torque; a structure
 /// without a name takes up more of the error of a formula.
@@ -22,20 +23,16 @@ const NEGLIGIBLE_TORQUE: f64 = 7e-4;
 
 /// Torque (root mean square) that matters in a recording.
 pub(super) fn least_torque(search: &Search) -> f64 {
-    NEGLIGIBLE_TORQUE * mean_square(&search.prepared.filtered(&search.prepared.torque)).sqrt()
+    NEGLIGIBLE_TORQUE * root_mean_square(&search.prepared.filtered(&search.prepared.torque))
 }
 
-/// Mean square of the torque beside a known rigid body: weight and inertia can be many times what friction is.
-fn mean_square_beside_rigid_body(search: &Search) -> f64 {
+/// Torque (root mean square) beside a known rigid body: weight and inertia can be many times what friction is.
+fn torque_beside_rigid_body(search: &Search) -> f64 {
     let Prepared { torque, state, .. } = search.prepared;
     match &state.rigid_body {
-        Some(body) => mean_square(&search.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
-        None => mean_square(&search.prepared.filtered(torque)),
+        Some(body) => root_mean_square(&search.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
+        None => root_mean_square(&search.prepared.filtered(torque)),
     }
-}
-
-fn mean_square(series: &[f64]) -> f64 {
-    series.iter().map(|value| value * value).sum::<f64>() / series.len().max(1) as f64
 }
 
 /// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for it, but may make them
@@ -109,7 +106,7 @@ fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
 /// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
 pub(super) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let small_energy = MINOR_TORQUE * MINOR_TORQUE * mean_square_beside_rigid_body(search);
+    let small_energy = (MINOR_TORQUE * torque_beside_rigid_body(search)).powi(2);
     let mut minor = Vec::new();
     while let (Some(refitted), true) = (refit(search, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);

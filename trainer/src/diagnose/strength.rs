@@ -3,7 +3,7 @@
 use super::base::{Base, BaseKind};
 use super::blocks::Lock;
 use super::evidence::Bench;
-use super::linear::{dot, left_by_fit, residual};
+use super::linear::{dot, left_by_fit, residual, rows_in};
 use super::noise::{Noise, noise_features};
 use super::prepare::Prepared;
 use super::signals::Signals;
@@ -44,7 +44,7 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let rest_without = residual(&base.columns, &bare, &without.solve(&[])?);
     let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
-    let rows: usize = runs.iter().map(|run| run.len()).sum();
+    let rows = rows_in(&runs);
     let noise = prepared.filtered(noise);
     let noise_rms = (dot(&noise, &noise, &runs) / rows as f64).sqrt();
     Some(Strength {

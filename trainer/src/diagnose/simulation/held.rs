@@ -9,8 +9,9 @@ use super::super::random::normal;
 use super::super::reference::Reference;
 use super::super::run::{Options, diagnose};
 use super::super::signals::Signals;
-use super::{InverseLaw, root_mean_square};
+use super::InverseLaw;
 use crate::physics::{EffectId, JointState, Shape, catalogue};
+use crate::statistics::root_mean_square;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 

@@ -2,6 +2,7 @@
 
 use super::super::signals::Signals;
 use crate::physics::JointState;
+use crate::statistics::root_mean_square;
 
 /// Largest difference of the positions, over their travel, at which recording and simulation are of one motion.
 const ONE_MOTION: f64 = 0.02;
@@ -49,8 +50,11 @@ impl Left {
             differences.push(between(&self.position) - position);
             torque.push(between(&self.torque));
         }
+        if differences.is_empty() {
+            return None;
+        }
         let (low, high) = state.travel();
-        let difference = super::root_mean_square(&differences);
+        let difference = root_mean_square(&differences);
         let share = differences.len() as f64 / torque.len() as f64;
         (difference <= ONE_MOTION * (high - low)).then_some(Met { torque, share })
     }

@@ -14,6 +14,7 @@ use super::prepare::Prepared;
 use super::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
+use crate::statistics::root_mean_square;
 use held::{HeldEffects, held_by};
 use left::Left;
 use rest::{Rest, rest_of};
@@ -124,10 +125,6 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
     let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
     law.doubt = law.doubts(prepared, &rest, &noise);
     Ok(law)
-}
-
-fn root_mean_square(series: &[f64]) -> f64 {
-    (series.iter().map(|value| value * value).sum::<f64>() / series.len() as f64).sqrt()
 }
 
 fn filtered_with_nuisances(prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {

@@ -6,8 +6,8 @@ use super::super::linear::left_by_fit;
 use super::super::noise::Noise;
 use super::super::prepare::{DEVIATION_PER_MEDIAN, Prepared};
 use super::super::signals::Signals;
-use super::{InverseLaw, root_mean_square};
-use crate::statistics::quantile;
+use super::InverseLaw;
+use crate::statistics::{quantile, root_mean_square};
 
 /// What a law leaves of a recording, behind its filter.
 pub(super) struct Rest {
