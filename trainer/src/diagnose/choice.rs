@@ -32,7 +32,8 @@ const UNKNOWN_LEAD_NATS: f64 = 12.0;
 const YIELDING_LEAD_NATS: f64 = 8.0;
 
 impl Round<'_, '_> {
-    /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing.
+    /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing; nothing too where that set holds nearly
+    /// everything.
     pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
         let settings = &self.search.settings;
         // Locked rows have nothing to say of a one-off event.
@@ -83,6 +84,9 @@ impl Round<'_, '_> {
             } else if distance < 0.0 || !self.contains(rival, best, NEARLY_ALL) {
                 rivals.push((effect, distance));
             }
+        }
+        if rivals.len() > settings.most_rivals && !self.is_proved(best) {
+            return None;
         }
         Some(Accepted {
             label: best.label.clone(),

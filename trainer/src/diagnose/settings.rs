@@ -23,6 +23,9 @@ pub struct Settings {
     pub largest_locked_loss: f64,
     /// Margin in nats within which rivals cannot be told apart.
     pub ambiguity_margin: f64,
+    /// Largest number of rivals that cannot be told from an effect which the open rows do not prove by themselves: what nearly
+    /// everything could stand for is no finding.
+    pub most_rivals: usize,
     /// Null draws a round.
     pub null_draws: usize,
     /// Largest number of accepted effects.
@@ -42,6 +45,7 @@ impl Default for Settings {
             unconfirmed_score: 6.0,
             largest_locked_loss: 5.0,
             ambiguity_margin: 3.0,
+            most_rivals: 12,
             null_draws: 200,
             most_findings: 4,
             seed: 0,
