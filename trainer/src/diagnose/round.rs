@@ -254,29 +254,33 @@ fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -
     (white, bench, variants)
 }
 
-/// Nats for each row from which a one-off event explains a fifth of all that the base leaves: slow functions that take up parts of
-/// it would else leave its edges to the noise.
+/// Nats for each row from which a candidate explains a fifth of all that the base leaves. Slow functions that take up parts of a
+/// one-off event of that size would else leave its edges to the noise.
 const DOMINANT_NATS_A_ROW: f64 = 0.1;
 
 /// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
-/// whatever is slow seems more than that.
+/// whatever is slow seems more than that, unless they are dominant.
 const ROWS_PER_COEFFICIENT: f64 = 150.0;
 
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
 /// dominant event.
 fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
+    let is_dominant = |gain: f64| gain > DOMINANT_NATS_A_ROW * rows;
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
-        let told = |v: &&VariantEvidence| v.degrees as f64 * ROWS_PER_COEFFICIENT <= rows;
-        let tested = tested.iter().enumerate().filter_map(|(i, v)| v.as_ref().filter(told).map(|v| (v, i)));
-        let criteria = tested.map(|(v, i)| (v.criterion(rows), i));
+        let criterion = |(i, v): (usize, &Option<VariantEvidence>)| {
+            let v = v.as_ref()?;
+            let gain = v.criterion(rows);
+            (is_dominant(gain) || v.degrees as f64 * ROWS_PER_COEFFICIENT <= rows).then_some((gain, i))
+        };
+        let criteria = tested.iter().enumerate().filter_map(criterion);
         let best = criteria.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > least);
         gains.extend(best.map(|(gain, variant)| (gain, group, variant)));
     }
     gains.sort_by(|a, b| b.0.total_cmp(&a.0));
     let is_dominant_event = |(gain, group, _): &&(f64, usize, usize)| {
         let event = Label::Named(EffectId::TransientEvent);
-        *gain > DOMINANT_NATS_A_ROW * rows && search.design.groups[*group].label == event
+        is_dominant(*gain) && search.design.groups[*group].label == event
     };
     gains
         .iter()
