@@ -1,6 +1,7 @@
 //! Which rows are worked on, in which blocks, and which blocks are locked away.
 
 use super::filter::ZeroPhase;
+use super::linear::rows_in;
 use super::signals::Signals;
 use crate::physics::JointState;
 use std::ops::Range;
@@ -43,7 +44,7 @@ pub(super) fn rows_and_blocks(
     let step = ((1.0 / (ROWS_PER_CUT_OFF * filter.cut_off_hz * state.period)).round() as usize).max(1);
     let reach = filter.reach();
     let pieces = pieces(state, reach, step);
-    let duration: usize = pieces.iter().map(Range::len).sum();
+    let duration = rows_in(&pieces);
     let mut rows = Vec::new();
     let mut blocks = Vec::new();
     let mut before = 0;
@@ -165,7 +166,7 @@ fn pieces(state: &JointState, reach: usize, step: usize) -> Vec<Range<usize>> {
     if inner.len() >= LEAST_BLOCKS {
         return inner;
     }
-    let total: usize = inner.iter().map(Range::len).sum();
+    let total = rows_in(&inner);
     let length = (total / (LEAST_BLOCKS + 2)).max(1);
     inner
         .into_iter()

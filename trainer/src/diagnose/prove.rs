@@ -1,7 +1,7 @@
 //! The proof: rows locked away from all fitting and naming are opened at the end. They may withdraw a finding, and nothing else.
 
 use super::conclude::{Refit, refit};
-use super::linear::{dot, residual};
+use super::linear::{dot, residual, rows_in};
 use super::search::{Accepted, Search, others};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
@@ -33,7 +33,7 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     let after = rest(search, improved);
     let energy = |series: &[f64], runs: &[Range<usize>]| dot(series, series, runs);
     let pairs: Vec<(f64, f64)> = blocks.iter().map(|runs| (energy(&before, runs), energy(&after, runs))).collect();
-    let rows: usize = blocks.iter().flat_map(|runs| runs.iter()).map(Range::len).sum();
+    let rows: usize = blocks.iter().map(|runs| rows_in(runs)).sum();
     if rows == 0 {
         return None;
     }

@@ -260,7 +260,7 @@ const DOMINANT_NATS_A_ROW: f64 = 0.1;
 
 /// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
 /// whatever is slow seems more than that, unless they are dominant.
-const ROWS_PER_COEFFICIENT: f64 = 150.0;
+const ROWS_PER_COEFFICIENT_BESIDE_NOISE: f64 = 150.0;
 
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
 /// dominant event.
@@ -271,7 +271,7 @@ fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Ve
         let criterion = |(i, v): (usize, &Option<VariantEvidence>)| {
             let v = v.as_ref()?;
             let gain = v.criterion(rows);
-            (is_dominant(gain) || v.degrees as f64 * ROWS_PER_COEFFICIENT <= rows).then_some((gain, i))
+            (is_dominant(gain) || v.degrees as f64 * ROWS_PER_COEFFICIENT_BESIDE_NOISE <= rows).then_some((gain, i))
         };
         let criteria = tested.iter().enumerate().filter_map(criterion);
         let best = criteria.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > least);
