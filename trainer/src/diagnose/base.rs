@@ -5,6 +5,7 @@ use super::linear::{dot, least_squares, left_by_fit, orthonormal, project_out, r
 use super::prepare::{Prepared, channel_filter, grain_through_inertia};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
+use super::turnover::{WIDE_SIGN, add_softness, fit_width, sharpness};
 use crate::physics::{EffectId, JointState};
 
 /// Which static friction model the recording is compared with.
@@ -65,12 +66,16 @@ pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed
     }
 }
 
-/// Hat functions over speed as a share of the top speed, linear between knots by a square law: dense at low speed, where
-/// friction bends, and exact for Coulomb and viscous friction. The last two continue beyond the top speed, which only most
-/// samples stay below.
+/// Place of a knot over speed as a share of the top speed, by a square law: dense at low speed, where friction bends.
+pub(super) fn speed_knot(j: usize, knots: usize) -> f64 {
+    (j as f64 / (knots - 1) as f64).powi(2)
+}
+
+/// Hat functions over speed as a share of the top speed, linear between knots, so exact for Coulomb and viscous friction. The last
+/// two continue beyond the top speed, which only most samples stay below.
 pub(super) fn speed_hats(share: f64, knots: usize) -> impl Iterator<Item = f64> {
     let last = knots - 1;
-    let knot = move |j: usize| (j as f64 / last as f64).powi(2);
+    let knot = move |j: usize| speed_knot(j, knots);
     let after = ((share.sqrt() * last as f64) as usize + 1).min(last);
     let rise = (share - knot(after - 1)) / (knot(after) - knot(after - 1));
     (0..knots).map(move |j| match after.checked_sub(j) {
@@ -84,6 +89,7 @@ impl Base {
     /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, signals: &Signals, kind: BaseKind) -> Option<Self> {
+        fit_width(prepared, signals, kind);
         let raw = raw_columns(&prepared.state, signals, kind);
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
         let target = prepared.filtered(&prepared.friction_torque);
@@ -119,7 +125,9 @@ impl Base {
 
 /// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole
 /// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more.
-pub(super) fn delay_by_shifting(prepared: &Prepared, signals: &Signals, kind: BaseKind) -> f64 {
+pub(super) fn delay_by_shifting(mut prepared: Prepared, signals: &Signals, kind: BaseKind) -> f64 {
+    fit_width(&mut prepared, signals, kind);
+    let prepared = &prepared;
     let state = &prepared.state;
     let raw = raw_columns(state, signals, kind);
     let columns = filtered_columns(prepared, signals, &raw);
@@ -164,7 +172,7 @@ const LONGEST_DELAY_S: f64 = 0.03;
 const CLEARLY_LESS: f64 = 0.98;
 
 /// The columns of the parameters and the nuisances behind the common filter.
-fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
+pub(super) fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
     columns.push(sharpness(prepared));
@@ -174,7 +182,7 @@ fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str
     columns
 }
 
-fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'static str, Vec<f64>)> {
+pub(super) fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'static str, Vec<f64>)> {
     let top_speed = state.top_speed();
     let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
     let count = friction_basis(kind, 1.0, 1.0, top_speed).len();
@@ -194,9 +202,6 @@ fn raw_columns(state: &JointState, signals: &Signals, kind: BaseKind) -> Vec<(&'
     columns
 }
 
-/// Width of a softer sign over that of the smoothed one.
-const WIDE_SIGN: f64 = 3.0;
-
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
 pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
@@ -207,31 +212,6 @@ pub(super) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let wide_sign = state.averaged_sign(&state.velocity, WIDE_SIGN * state.sign_velocity);
     let width = state.map(|i| wide_sign[i] - state.sign[i]);
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
-}
-
-/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
-/// between its sign and the smoothed one is a nuisance too.
-fn sharpness(prepared: &Prepared) -> Vec<f64> {
-    let state = &prepared.state;
-    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
-}
-
-/// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
-const MOST_SOFTNESS: f64 = 1.5;
-
-/// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
-/// a nuisance beside the given columns, but where it takes more torque than friction has there or the opposite, and stands for
-/// something else.
-fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
-    let state = &prepared.state;
-    let width = WIDE_SIGN * state.sign_velocity;
-    columns.push(prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i])));
-    let torque =
-        least_squares(columns, target, &prepared.open_runs()).and_then(|coefficients| coefficients.last().copied());
-    let is_of_friction = |torque: f64| (0.0..=MOST_SOFTNESS).contains(&(torque / state.base_friction_at(width)));
-    if !torque.is_some_and(is_of_friction) {
-        columns.pop();
-    }
 }
 
 fn predict(
@@ -289,7 +269,7 @@ mod tests {
                 rotary: true,
                 ..Signals::default()
             };
-            let delay = delay_by_shifting(&Prepared::new(&signals, Lock::Nothing), &signals, BaseKind::CoulombViscous);
+            let delay = delay_by_shifting(Prepared::new(&signals, Lock::Nothing), &signals, BaseKind::CoulombViscous);
             assert!((delay / period - samples).abs() < 0.2, "{} of {samples} samples", delay / period);
         }
     }

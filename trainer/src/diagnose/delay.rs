@@ -25,7 +25,7 @@ type Diagnose<'d> = &'d dyn Fn(&Signals) -> Result<Diagnosis, Refusal>;
 
 /// Diagnoses signals with their torque put back to the time of the motion.
 pub(super) fn diagnose_in_step(signals: &Signals, options: &Options, diagnose: Diagnose) -> Result<Diagnosis, Refusal> {
-    let shift = delay_by_shifting(&Prepared::new(signals, options.lock), signals, options.base);
+    let shift = delay_by_shifting(Prepared::new(signals, options.lock), signals, options.base);
     let samples = shift / signals.period;
     if samples.abs() <= LONGEST_SAMPLING_DELAY {
         let is_felt = samples.abs() > LEAST_SAMPLING_DELAY;

@@ -1,6 +1,8 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
-use super::linear::{Factored, dot, gram, ridged_gram, rows_in, solve_symmetric, unit_diagonal};
+use super::linear::{
+    Factored, dot, gram, orthonormal, project_out, ridged_gram, rows_in, solve_symmetric, unit_diagonal,
+};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -89,6 +91,21 @@ impl Bench {
     /// Evidence of the base with the given whitened columns; `None` where they depend on the base.
     pub fn evidence(&self, columns: &[Vec<f64>]) -> Option<VariantEvidence> {
         self.weigh(columns, &[], true)
+    }
+
+    /// Drops the whitened columns that the base and those before them hold.
+    pub fn retain_independent(&self, columns: &mut Vec<Vec<f64>>) {
+        let runs = self.runs();
+        let mut held = orthonormal(&self.base, &runs);
+        columns.retain(|column| {
+            let mut free = column.clone();
+            project_out(&mut free, &held, &runs);
+            let share = dot(&free, &free, &runs) / dot(column, column, &runs);
+            if share > LEAST_SHARE {
+                held.extend(orthonormal(&[free], &runs));
+            }
+            share > LEAST_SHARE
+        });
     }
 
     /// As [`Self::evidence`], with the held-out folds only where asked for. `ridge` is the prior precision of each
@@ -191,9 +208,11 @@ fn explained(normal: &DMatrix<f64>, right: &DVector<f64>) -> Option<f64> {
     solve_symmetric(normal, right).map(|solution| solution.dot(right))
 }
 
+/// Share of its energy that a candidate column keeps beside the base and the columns before, at least.
+const LEAST_SHARE: f64 = 1e-5;
+
 /// Whether each candidate column keeps a share of its energy that the base (and the columns before) cannot hold.
 fn independent(normal: &DMatrix<f64>, base: usize) -> bool {
-    const LEAST_SHARE: f64 = 1e-5;
     let size = normal.nrows();
     let scale: Vec<f64> = normal.diagonal().iter().map(|d| d.max(0.0).sqrt()).collect();
     if scale.iter().skip(base).any(|s| *s <= 0.0) {

@@ -52,6 +52,7 @@ mod signals;
 pub mod simulation;
 mod strength;
 mod traces;
+mod turnover;
 mod twist;
 mod unit_or_sign;
 

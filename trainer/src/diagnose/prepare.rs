@@ -116,8 +116,8 @@ impl Prepared {
             rotary: signals.rotary,
             resolution: signals.position_resolution,
         };
-        state.sign_velocity = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed()).max(f64::MIN_POSITIVE);
-        state.sign = state.averaged_sign(&state.velocity, state.sign_velocity);
+        let least_width = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed());
+        state.turn_over_within(least_width.max(f64::MIN_POSITIVE));
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
         state.gravity = match &signals.load {

@@ -30,7 +30,7 @@ pub(crate) fn refine(
 
 /// Climbs a statistic by a shrinking pattern search (Hooke and Jeeves 1961); derivative-free because some regressors
 /// (windows, bristles) are not smooth in their shape.
-pub(super) fn climb(start: &[f64], free: &[Movable], statistic: impl Fn(&[f64]) -> Option<f64>) -> Shape {
+pub(super) fn climb(start: &[f64], free: &[Movable], mut statistic: impl FnMut(&[f64]) -> Option<f64>) -> Shape {
     let mut best = start.to_vec();
     if free.is_empty() {
         return best;

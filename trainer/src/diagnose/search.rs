@@ -256,9 +256,13 @@ impl<'a> Search<'a> {
                 // What only the locked rows can still confirm displaces nothing that the open rows have proved.
                 let counts = |other: &Accepted| self.is_proved(other) || !self.is_proved(&accepted[index]);
                 let bench = self.bench(self.base_with(others(&accepted, index).filter(|other| counts(other))), noise);
-                let columns =
+                let mut columns =
                     self.whitened(&self.filtered_columns(&accepted[index].label, &accepted[index].shape), noise);
                 let ridge = ridge_of(&accepted[index].label, &accepted[index].shape);
+                if ridge.is_empty() {
+                    // Of a series the others may hold one term, which says nothing of the rest.
+                    bench.retain_independent(&mut columns);
+                }
                 let gain = bench
                     .alone()
                     .zip(bench.weigh(&columns, &ridge, true))

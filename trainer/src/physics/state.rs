@@ -230,6 +230,12 @@ impl JointState {
         sign
     }
 
+    /// Lets the smoothed sign turn below another velocity.
+    pub(crate) fn turn_over_within(&mut self, velocity: f64) {
+        self.sign_velocity = velocity;
+        self.sign = self.averaged_sign(&self.velocity, velocity);
+    }
+
     /// One value a sample.
     pub fn map(&self, torque: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.len()).map(torque).collect()

@@ -1,6 +1,7 @@
 //! What a simulator computes: its inverse law, learned from its recording as a function of the state, so that neither clock
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
+mod bends;
 mod held;
 mod left;
 mod rest;
@@ -15,6 +16,7 @@ use super::reference::{Outside, Reference, coulomb_and_viscous, tabulated_veloci
 use super::signals::Signals;
 use crate::physics::{EffectId, JointState};
 use crate::statistics::root_mean_square;
+use bends::Bends;
 use held::{HeldEffects, held_by};
 use left::Left;
 use rest::{Rest, rest_of};
@@ -137,13 +139,20 @@ impl InverseLaw {
     fn fitted(mut self, prepared: &Prepared) -> Option<(Self, Vec<f64>)> {
         let state = &prepared.state;
         let raw = self.columns(state);
-        let runs = prepared.open_runs();
         let target = prepared.filtered(&prepared.torque);
         let mut columns = filtered_with_nuisances(prepared, &raw);
-        let mut coefficients = least_squares(&columns, &target, &runs)?;
+        let roughly = least_squares(&columns, &target, &prepared.open_runs())?;
+        let noise = root_mean_square(&residual(&columns, &target, &roughly));
+        let bends = Bends::of(&roughly[..self.knots]);
+        let fit = |columns: &[Vec<f64>]| {
+            let (mut columns, mut target, mut runs) = (columns.to_vec(), target.clone(), prepared.open_runs());
+            runs.push(bends.put_behind(&mut columns, &mut target, noise));
+            least_squares(&columns, &target, &runs)
+        };
+        let mut coefficients = fit(&columns)?;
         let late = state.rate_of(&weighted(&raw, &coefficients[..raw.len()]));
         columns.push(prepared.filtered(&late));
-        coefficients = least_squares(&columns, &target, &runs)?;
+        coefficients = fit(&columns)?;
         let rest = residual(&columns, &target, &coefficients);
         self.rmse = root_mean_square(&rest);
         coefficients.truncate(raw.len());
@@ -154,14 +163,16 @@ impl InverseLaw {
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation: the axes of their
     /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
     fn doubts(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
-        let runs = prepared.open_runs();
+        let mut runs = prepared.open_runs();
         let white = |mut column: Vec<f64>| {
             noise.whiten(&mut column, &runs);
             column
         };
         let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
-        let columns: Vec<Vec<f64>> = columns.into_iter().map(white).collect();
-        let Some(all) = of_whitened(&columns, &white(rest.to_vec()), &[], &runs) else { return Vec::new() };
+        let mut columns: Vec<Vec<f64>> = columns.into_iter().map(white).collect();
+        let mut rest = white(rest.to_vec());
+        runs.push(Bends::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
+        let Some(all) = of_whitened(&columns, &rest, &[], &runs) else { return Vec::new() };
         let width = self.coefficients.len();
         let axes = all.view((0, 0), (width, width)).clone_owned().symmetric_eigen();
         let deviations = axes.eigenvalues.iter().map(|variance| variance.max(0.0).sqrt());

@@ -1,0 +1,42 @@
+//! Friction between knots that no row tells apart: it bends little there.
+
+use super::super::base::speed_knot;
+use crate::statistics::quantile;
+use std::ops::Range;
+
+/// Deviation of a knot from the straight line between its neighbours that is expected beforehand, over Coulomb friction.
+const EXPECTED_BEND: f64 = 0.1;
+
+/// Expected bends of a curve over its knots, each a row beside those of a recording: known to be zero within [`EXPECTED_BEND`].
+#[derive(Clone, Debug)]
+pub(super) struct Bends {
+    /// Weight of every knot in the bend at each inner one.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Bends {
+    /// Bends of a curve over speed whose torque at the knots is about `torque`.
+    pub fn of(torque: &[f64]) -> Self {
+        let knots: Vec<f64> = (0..torque.len()).map(|j| speed_knot(j, torque.len())).collect();
+        let size = quantile(torque.iter().map(|value| value.abs()), 0.5);
+        let weight = 1.0 / (EXPECTED_BEND * size).max(f64::MIN_POSITIVE);
+        let rows = (1..knots.len() - 1).map(|j| {
+            let share = (knots[j] - knots[j - 1]) / (knots[j + 1] - knots[j - 1]);
+            let mut row = vec![0.0; knots.len()];
+            row[j - 1..=j + 1].copy_from_slice(&[-(1.0 - share) * weight, weight, -share * weight]);
+            row
+        });
+        Self { rows: rows.collect() }
+    }
+
+    /// Puts the rows behind those of columns, of which the first are the knots', and of what they are fitted to; `noise` is the
+    /// deviation of a row of these. Returns where they are.
+    pub fn put_behind(&self, columns: &mut [Vec<f64>], target: &mut Vec<f64>, noise: f64) -> Range<usize> {
+        for (place, column) in columns.iter_mut().enumerate() {
+            column.extend(self.rows.iter().map(|row| noise * row.get(place).unwrap_or(&0.0)));
+        }
+        let begin = target.len();
+        target.extend(vec![0.0; self.rows.len()]);
+        begin..target.len()
+    }
+}

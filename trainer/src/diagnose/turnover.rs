@@ -1,0 +1,73 @@
+//! How sharply friction turns over with the direction: the width of the smoothed sign, and what of it stays unknown.
+
+use super::base::{BaseKind, filtered_columns, raw_columns};
+use super::linear::{dot, left_by_fit, least_squares};
+use super::prepare::Prepared;
+use super::refine::{Movable, climb};
+use super::signals::Signals;
+
+/// Width of a softer sign over that of the smoothed one.
+pub(super) const WIDE_SIGN: f64 = 3.0;
+
+/// Widths of the smoothed sign that are tried, over the least.
+const WIDTHS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
+/// The widest, over the least.
+const WIDEST: f64 = 30.0;
+
+/// Share of the energy that the least width leaves, up to which a wider one is the joint's own: less would be left of what presliding
+/// or the Stribeck effect is taken for a softer sign.
+const OWN_WIDTH: f64 = 0.01;
+/// The same up to which the width is sought closer.
+const WORTH_A_CLOSER_LOOK: f64 = 0.1;
+
+/// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
+const MOST_SOFTNESS: f64 = 1.5;
+
+/// Widens the smoothed sign where friction turns over so softly that next to nothing else is wrong with the base.
+pub(super) fn fit_width(prepared: &mut Prepared, signals: &Signals, kind: BaseKind) {
+    if kind == BaseKind::Reference {
+        return;
+    }
+    let least = prepared.state.sign_velocity;
+    let mut left_at = |over_least: f64| {
+        prepared.state.turn_over_within(over_least * least);
+        let columns = filtered_columns(prepared, signals, &raw_columns(&prepared.state, signals, kind));
+        let (target, runs) = (prepared.filtered(&prepared.friction_torque), prepared.open_runs());
+        left_by_fit(&columns, &target, &runs).map_or(f64::INFINITY, |left| dot(&left, &left, &runs))
+    };
+    let unwidened = left_at(1.0);
+    let tried = WIDTHS.map(|width| (width, left_at(width)));
+    let mut own = 1.0;
+    if let Some((nearest, left)) = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+        && left < WORTH_A_CLOSER_LOOK * unwidened
+    {
+        let free = Movable { index: 0, step: 0.5, low: 0.0, high: WIDEST.ln() };
+        let width = climb(&[f64::ln(nearest)], &[free], |width| Some(-left_at(width[0].exp())))[0].exp();
+        if left_at(width) < OWN_WIDTH * unwidened {
+            own = width;
+        }
+    }
+    prepared.state.turn_over_within(own * least);
+}
+
+/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
+/// between its sign and the smoothed one is a nuisance too.
+pub(super) fn sharpness(prepared: &Prepared) -> Vec<f64> {
+    let state = &prepared.state;
+    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
+}
+
+/// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
+/// a nuisance beside the given columns, but where it takes more torque than friction has there or the opposite, and stands for
+/// something else.
+pub(super) fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
+    let state = &prepared.state;
+    let width = WIDE_SIGN * state.sign_velocity;
+    columns.push(prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i])));
+    let torque =
+        least_squares(columns, target, &prepared.open_runs()).and_then(|coefficients| coefficients.last().copied());
+    let is_of_friction = |torque: f64| (0.0..=MOST_SOFTNESS).contains(&(torque / state.base_friction_at(width)));
+    if !torque.is_some_and(is_of_friction) {
+        columns.pop();
+    }
+}
