@@ -68,6 +68,26 @@ fn what_happens_between_two_samples_has_no_name() {
     named_are_right(OTHER_SEED, &names);
 }
 
+/// Friction that turns over within a hundredth of the top speed was presliding and a lag, where the noise is small.
+#[test]
+fn friction_that_turns_over_softly_has_no_name() {
+    for seed in [310, 311, 312] {
+        named_are_right(seed, &["control-19"]);
+    }
+}
+
+/// What a simulation does below the speeds at which it has rows was drawn from its noise, and the difference Stribeck friction.
+#[test]
+fn what_no_row_of_a_simulation_tells_has_no_name() {
+    named_are_right(320, &["simulation-6"]);
+}
+
+/// Of friction that is linear in the position a ripple was kept, which holds one term of nine of its series.
+#[test]
+fn a_series_is_no_ripple() {
+    named_are_right(330, &["position_friction-2", "position_friction-6"]);
+}
+
 /// In ten seconds of slow noise two long series took up so much of it that whatever is slow seemed more than noise.
 #[test]
 fn slow_noise_of_a_short_recording_has_no_name() {

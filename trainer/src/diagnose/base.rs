@@ -172,7 +172,11 @@ const LONGEST_DELAY_S: f64 = 0.03;
 const CLEARLY_LESS: f64 = 0.98;
 
 /// The columns of the parameters and the nuisances behind the common filter.
-pub(super) fn filtered_columns(prepared: &Prepared, signals: &Signals, raw: &[(&'static str, Vec<f64>)]) -> Vec<Vec<f64>> {
+pub(super) fn filtered_columns(
+    prepared: &Prepared,
+    signals: &Signals,
+    raw: &[(&'static str, Vec<f64>)],
+) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
     columns.push(sharpness(prepared));

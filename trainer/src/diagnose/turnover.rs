@@ -1,7 +1,7 @@
 //! How sharply friction turns over with the direction: the width of the smoothed sign, and what of it stays unknown.
 
 use super::base::{BaseKind, filtered_columns, raw_columns};
-use super::linear::{dot, left_by_fit, least_squares};
+use super::linear::{dot, least_squares, left_by_fit};
 use super::prepare::Prepared;
 use super::refine::{Movable, climb};
 use super::signals::Signals;
@@ -69,5 +69,60 @@ pub(super) fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, tar
     let is_of_friction = |torque: f64| (0.0..=MOST_SOFTNESS).contains(&(torque / state.base_friction_at(width)));
     if !torque.is_some_and(is_of_friction) {
         columns.pop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::Lock;
+    use std::f64::consts::TAU;
+
+    /// A body of 0.5 kg m2 whose friction turns over within 0.02 rad/s, or with the position after each reversal.
+    fn moving(friction: impl Fn(f64, f64) -> f64) -> Signals {
+        let time: Vec<f64> = (0..20_000).map(|i| 1e-3 * f64::from(i)).collect();
+        let position: Vec<f64> = time.iter().map(|t| (TAU * 0.7 * t).sin() + 0.4 * (TAU * 0.31 * t).sin()).collect();
+        let (fast, slow) = (TAU * 0.7, TAU * 0.31);
+        let velocity: Vec<f64> = time.iter().map(|t| fast * (fast * t).cos() + 0.4 * slow * (slow * t).cos()).collect();
+        let mut since = 0.0;
+        let torque = |i: usize| {
+            since = if i > 0 && velocity[i] * velocity[i - 1] < 0.0 { position[i] } else { since };
+            let t = time[i];
+            let acceleration = -fast * fast * (fast * t).sin() - 0.4 * slow * slow * (slow * t).sin();
+            0.5 * acceleration + friction(velocity[i], position[i] - since) + 1e-4 * (7919.0 * t * t).sin()
+        };
+        let torque = (0..time.len()).map(torque).collect();
+        Signals {
+            period: 1e-3,
+            segments: std::iter::once(0..time.len()).collect(),
+            time,
+            position,
+            torque,
+            rotary: true,
+            ..Signals::default()
+        }
+    }
+
+    fn widened(signals: &Signals) -> (f64, f64) {
+        let mut prepared = Prepared::new(signals, Lock::Nothing);
+        let least = prepared.state.sign_velocity;
+        fit_width(&mut prepared, signals, BaseKind::CoulombViscous);
+        (least, prepared.state.sign_velocity)
+    }
+
+    #[test]
+    fn the_width_of_a_soft_sign_is_found() {
+        let (_, width) = widened(&moving(|velocity, _| 2.0 * (velocity / 0.04).tanh() + 0.3 * velocity));
+        assert!((width / 0.04 - 1.0).abs() < 0.1, "{width}");
+    }
+
+    #[test]
+    fn presliding_and_the_stribeck_effect_are_no_soft_sign() {
+        let presliding = moving(|velocity, travelled| 2.0 * (travelled / 0.02).clamp(-1.0, 1.0) + 0.3 * velocity);
+        let stribeck = moving(|velocity, _| (2.0 + (-(velocity / 0.2).powi(2)).exp()) * (velocity / 1e-3).tanh());
+        for signals in [presliding, stribeck] {
+            let (least, width) = widened(&signals);
+            assert_eq!(width, least);
+        }
     }
 }

@@ -53,6 +53,8 @@ fn share_above(torque: &[f64], limit: f64) -> f64 {
 const PRESSED: [f64; 6] = [1.2, 0.8, 2.0, 1.5, 1.0, 3.0];
 /// Share of the samples short of the obstacle.
 const SHORT_OF_IT: f64 = 0.88;
+/// Share of the range at least by which the farthest position is beyond it, however long the joint rests there.
+const BEYOND_IT: f64 = 0.01;
 /// Viscous friction of the obstacle as a share of the joint's.
 const RUBBER: f64 = 0.02;
 
@@ -60,8 +62,9 @@ const RUBBER: f64 = 0.02;
 pub(super) fn contact(way: usize, protocol: &Protocol, random: &mut Random) -> Material {
     let fine = protocol.fine(random);
     let joint = &fine.joint;
-    let at = quantile(&fine.path.position, SHORT_OF_IT);
-    let depth = range(&fine.path.position).1 - at;
+    let (low, high) = range(&fine.path.position);
+    let at = quantile(&fine.path.position, SHORT_OF_IT).min(high - BEYOND_IT * (high - low));
+    let depth = high - at;
     let power = if way == 4 { 1.5 } else { 1.0 };
     let most = PRESSED[way] * joint.coulomb * factor(random);
     let press = |q: f64| most * ((q - at).max(0.0) / depth).powf(power);

@@ -40,3 +40,30 @@ impl Bends {
         begin..target.len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::linear::least_squares;
+    use super::*;
+
+    /// Coulomb friction of 2 N m over five knots, of which the rows see all but the second.
+    #[test]
+    fn a_knot_that_no_row_sees_lies_between_its_neighbours_and_one_that_is_seen_stays() {
+        let torque = [2.0, 2.0, 2.0, 2.6, 2.0];
+        let hat = |seen: usize| (0..5).map(|row| f64::from(row == seen && seen != 1)).collect::<Vec<f64>>();
+        let (mut columns, mut target): (Vec<Vec<f64>>, Vec<f64>) = ((0..5).map(hat).collect(), torque.to_vec());
+        target[1] = 0.0;
+        let rows = Bends::of(&torque).put_behind(&mut columns, &mut target, 1e-3);
+        let fitted = least_squares(&columns, &target, &[0..5, rows]).unwrap();
+        assert!((fitted[1] - 2.0).abs() < 0.2 && (fitted[3] - 2.6).abs() < 1e-3, "{fitted:?}");
+    }
+
+    #[test]
+    fn a_straight_line_over_speed_does_not_bend() {
+        let line: Vec<f64> = (0..9).map(|j| 1.0 + 3.0 * speed_knot(j, 9)).collect();
+        for row in Bends::of(&line).rows {
+            let bend: f64 = row.iter().zip(&line).map(|(weight, torque)| weight * torque).sum();
+            assert!(bend.abs() < 1e-9, "{bend}");
+        }
+    }
+}
