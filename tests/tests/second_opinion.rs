@@ -76,6 +76,14 @@ fn friction_that_turns_over_softly_has_no_name() {
     }
 }
 
+/// A position that is sampled early or late though its clock is even was an elastic transmission or a wind-up.
+#[test]
+fn scattered_instants_of_sampling_have_no_name() {
+    for seed in [321, 322, 323] {
+        named_are_right(seed, &["clock-unseen-jitter"]);
+    }
+}
+
 /// What a simulation does below the speeds at which it has rows was drawn from its noise, and the difference Stribeck friction.
 #[test]
 fn what_no_row_of_a_simulation_tells_has_no_name() {

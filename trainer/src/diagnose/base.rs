@@ -2,7 +2,8 @@
 
 use super::grain::Grain;
 use super::linear::{dot, least_squares, left_by_fit, orthonormal, project_out, residual, rows_in};
-use super::prepare::{Prepared, channel_filter, grain_through_inertia};
+use super::position_error::grain_through_inertia;
+use super::prepare::{Prepared, channel_filter};
 use super::reference::tabulated_velocities;
 use super::signals::Signals;
 use super::turnover::{WIDE_SIGN, add_softness, fit_width, sharpness};

@@ -30,14 +30,18 @@ pub(super) struct Grain {
 }
 
 impl Grain {
-    /// Adds a uniform error of one step to the position, and to the torque white noise as large as what a fitted base leaves in
+    /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a fitted base leaves in
     /// half of the rows. `None` where the recording shows no inertia.
     pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
         let inertia = if body_is_recorded && signals.reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
-        let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
-        let position: Vec<f64> = steps.collect();
+        let jitter = prepared.sampling_jitter;
+        let mut wrong = |velocity: &f64| {
+            signals.position_resolution * (uniform(&mut random) - 0.5) + jitter * velocity * normal(&mut random)
+        };
+        let position: Vec<f64> =
+            signals.position.iter().zip(&prepared.state.velocity).map(|(q, velocity)| q + wrong(velocity)).collect();
         let filtered = DEVIATION_PER_MEDIAN * quantile(left_by_base.iter().map(|left| left.abs()), 0.5);
         let deviation = filtered / prepared.filter.gain();
         let noise: Vec<f64> = signals.torque.iter().map(|_| deviation * normal(&mut random)).collect();

@@ -54,6 +54,7 @@ impl Signals {
         }
         self.spikes.extend(next.spikes);
         self.position_resolution = self.position_resolution.max(next.position_resolution);
+        self.resampled |= next.resampled;
         Ok(())
     }
 }

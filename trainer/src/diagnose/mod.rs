@@ -35,6 +35,7 @@ mod noise;
 mod null;
 mod other_joints;
 mod outcome;
+mod position_error;
 mod prepare;
 mod prove;
 mod random;

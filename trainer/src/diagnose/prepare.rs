@@ -3,7 +3,8 @@
 use super::blocks::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use super::filter::{ZeroPhase, first_derivative, second_derivative};
 use super::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
-use super::linear::{dot, least_squares, left_by_fit, rows_in};
+use super::linear::least_squares;
+use super::position_error::{encoder_noise_is_small, sampling_jitter};
 use super::signals::Signals;
 use super::twist::told_by_twist;
 use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};
@@ -19,8 +20,10 @@ pub struct Prepared {
     pub filter: ZeroPhase,
     /// The filter before the motion.
     pub(super) motion_filter: ZeroPhase,
-    /// Whether a wider filter was refused for the encoder's grain.
+    /// Whether a wider filter was refused for the errors of the position.
     pub grain_limited: bool,
+    /// Standard deviation of the instants at which the position was sampled, s.
+    pub(super) sampling_jitter: f64,
     /// Sample index of each working row.
     pub rows: Vec<usize>,
     /// Blocks of rows.
@@ -37,8 +40,6 @@ pub struct Prepared {
 
 /// Cut-off frequencies that are tried, widest first, in Hz.
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
-/// Share of the residual's deviation that encoder noise may reach through the inertia: what it gives a candidate is taken off that.
-const ENCODER_SHARE: f64 = 0.4;
 /// Width of the smoothed sign at least, as a share of the top speed.
 const SIGN_SHARE: f64 = 0.001;
 /// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
@@ -139,6 +140,7 @@ impl Prepared {
         }
         let (rows, blocks) = rows_and_blocks(&state, &left_out, &filter, lock);
         Self {
+            sampling_jitter: sampling_jitter(signals, &state),
             state,
             filter,
             motion_filter: states,
@@ -275,30 +277,8 @@ fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
     smooth
 }
 
-/// Whether encoder noise, through the inertia, stays small against what the simplest model leaves.
-fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
-    if signals.position_resolution <= 0.0 {
-        return true;
-    }
-    let rows = prepared.open_runs();
-    let columns = simplest_model(prepared);
-    let Some(grain) = grain_through_inertia(prepared, signals) else { return true };
-    let friction = prepared.filtered(&prepared.friction_torque);
-    let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
-    let deviation = (dot(&left, &left, &rows) / rows_in(&rows).max(1) as f64).sqrt();
-    grain < ENCODER_SHARE * deviation
-}
-
-/// Deviation, behind the filter, of the torque that the encoder's grain makes through the inertia; `None` where the recording shows
-/// no inertia.
-pub(super) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
-    let acceleration = prepared.filter.second_derivative_gain(signals.period);
-    identified_inertia(prepared)
-        .map(|inertia| inertia.abs() * signals.position_resolution / 12f64.sqrt() * acceleration)
-}
-
 /// Filtered Coulomb and viscous friction, inertia and offset.
-fn simplest_model(prepared: &Prepared) -> Vec<Vec<f64>> {
+pub(super) fn simplest_model(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
     [&state.sign, &state.velocity, &state.acceleration, &vec![1.0; state.len()]]
         .into_iter()

@@ -7,7 +7,7 @@ use super::command::Command;
 use super::conclude::{Refit, polish, refit};
 use super::delay::diagnose_in_step;
 use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
-use super::health::{HealthNote, coarse_position, examine, examine_as_recorded, unexplained_event};
+use super::health::{HealthNote, coarse_position, examine, examine_as_recorded, scattered_sampling, unexplained_event};
 use super::linear::{rows_in, weighted};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
@@ -137,6 +137,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let mut health = as_recorded.to_vec();
     health.extend(examine(signals));
     health.extend(coarse_position(signals, &prepared));
+    health.extend(scattered_sampling(signals, &prepared));
     let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
         return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });

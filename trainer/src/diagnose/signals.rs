@@ -45,6 +45,8 @@ pub struct Signals {
     pub rotary: bool,
     /// Smallest step of the position in its unit; 0 when unknown.
     pub position_resolution: f64,
+    /// Whether samples lie between recorded rows, whose clock jitters.
+    pub resampled: bool,
     /// Largest torque of the drive in N m, where it is stated and the torque is recorded in N m.
     pub torque_limit: Option<f64>,
     /// Glitches of the recording that were replaced.
@@ -100,6 +102,7 @@ impl Signals {
             gear_ratio: joint.drive.gear_ratio,
             rotary,
             position_resolution: recording.health.position_resolution.unwrap_or(0.0),
+            resampled: even.resampled,
             torque_limit: joint.drive.torque_limit_nm.filter(|_| recording.values(Quantity::Torque).is_some()),
             spikes: spikes.clone(),
             torque,

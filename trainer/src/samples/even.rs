@@ -18,6 +18,8 @@ pub struct EvenClock {
     pub time: Vec<f64>,
     /// Uninterrupted stretches: between gaps of the clock and changes of the `trajectory` channel.
     pub segments: Vec<Range<usize>>,
+    /// Whether values are interpolated between rows, because the clock jitters.
+    pub resampled: bool,
     channels: Vec<(Option<Quantity>, String, Vec<f64>)>,
 }
 
@@ -33,7 +35,13 @@ impl EvenClock {
                 .in_column("time_s")
         })?;
         let grid = Grid::of(recording, time);
-        let mut even = Self { period_s: grid.period_s, time: Vec::new(), segments: Vec::new(), channels: Vec::new() };
+        let mut even = Self {
+            period_s: grid.period_s,
+            time: Vec::new(),
+            segments: Vec::new(),
+            resampled: grid.resampled,
+            channels: Vec::new(),
+        };
         for segment in &grid.segments {
             let begin = even.time.len();
             even.time.extend((0..segment.points).map(|i| segment.start_s + i as f64 * grid.period_s));
