@@ -17,8 +17,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::ops::Range;
 
-/// Seed of what is added: one for all recordings.
+/// Seeds of what is added: one for all recordings.
 const SEED: u64 = 0x0067_7261_696e;
+const SEED_OF_INSTANTS: u64 = 0x696e_7374_616e;
 
 /// A second helping of the encoder's grain and of the torque's noise.
 #[derive(Clone, Debug)]
@@ -35,13 +36,10 @@ impl Grain {
     pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
         let inertia = if body_is_recorded && signals.reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
-        let mut random = ChaCha8Rng::seed_from_u64(SEED);
-        let jitter = prepared.sampling_jitter;
-        let mut wrong = |velocity: &f64| {
-            signals.position_resolution * (uniform(&mut random) - 0.5) + jitter * velocity * normal(&mut random)
-        };
-        let position: Vec<f64> =
-            signals.position.iter().zip(&prepared.state.velocity).map(|(q, velocity)| q + wrong(velocity)).collect();
+        let [mut random, mut instants] = [SEED, SEED_OF_INSTANTS].map(ChaCha8Rng::seed_from_u64);
+        let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
+        let late = prepared.state.velocity.iter().map(|v| prepared.sampling_jitter * v * normal(&mut instants));
+        let position: Vec<f64> = steps.zip(late).map(|(q, late)| q + late).collect();
         let filtered = DEVIATION_PER_MEDIAN * quantile(left_by_base.iter().map(|left| left.abs()), 0.5);
         let deviation = filtered / prepared.filter.gain();
         let noise: Vec<f64> = signals.torque.iter().map(|_| deviation * normal(&mut random)).collect();

@@ -30,8 +30,6 @@ const COARSE_TORQUE_SHARE: f64 = 0.05;
 /// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
 const LEAST_BAND_HZ: f64 = 17.0;
 const COARSE_STEP: f64 = 1e-4;
-/// Scatter of the instants of sampling from which it is told, in periods.
-const TELLING_JITTER: f64 = 0.05;
 
 /// Looks at the torque as it was recorded.
 pub(super) fn examine_as_recorded(signals: &Signals) -> Vec<HealthNote> {
@@ -155,12 +153,12 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
 /// A position that was sampled at other instants than the clock says.
 pub(crate) fn scattered_sampling(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
     let periods = prepared.sampling_jitter / signals.period;
-    (periods > TELLING_JITTER).then(|| HealthNote {
+    (periods > 0.0).then(|| HealthNote {
         effect: EffectId::TimeMisalignment,
         blocking: false,
         sentence: format!(
-            "the instants at which the position was sampled scatter by {} ({} samples), which the clock does not show: position and \
-             motion are wrong in proportion to the speed",
+            "the position is rough in proportion to the speed, as if the instants of its samples scattered by {} ({} samples), which \
+             the clock does not show: what is derived from it is as wrong",
             quantity(prepared.sampling_jitter, "s"),
             digits(periods)
         ),

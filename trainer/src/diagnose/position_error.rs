@@ -14,11 +14,13 @@ const POWER_OF_DIFFERENCE: f64 = 70.0;
 /// Speeds over the top speed from which a sample is fast, and below which it is slow.
 const FAST: f64 = 0.5;
 const SLOW: f64 = 0.1;
+/// Scatter in periods up to which it may be what a joint's own motion has beyond a fourth difference.
+const LEAST_JITTER: f64 = 0.05;
 /// Samples of a kind at least.
 const LEAST_SAMPLES: usize = 100;
 
 /// Standard deviation of the instants of sampling, s: what the fourth differences of the position have at high speed beyond those
-/// at low speed and the encoder's grain. 0 where they have no more, and where the clock tells the instants.
+/// at low speed and the encoder's grain. 0 where that is little, and where the clock tells the instants.
 pub(super) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
     if signals.resampled {
         return 0.0;
@@ -47,7 +49,8 @@ pub(super) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
     let of_grain = signals.position_resolution.powi(2) / 12.0;
     let beyond = power(&mut fast.iter().map(|(difference, _)| *difference)) - at_low_speed.max(of_grain);
     let speed = quantile(fast.iter().map(|(_, speed)| *speed), 0.5);
-    beyond.max(0.0).sqrt() / speed.max(f64::MIN_POSITIVE)
+    let jitter = beyond.max(0.0).sqrt() / speed.max(f64::MIN_POSITIVE);
+    if jitter < LEAST_JITTER * signals.period { 0.0 } else { jitter }
 }
 
 /// Whether encoder noise, through the inertia, stays small against what the simplest model leaves.
@@ -105,7 +108,7 @@ mod tests {
         assert!((scattered - 0.2).abs() < 0.03, "{scattered}");
         for steps in [1e3, 1e4, 1e6] {
             let even = periods(&swing(0.0, steps));
-            assert!(even < 0.05, "{even} at {steps} steps a radian");
+            assert_eq!(even, 0.0, "{steps} steps a radian");
         }
     }
 }
