@@ -56,8 +56,8 @@ const NARROW_VELOCITY: f64 = 0.4;
 const NARROW_ACCELERATION: f64 = 0.8;
 
 impl Prepared {
-    /// Prepares states and rows. The cut-off is the widest at which encoder noise, through the inertia, stays below a
-    /// tenth of the residual.
+    /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay
+    /// small against the residual.
     pub fn new(signals: &Signals, lock: Lock) -> Self {
         let rate = 1.0 / signals.period;
         let mut chosen = None;
