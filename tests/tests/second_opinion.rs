@@ -84,6 +84,13 @@ fn scattered_instants_of_sampling_have_no_name() {
     }
 }
 
+/// Steps of a sixth of Coulomb friction beside a weight were a local fault and a ripple.
+#[test]
+fn a_torque_in_coarse_steps_has_no_physics() {
+    named_are_right(330, &["quantisation-5"]);
+    named_are_right(351, &["quantisation-1"]);
+}
+
 /// What a simulation does below the speeds at which it has rows was drawn from its noise, and the difference Stribeck friction.
 #[test]
 fn what_no_row_of_a_simulation_tells_has_no_name() {

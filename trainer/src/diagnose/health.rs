@@ -31,11 +31,32 @@ const COARSE_TORQUE_SHARE: f64 = 0.05;
 const LEAST_BAND_HZ: f64 = 17.0;
 const COARSE_STEP: f64 = 1e-4;
 
-/// Looks at the torque as it was recorded.
-pub(super) fn examine_as_recorded(signals: &Signals) -> Vec<HealthNote> {
-    let step = torque_step(signals);
-    let replaced = signals.spikes.iter().map(replaced);
-    replaced.chain(clipped_torque(signals, step)).chain(step.and_then(coarse_torque)).collect()
+/// What is wrong with a torque as it was recorded.
+#[derive(Clone, Debug)]
+pub(super) struct AsRecorded {
+    notes: Vec<HealthNote>,
+    step: Option<TorqueStep>,
+}
+
+impl AsRecorded {
+    /// Looks at the torque of a recording, in the unit of its actuator.
+    pub fn of(signals: &Signals, actuator: &str) -> Self {
+        let step = torque_step(signals);
+        let replaced = signals.spikes.iter().map(replaced);
+        let coarse = step.and_then(|step| coarse_torque(step, actuator));
+        let notes = replaced.chain(clipped_torque(signals, step, actuator)).chain(coarse).collect();
+        Self { notes, step }
+    }
+
+    /// The notes on it. A step that is coarser than the noise blocks where its own error is as large as all that the simplest model
+    /// leaves (root mean square).
+    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
+        let is_all = self.step.is_some_and(|TorqueStep { step, .. }| step / 12f64.sqrt() >= left_by_base);
+        self.notes.iter().cloned().map(move |note| HealthNote {
+            blocking: note.blocking || is_all && note.effect == EffectId::Quantisation,
+            ..note
+        })
+    }
 }
 
 /// Looks at what the signals say of each other.
@@ -81,16 +102,19 @@ fn replaced(spikes: &Spikes) -> HealthNote {
 }
 
 /// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep) -> Option<HealthNote> {
+fn coarse_torque(TorqueStep { step, share }: TorqueStep, actuator: &str) -> Option<HealthNote> {
     (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: share > COARSE_TORQUE_SHARE,
-        sentence: format!("the torque is recorded in steps of {}, coarser than its own noise", digits(step)),
+        sentence: format!(
+            "the torque is recorded in steps of {}, coarser than its own noise",
+            quantity(step, actuator)
+        ),
     })
 }
 
 /// The step in which a torque is recorded, and its share of the usual torque.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct TorqueStep {
     step: f64,
     share: f64,
@@ -165,7 +189,7 @@ pub(crate) fn scattered_sampling(signals: &Signals, prepared: &Prepared) -> Opti
     })
 }
 
-fn clipped_torque(signals: &Signals, step: Option<TorqueStep>) -> Option<HealthNote> {
+fn clipped_torque(signals: &Signals, step: Option<TorqueStep>, actuator: &str) -> Option<HealthNote> {
     let top = signals.torque.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let share_from = |level: f64| {
         let at_least = signals.torque.iter().filter(|torque| torque.abs() >= level).count();
@@ -177,7 +201,11 @@ fn clipped_torque(signals: &Signals, step: Option<TorqueStep>) -> Option<HealthN
     (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then(|| HealthNote {
         effect: EffectId::Saturation,
         blocking: false,
-        sentence: format!("the torque stands at its limit of {top:.4} in {:.1} % of the samples", 100.0 * share),
+        sentence: format!(
+            "the torque stands at its limit of {} in {:.1} % of the samples",
+            quantity(top, actuator),
+            100.0 * share
+        ),
     })
 }
 
@@ -193,14 +221,24 @@ mod tests {
 
     #[test]
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
-        let blocking =
-            |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
+        let blocking = |largest: f64| {
+            torque_step(&in_steps(largest, largest))
+                .and_then(|step| coarse_torque(step, "N m"))
+                .map(|note| note.blocking)
+        };
         assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
     }
 
     #[test]
+    fn fine_steps_block_where_they_are_all_that_is_left() {
+        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0), "N m");
+        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
+        assert!(blocks(0.25) && !blocks(0.35));
+    }
+
+    #[test]
     fn the_highest_step_of_a_coarse_torque_is_no_limit() {
-        let clipped = |signals: Signals| clipped_torque(&signals, torque_step(&signals));
+        let clipped = |signals: Signals| clipped_torque(&signals, torque_step(&signals), "N m");
         assert!(clipped(in_steps(5.0, 9.0)).is_none());
         assert!(clipped(in_steps(5.0, 3.0)).is_some());
         assert!(clipped(in_steps(400.0, 250.0)).is_some());

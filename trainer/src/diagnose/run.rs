@@ -7,7 +7,7 @@ use super::command::Command;
 use super::conclude::{Refit, polish, refit};
 use super::delay::diagnose_in_step;
 use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
-use super::health::{HealthNote, coarse_position, examine, examine_as_recorded, scattered_sampling, unexplained_event};
+use super::health::{AsRecorded, HealthNote, coarse_position, examine, scattered_sampling, unexplained_event};
 use super::linear::{rows_in, weighted};
 use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
 use super::prepare::Prepared;
@@ -84,7 +84,7 @@ pub fn diagnose(signals: &Signals, actuator: &str, options: &Options) -> Result<
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
-    let request = Request { actuator, options: *options, as_recorded: &examine_as_recorded(signals) };
+    let request = Request { actuator, options: *options, as_recorded: &AsRecorded::of(signals, actuator) };
     let diagnose =
         |signals: &Signals| diagnose_in_step(signals, options, &|aligned| diagnose_aligned(aligned, &request));
     let Some(command) = Command::of(signals) else { return diagnose(signals) };
@@ -99,7 +99,7 @@ struct Request<'a> {
     actuator: &'a str,
     options: Options,
     /// What is wrong with the recording as it is: of a torque that was put back between its samples nobody can tell.
-    as_recorded: &'a [HealthNote],
+    as_recorded: &'a AsRecorded,
 }
 
 /// Diagnoses signals whose torque and motion belong together; with other blocks locked where a one-off event lay in those that
@@ -134,10 +134,6 @@ fn diagnose_aligned(signals: &Signals, request: &Request) -> Result<Diagnosis, R
 fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Refusal> {
     let Request { actuator, options, as_recorded } = *request;
     let mut prepared = Prepared::new(signals, options.lock);
-    let mut health = as_recorded.to_vec();
-    health.extend(examine(signals));
-    health.extend(coarse_position(signals, &prepared));
-    health.extend(scattered_sampling(signals, &prepared));
     let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
         return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });
@@ -146,10 +142,14 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let hypotheses = catalogue();
     let settings = if prepared.grain_limited { options.settings.behind_grain() } else { options.settings };
     let search = Search::new(&prepared, &base, &hypotheses, settings);
+    let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
+    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms).collect();
+    health.extend(examine(signals));
+    health.extend(coarse_position(signals, &prepared));
+    health.extend(scattered_sampling(signals, &prepared));
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
-    let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
     polish(&search, &mut accepted, &noise);
     let withdrawn = withdraw_unproven(&search, &mut accepted);
     let doubtful = set_aside_doubtful(&search, &mut accepted);
