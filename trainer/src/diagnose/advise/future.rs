@@ -10,11 +10,11 @@ use std::ops::Range;
 /// What is needed to continue a recording.
 pub(super) struct Future<'a> {
     signals: &'a Signals,
-    /// Weights of [`Self::load_columns`] for the typical load torque.
+    /// Weights of [`load_columns`] for the typical load torque.
     load: Option<Vec<f64>>,
     /// Smallest and largest recorded payload as a share of the typical one.
     payload_range: (f64, f64),
-    /// Weights of [`Self::body_columns`] for the given rigid-body torque.
+    /// Weights of [`body_columns`] for the given rigid-body torque.
     body: Option<Vec<f64>>,
     /// Weights of sign, velocity and acceleration: the torque as far as a plan needs it.
     friction: Vec<f64>,
