@@ -265,15 +265,9 @@ mod tests {
             2.0 * (velocity / 0.01).tanh() + 1.2 * velocity + 0.5 * sum(t, |a, w, t| -a * w * w * (w * t).sin())
         };
         for samples in [0.0, 1.0, 5.0, -7.5] {
-            let signals = Signals {
-                period,
-                position: time.iter().map(|t| sum(*t, |a, w, t| a * (w * t).sin())).collect(),
-                torque: time.iter().map(|t| torque(t - samples * period)).collect(),
-                segments: vec![0..time.len()],
-                time: time.clone(),
-                rotary: true,
-                ..Signals::default()
-            };
+            let position = time.iter().map(|t| sum(*t, |a, w, t| a * (w * t).sin())).collect();
+            let late = time.iter().map(|t| torque(t - samples * period)).collect();
+            let signals = Signals::without_gap(period, time.clone(), position, late);
             let delay = delay_by_shifting(Prepared::new(&signals, Lock::Nothing), &signals, BaseKind::CoulombViscous);
             assert!((delay / period - samples).abs() < 0.2, "{} of {samples} samples", delay / period);
         }

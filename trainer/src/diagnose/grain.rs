@@ -31,8 +31,8 @@ pub(super) struct Grain {
 }
 
 impl Grain {
-    /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a fitted base leaves in
-    /// half of the rows. `None` where the recording shows no inertia.
+    /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a
+    /// fitted base leaves in half of the rows. `None` where the recording shows no inertia.
     pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
         let inertia = if body_is_recorded && signals.reference.is_none() { 0.0 } else { identified_inertia(prepared)? };

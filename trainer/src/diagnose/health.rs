@@ -43,19 +43,12 @@ impl AsRecorded {
     pub fn of(signals: &Signals, actuator: &str) -> Self {
         let step = torque_step(signals);
         let replaced = signals.spikes.iter().map(replaced);
-        let coarse = step.and_then(|step| coarse_torque(step, actuator));
-        let notes = replaced.chain(clipped_torque(signals, step, actuator)).chain(coarse).collect();
-        Self { notes, step }
+        Self { notes: replaced.chain(clipped_torque(signals, step, actuator)).collect(), step }
     }
 
-    /// The notes on it. A step that is coarser than the noise blocks where its own error is as large as all that the simplest model
-    /// leaves (root mean square).
-    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
-        let is_all = self.step.is_some_and(|TorqueStep { step, .. }| step / 12f64.sqrt() >= left_by_base);
-        self.notes.iter().cloned().map(move |note| HealthNote {
-            blocking: note.blocking || is_all && note.effect == EffectId::Quantisation,
-            ..note
-        })
+    /// The notes on it, beside a base that leaves some of it (root mean square).
+    pub fn notes(&self, left_by_base: f64, actuator: &str) -> impl Iterator<Item = HealthNote> {
+        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base, actuator)))
     }
 }
 
@@ -101,11 +94,12 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, sentence }
 }
 
-/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep, actuator: &str) -> Option<HealthNote> {
+/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
+/// error is as large as all that the base leaves.
+fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64, actuator: &str) -> Option<HealthNote> {
     (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: share > COARSE_TORQUE_SHARE,
+        blocking: share > COARSE_TORQUE_SHARE || step / 12f64.sqrt() >= left_by_base,
         sentence: format!(
             "the torque is recorded in steps of {}, coarser than its own noise",
             quantity(step, actuator)
@@ -223,7 +217,7 @@ mod tests {
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
         let blocking = |largest: f64| {
             torque_step(&in_steps(largest, largest))
-                .and_then(|step| coarse_torque(step, "N m"))
+                .and_then(|step| coarse_torque(step, f64::INFINITY, "N m"))
                 .map(|note| note.blocking)
         };
         assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
@@ -232,7 +226,7 @@ mod tests {
     #[test]
     fn fine_steps_block_where_they_are_all_that_is_left() {
         let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0), "N m");
-        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
+        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base, "N m").any(|note| note.blocking);
         assert!(blocks(0.25) && !blocks(0.35));
     }
 

@@ -53,8 +53,17 @@ pub(super) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
     if jitter < LEAST_JITTER * signals.period { 0.0 } else { jitter }
 }
 
+/// Standard deviation of the recorded position, in its unit.
+fn position_error(prepared: &Prepared, signals: &Signals) -> f64 {
+    let speed = root_mean_square(&prepared.state.velocity);
+    (signals.position_resolution.powi(2) / 12.0 + (prepared.sampling_jitter * speed).powi(2)).sqrt()
+}
+
 /// Whether encoder noise, through the inertia, stays small against what the simplest model leaves.
 pub(super) fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> bool {
+    if position_error(prepared, signals) == 0.0 {
+        return true;
+    }
     let rows = prepared.open_runs();
     let columns = simplest_model(prepared);
     let Some(grain) = grain_through_inertia(prepared, signals) else { return true };
@@ -64,13 +73,11 @@ pub(super) fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> 
     grain <= ENCODER_SHARE * deviation
 }
 
-/// Deviation, behind the filter, of the torque that the errors of the position make through the inertia; `None` where the recording shows
-/// no inertia.
+/// Deviation, behind the filter, of the torque that the errors of the position make through the inertia; `None` where the recording
+/// shows no inertia.
 pub(super) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
-    let speed = root_mean_square(&prepared.state.velocity);
-    let position = (signals.position_resolution.powi(2) / 12.0 + (prepared.sampling_jitter * speed).powi(2)).sqrt();
     let acceleration = prepared.filter.second_derivative_gain(signals.period);
-    identified_inertia(prepared).map(|inertia| inertia.abs() * position * acceleration)
+    identified_inertia(prepared).map(|inertia| inertia.abs() * position_error(prepared, signals) * acceleration)
 }
 
 #[cfg(test)]
@@ -89,16 +96,9 @@ mod tests {
             let at = t + 1e-3 * jitter_periods * normal(&mut random);
             (steps * ((3.0 * at).sin() + 0.3 * (11.0 * at).sin())).round() / steps
         };
-        Signals {
-            period: 1e-3,
-            position: time.iter().map(position).collect(),
-            torque: time.iter().map(|t| (3.0 * t).cos()).collect(),
-            segments: std::iter::once(0..time.len()).collect(),
-            time,
-            rotary: true,
-            position_resolution: 1.0 / steps,
-            ..Signals::default()
-        }
+        let position = time.iter().map(position).collect();
+        let torque = time.iter().map(|t| (3.0 * t).cos()).collect();
+        Signals { position_resolution: 1.0 / steps, ..Signals::without_gap(1e-3, time, position, torque) }
     }
 
     #[test]

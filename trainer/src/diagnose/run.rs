@@ -143,7 +143,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let settings = if prepared.grain_limited { options.settings.behind_grain() } else { options.settings };
     let search = Search::new(&prepared, &base, &hypotheses, settings);
     let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
-    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms).collect();
+    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms, actuator).collect();
     health.extend(examine(signals));
     health.extend(coarse_position(signals, &prepared));
     health.extend(scattered_sampling(signals, &prepared));

@@ -121,6 +121,13 @@ impl Signals {
         Ok(signals)
     }
 
+    /// Signals of a rotary joint that was recorded without a gap.
+    #[cfg(test)]
+    pub(super) fn without_gap(period: f64, time: Vec<f64>, position: Vec<f64>, torque: Vec<f64>) -> Self {
+        let segments = std::iter::once(0..time.len()).collect();
+        Self { period, segments, time, position, torque, rotary: true, ..Self::default() }
+    }
+
     /// The same signals with the torque, recorded late by `delay` (s; negative where early), put back to its time; what has no torque
     /// then is cut off the segments.
     pub fn realigned(&self, delay: f64) -> Self {

@@ -29,10 +29,10 @@ pub(super) fn fit_width(prepared: &mut Prepared, signals: &Signals, kind: BaseKi
         return;
     }
     let least = prepared.state.sign_velocity;
+    let (target, runs) = (prepared.filtered(&prepared.friction_torque), prepared.open_runs());
     let mut left_at = |over_least: f64| {
         prepared.state.turn_over_within(over_least * least);
         let columns = filtered_columns(prepared, signals, &raw_columns(&prepared.state, signals, kind));
-        let (target, runs) = (prepared.filtered(&prepared.friction_torque), prepared.open_runs());
         left_by_fit(&columns, &target, &runs).map_or(f64::INFINITY, |left| dot(&left, &left, &runs))
     };
     let unwidened = left_at(1.0);
@@ -78,7 +78,7 @@ mod tests {
     use crate::diagnose::Lock;
     use std::f64::consts::TAU;
 
-    /// A body of 0.5 kg m2 whose friction turns over within 0.02 rad/s, or with the position after each reversal.
+    /// A body of 0.5 kg m2 with friction by the velocity and by the position since the last reversal.
     fn moving(friction: impl Fn(f64, f64) -> f64) -> Signals {
         let time: Vec<f64> = (0..20_000).map(|i| 1e-3 * f64::from(i)).collect();
         let position: Vec<f64> = time.iter().map(|t| (TAU * 0.7 * t).sin() + 0.4 * (TAU * 0.31 * t).sin()).collect();
@@ -92,15 +92,7 @@ mod tests {
             0.5 * acceleration + friction(velocity[i], position[i] - since) + 1e-4 * (7919.0 * t * t).sin()
         };
         let torque = (0..time.len()).map(torque).collect();
-        Signals {
-            period: 1e-3,
-            segments: std::iter::once(0..time.len()).collect(),
-            time,
-            position,
-            torque,
-            rotary: true,
-            ..Signals::default()
-        }
+        Signals::without_gap(1e-3, time, position, torque)
     }
 
     fn widened(signals: &Signals) -> (f64, f64) {

@@ -295,15 +295,7 @@ mod tests {
                 0.4 * acceleration[i] + 3.0 * position[i].sin() + 2.0 * (velocity[i] / 0.002).tanh() + 0.5 * velocity[i]
             })
             .collect();
-        Signals {
-            period,
-            segments: std::iter::once(0..time.len()).collect(),
-            time,
-            position,
-            torque,
-            rotary: true,
-            ..Signals::default()
-        }
+        Signals::without_gap(period, time, position, torque)
     }
 
     #[test]
