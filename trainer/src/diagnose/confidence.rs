@@ -10,8 +10,9 @@ const ALONE: f64 = 0.98;
 const NARROWLY_ALONE: f64 = 0.95;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
 const BESIDE_FAR_RIVALS: f64 = 0.8;
-/// The same beside a nearer rival.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.6;
+/// The same beside one nearer rival, and beside several of which one is nearer.
+const BESIDE_A_NEAR_RIVAL: f64 = 0.7;
+const BESIDE_NEAR_RIVALS: f64 = 0.5;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
 /// Distance in nats from which a rival was seldom the truth.
@@ -23,8 +24,9 @@ pub(crate) fn probability(found: &Accepted) -> f64 {
     match nearest {
         None if found.margin < CLEAR_NATS => NARROWLY_ALONE,
         None => ALONE,
-        Some(distance) if distance < FAR_NATS => BESIDE_A_NEAR_RIVAL,
-        Some(_) => BESIDE_FAR_RIVALS,
+        Some(distance) if distance >= FAR_NATS => BESIDE_FAR_RIVALS,
+        Some(_) if found.rivals.len() == 1 => BESIDE_A_NEAR_RIVAL,
+        Some(_) => BESIDE_NEAR_RIVALS,
     }
 }
 
