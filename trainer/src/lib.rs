@@ -14,6 +14,7 @@ pub mod joint;
 pub mod kan;
 pub mod key;
 pub mod law;
+mod markup;
 pub mod parameter;
 pub mod physics;
 pub mod plant;

@@ -11,14 +11,14 @@ use super::output::{Outputs, print};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
-use crate::export::{c, c_array, hex, readable, title, uf2};
+use crate::export::{c, c_array, hex, readable, simulator, title, uf2};
 use crate::fit::{CELLS, model};
 use crate::key;
 use crate::law::canonical::canonical;
 use crate::law::program::expression_of;
 use crate::law::{Language, render};
 
-/// Export an image for a build or a flash tool, and print the commands that flash it.
+/// Export an image for a build tool, a flash tool or a simulator, and print the commands that flash it.
 #[derive(Args, Clone, Debug)]
 pub struct Export {
     /// Image to export
@@ -77,6 +77,10 @@ pub enum Format {
     Latex,
     /// The law as text
     Text,
+    /// Coulomb and viscous friction nearest to the law, for MuJoCo: a default class of joints to include
+    Mujoco,
+    /// The same for a URDF: the `dynamics` of a joint
+    Urdf,
 }
 
 /// A processor of `elf`.
@@ -111,6 +115,8 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Sympy => law(&image, Language::SymPy)?,
         Format::Latex => law(&image, Language::Latex)?,
         Format::Text => law(&image, Language::Unicode)?,
+        Format::Mujoco => simulator::mujoco(&image, &title)?.into_bytes(),
+        Format::Urdf => simulator::urdf(&image, &title)?.into_bytes(),
         Format::C => {
             let (name, header) = c_names(&arguments.output)?;
             let evaluator = c::evaluator(&name, &title, &image)?;

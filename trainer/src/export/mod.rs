@@ -1,4 +1,4 @@
-//! An image in the forms that build and flash tools take. Knows images and models; knows nothing of files or commands.
+//! An image in the forms that build tools, flash tools and simulators take. Knows images and models; knows nothing of files or commands.
 
 pub mod c;
 pub mod c_array;
@@ -7,6 +7,7 @@ pub mod elf;
 pub mod flashing;
 pub mod hex;
 pub mod readable;
+pub mod simulator;
 pub mod uf2;
 
 use frikan_shared::image::{Image, image_crc32};

@@ -1,8 +1,8 @@
 //! Charts over two axes, and bars: inline SVG with colours left to the page.
 
 use super::axis::Scale;
-use super::page::escape;
 use crate::figures::digits;
+use crate::markup::escape;
 use std::fmt::Write;
 
 /// Largest number of dots; more would only be slower to draw.

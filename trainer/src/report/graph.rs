@@ -1,7 +1,7 @@
 //! The network as a graph: inputs below, the output above, edges as dark as their attribution.
 
-use super::page::escape;
 use crate::kan::{GraphSummary, NodeKind};
+use crate::markup::escape;
 use std::fmt::Write;
 
 const WIDTH: f64 = 520.0;

@@ -2,13 +2,10 @@
 
 use std::fmt::Write;
 
+use crate::markup::escape;
+
 /// Colours come from custom properties, so that a picture follows the reader's choice of light or dark.
 const STYLE: &str = include_str!("style.css");
-
-/// Text as it may stand in HTML and in attributes.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 /// A page under construction.
 #[derive(Debug, Default)]
