@@ -106,6 +106,81 @@ fn a_simulation_with_a_wrong_coulomb_friction_is_told_by_how_much() {
     assert!(page.contains("As it was given, the model is wrong by") && page.contains("too low"));
 }
 
+/// A simulation of the same joint tells the transmission beside a rigid body that only its own law knows: the law held none of it,
+/// and of play the comparison ended in a panic.
+#[test]
+fn an_elastic_gear_or_play_is_part_of_the_law_of_its_simulation() {
+    let folder = bench();
+    let at = folder.path();
+    for (effect, largest_error) in [("elasticity=3", Some(1.1)), ("backlash=1", None)] {
+        simulate(at, &format!("joint.toml --effect {effect} --duration 120 --seed 9 -o both.csv"));
+        for (name, half) in [("real.csv", 0.0..60.0), ("simulated.csv", 60.0..120.0)] {
+            let text = std::fs::read_to_string(at.join("both.csv")).unwrap();
+            let is_in =
+                |line: &&str| line.split(',').next().unwrap().parse::<f64>().map_or(true, |t| half.contains(&t));
+            let lines: Vec<&str> = text.lines().filter(is_in).collect();
+            std::fs::write(at.join(name), lines.join("\n") + "\n").unwrap();
+        }
+        let told = diagnose(at, "real.csv --simulation simulated.csv --json -");
+        assert!(told.status <= 1, "{effect}: {}", told.messages);
+        let json: Value = serde_json::from_str(&told.output).unwrap();
+        assert!(!json["given"]["holds"].as_array().unwrap().is_empty(), "{effect}");
+        let (error, noise) = (json["given"]["rmse"].as_f64().unwrap(), json["fit"]["noise_rmse"].as_f64().unwrap());
+        assert!(largest_error.is_none_or(|largest| error < largest * noise), "{effect}: {error} beside {noise}");
+    }
+}
+
+/// A rigid body of the joint file is in N m: it was taken off a current as it is, and off friction that was separated before.
+#[test]
+fn a_given_rigid_body_counts_in_the_unit_of_the_actuator_and_not_beside_separated_friction() {
+    const BODY: &str = "[rigid_body]\ninertia_kgm2 = 0.5\ngravity_torque_Nm = 6.0\n";
+    let folder = bench();
+    let at = folder.path();
+    simulate(at, "joint.toml --duration 40 --seed 3 -o torque.csv");
+    let place = |name: &str| {
+        let header = std::fs::read_to_string(at.join("torque.csv")).unwrap();
+        header.lines().next().unwrap().split(',').position(|column| column == name).unwrap()
+    };
+    let (torque, position) = (place("torque_Nm"), place("position_rad"));
+    let with = |to: &str, column: &str, change: &dyn Fn(f64, f64) -> f64| {
+        rewrite(at, "torque.csv", to, |fields| {
+            let mut fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
+            fields[torque] = match fields[torque].parse::<f64>() {
+                Ok(value) => change(value, fields[position].parse().unwrap()).to_string(),
+                Err(_) => column.to_owned(),
+            };
+            fields.join(",")
+        });
+    };
+    with("current.csv", "current_A", &|torque, _| torque / 8.0);
+    with("friction.csv", "friction_torque_Nm", &|torque, position| torque - 6.0 * position.sin());
+    std::fs::write(at.join("body.toml"), BODY).unwrap();
+    std::fs::write(at.join("drive.toml"), format!("{BODY}[drive]\ntorque_constant_Nm_A = 8.0\n")).unwrap();
+
+    let told = |arguments: &str| -> Value {
+        let told = diagnose(at, &format!("{arguments} --json -"));
+        assert!(told.status <= 1, "{arguments}: {}", told.messages);
+        serde_json::from_str(&told.output).unwrap()
+    };
+    let error = |told: &Value| told["fit"]["baseline"]["rmse"].as_f64().unwrap();
+    let names = |told: &Value| -> Vec<String> {
+        told["findings"].as_array().unwrap().iter().map(|finding| finding["effect"].to_string()).collect()
+    };
+    let by_torque = told("torque.csv --joint body.toml");
+    let by_current = told("current.csv --joint drive.toml -o current.frk");
+    assert!((error(&by_torque) / (8.0 * error(&by_current)) - 1.0).abs() < 1e-3, "{by_torque} {by_current}");
+    assert_eq!(names(&by_torque), names(&by_current));
+    let image = run(at, &["export", "current.frk", "--to", "json", "-o", "-"]);
+    let image: Value = serde_json::from_str(&image.output).unwrap();
+    assert!((image["rigid_body"]["gravity_sin"].as_f64().unwrap() - 6.0 / 8.0).abs() < 0.05, "{image}");
+    let refused = diagnose(at, "current.csv --joint body.toml");
+    assert_eq!(refused.status, 3);
+    assert!(refused.messages.contains("FRK-D014"), "{}", refused.messages);
+
+    let [alone, beside] = ["friction.csv", "friction.csv --joint body.toml"].map(told);
+    assert_eq!(error(&alone), error(&beside));
+}
+
 /// The simulator's own effect is part of what the drive gets, and the recording may have less of it.
 #[test]
 fn what_a_simulator_holds_too_much_of_is_said_and_its_effects_reach_the_image() {

@@ -128,6 +128,21 @@ impl Drive {
 }
 
 impl Joint {
+    /// Actuator unit per N m (or N) at the joint: 1 unless the actuator is a current, "A".
+    ///
+    /// # Errors
+    /// `FRK-D014` beside a current when no torque constant is given.
+    pub fn actuator_per_torque(&self, actuator_unit: &str) -> Result<f64> {
+        if actuator_unit != "A" {
+            return Ok(1.0);
+        }
+        self.drive.joint_torque_per_ampere().map(f64::recip).ok_or_else(|| {
+            let message =
+                "a rigid body in N m beside a current needs `torque_constant_Nm_A` under [drive] of joint.toml";
+            Error::new(&codes::MISSING_PARAMETER, message)
+        })
+    }
+
     /// Reads `joint.toml` and the URDF file that it names.
     ///
     /// # Errors

@@ -136,7 +136,15 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     }
     match (&arguments.advise, &advice) {
         (Some(path), Some(plan)) => outputs.add(path, plan.to_csv(units.rotary)),
-        (Some(_), None) => remarks.push("no trajectory is needed: nothing that was found has a rival".to_string()),
+        (Some(_), None) => {
+            let has_rivals = diagnosis.findings.iter().any(|finding| !finding.alternatives.is_empty());
+            let reason = if has_rivals {
+                "no trajectory is written: no motion within the limits tells the rivals apart"
+            } else {
+                "no trajectory is needed: nothing that was found has a rival"
+            };
+            remarks.push(reason.to_string());
+        }
         (None, _) => {}
     }
     let inputs = [arguments.joint.as_ref(), arguments.simulation.as_ref(), arguments.model.as_ref()];
@@ -254,7 +262,8 @@ fn exit_status(verdict: Verdict) -> u8 {
 }
 
 fn text_of(story: &Story, advice: Option<&Plan>) -> String {
-    let bullets = story.health.iter().chain(&story.findings).map(|sentence| format!("  * {sentence}\n"));
+    let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
+    let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
     let rest = [&story.proof, &story.minor, &story.doubtful, &story.negligible, &story.withdrawn, &story.limits]
         .into_iter()
         .flatten()

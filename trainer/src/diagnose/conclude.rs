@@ -178,10 +178,16 @@ pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
         Dimension::TorquePerVelocityKelvin => format!("{actuator} s/({position} K)"),
         Dimension::TorquePerPosition => format!("{actuator}/{position}"),
         Dimension::Inertia => match (actuator, rotary) {
-            ("N m", _) => "kg m2".to_string(),
+            ("N m", true) => "kg m2".to_string(),
             ("N", false) => "kg".to_string(),
             _ => format!("{actuator} s2/{position}"),
         },
+        Dimension::InertiaPosition => match (actuator, rotary) {
+            ("N m", true) => "kg m2".to_string(),
+            ("N", false) => "kg m".to_string(),
+            _ => format!("{actuator} s2"),
+        },
+        Dimension::Celsius => "degC".to_string(),
         Dimension::TorquePerSecond => format!("{actuator}/s"),
         Dimension::TorquePerSecondSquared => format!("{actuator}/s2"),
         Dimension::TorquePerWatt => format!("{actuator}/W"),

@@ -33,7 +33,44 @@ pub(crate) fn probability(found: &Accepted) -> f64 {
 /// What is left of the probability, shared among the rivals by their likelihood.
 pub(crate) fn alternatives(found: &Accepted) -> Vec<(EffectId, f64)> {
     let left = 0.97 * (1.0 - probability(found));
-    let weights: Vec<f64> = found.rivals.iter().map(|(_, distance)| (-distance).exp()).collect();
+    let nearest = found.rivals.iter().map(|(_, distance)| *distance).fold(f64::INFINITY, f64::min);
+    let weights: Vec<f64> = found.rivals.iter().map(|(_, distance)| (nearest - distance).exp()).collect();
     let total: f64 = weights.iter().sum();
     found.rivals.iter().zip(&weights).map(|((effect, _), weight)| (*effect, left * weight / total)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::candidates::Label;
+
+    fn beside(rivals: &[(EffectId, f64)]) -> Accepted {
+        Accepted {
+            label: Label::Named(EffectId::Spring),
+            shape: Vec::new(),
+            score: 20.0,
+            family_wise: 1e-9,
+            fold_gain: Vec::new(),
+            margin: 20.0,
+            rivals: rivals.to_vec(),
+            standings: rivals.to_vec(),
+            channels: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_left_of_the_probability_is_shared_however_far_a_rival_leads() {
+        let found = beside(&[(EffectId::GravityError, -2000.0), (EffectId::Contact, -1999.0)]);
+        let [first, second] = alternatives(&found)[..] else { panic!() };
+        assert!((first.1 + second.1 - 0.97 * (1.0 - probability(&found))).abs() < 1e-12);
+        assert!((first.1 / second.1 - 1f64.exp()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_more_rivals_are_near_the_less_is_sure() {
+        let near = (EffectId::GravityError, 0.5);
+        let stated = [&[][..], &[(EffectId::Contact, 3.0)], &[near], &[near, (EffectId::Contact, 3.0)]]
+            .map(|rivals| probability(&beside(rivals)));
+        assert!(stated.windows(2).all(|pair| pair[0] > pair[1]), "{stated:?}");
+    }
 }

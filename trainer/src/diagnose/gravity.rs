@@ -12,6 +12,16 @@ pub(super) fn gravity_of_body(state: &JointState) -> Option<Vec<f64>> {
     Some(state.map(|i| body[i] - inertia * state.acceleration[i]))
 }
 
+/// Gives a state that was recorded without one the torque of a rigid body, and its load where that was not recorded either.
+pub(super) fn give_body(state: &mut JointState, body: Vec<f64>) {
+    state.rigid_body = Some(body);
+    if state.load.is_none() {
+        state.load = state.rigid_body.clone();
+        state.gravity = gravity_of_body(state);
+        state.gravity_slope = slope_of_gravity(state);
+    }
+}
+
 /// What of a rigid body depends on the position: sine and cosine of a joint, a slope of a linear axis.
 pub(super) fn torques_of_position(state: &JointState) -> Vec<Vec<f64>> {
     let of_position: &[fn(f64) -> f64] = if state.rotary { &[f64::sin, f64::cos] } else { &[|position| position] };

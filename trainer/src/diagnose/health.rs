@@ -162,8 +162,8 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
         effect: EffectId::Quantisation,
         blocking: true,
         sentence: format!(
-            "the position is recorded in steps of {:.2e}: its grain drowns everything above {cut_off} Hz",
-            signals.position_resolution
+            "the position is recorded in steps of {}: its grain drowns everything above {cut_off} Hz",
+            quantity(signals.position_resolution, if signals.rotary { "rad" } else { "m" })
         ),
     })
 }

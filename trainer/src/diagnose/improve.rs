@@ -230,15 +230,15 @@ fn add_channels(model: &mut HostModel, channels: &[Quantity], state: &JointState
         if matches!(model.law, Law::Network(_)) {
             return None;
         }
-        model.inputs.push(channel_input(quantity, state)?).ok()?;
+        model.inputs.push(channel_input(quantity, state, model.output_unit)?).ok()?;
     }
     Some(())
 }
 
-fn channel_input(quantity: &Quantity, state: &JointState) -> Option<Input> {
+fn channel_input(quantity: &Quantity, state: &JointState, torque: Unit) -> Option<Input> {
     let (series, unit) = match quantity {
         Quantity::Position => (&state.position, if state.rotary { Unit::Radian } else { Unit::Metre }),
-        Quantity::Load => (state.load.as_ref()?, Unit::NewtonMetre),
+        Quantity::Load => (state.load.as_ref()?, torque),
         Quantity::Temperature => (state.temperature.as_ref()?, Unit::Celsius),
         _ => return None,
     };

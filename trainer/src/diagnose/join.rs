@@ -1,6 +1,7 @@
 //! Several recordings of one joint as one: what was recorded first and what was recorded after advice.
 
 use super::signals::Signals;
+use crate::samples::spikes::Spikes;
 
 /// Why two recordings cannot be taken together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -52,7 +53,7 @@ impl Signals {
         for (series, with) in self.other_positions.iter_mut().zip(next.other_positions) {
             series.extend(with);
         }
-        self.spikes.extend(next.spikes);
+        self.spikes.extend(next.spikes.into_iter().map(|spikes| Spikes { time_s: spikes.time_s + shift, ..spikes }));
         self.position_resolution = self.position_resolution.max(next.position_resolution);
         self.resampled |= next.resampled;
         Ok(())
@@ -79,7 +80,9 @@ mod tests {
     fn a_later_clock_is_kept_and_a_new_one_follows_at_once() {
         for (start, expected) in [(100.0, 100.0), (0.0, 1.0)] {
             let mut both = part(0.0, 100, true);
-            both.append(part(start, 50, true)).unwrap();
+            let spikes = Spikes { channel: "torque".into(), rows: 1, time_s: start + 0.2, height: 3.0, unit: "N m" };
+            both.append(Signals { spikes: vec![spikes], ..part(start, 50, true) }).unwrap();
+            assert!((both.spikes[0].time_s - expected - 0.2).abs() < 1e-9, "a glitch is told at its time");
             assert!((both.time[100] - expected).abs() < 1e-9);
             assert!(both.time.windows(2).all(|pair| pair[1] > pair[0]));
             assert_eq!((both.torque.len(), both.segments.clone()), (150, vec![0..100, 100..150]));

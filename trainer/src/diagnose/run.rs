@@ -170,6 +170,9 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let verdict = Verdict::of(&findings, blocked);
     let given = (options.base == BaseKind::Reference).then(|| given(&search, &baseline));
     let score = |refit: &Refit| score(&search, &rest(&search, refit));
+    let mut traces = Traces::of(&search, &baseline, &improved);
+    // A fault of the measurement adds no torque.
+    traces.effects.resize(findings.len(), vec![0.0; traces.time.len()]);
     Ok(Diagnosis {
         verdict,
         health,
@@ -179,7 +182,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
         given,
         base_parameters: base_parameters(&base, &improved, signals, actuator),
         noise_rmse: improved.noise.rms,
-        traces: Traces::of(&search, &baseline, &improved),
+        traces,
         baseline: score(&baseline),
         improved: score(&improved),
         proof,

@@ -99,16 +99,21 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
             let count = diagnosis.findings.len();
             let effects = if count == 1 { "One effect is".to_string() } else { format!("{count} effects are") };
             format!(
-                "{effects} missing from the model: it is wrong by {}, of which {noise} is noise.",
+                "{effects} missing from the model: its error is {} (root mean square), and noise alone would leave {noise}.",
                 quantity(diagnosis.baseline.rmse, units.actuator)
             )
         }
         Verdict::Unexplained => format!(
-            "Something structured is missing that the catalogue does not hold: the model is wrong by {}, of which \
-             {noise} is noise.",
+            "Something structured is missing that the catalogue does not hold: the model's error is {} (root mean square), and \
+             noise alone would leave {noise}.",
             quantity(diagnosis.baseline.rmse, units.actuator)
         ),
-        Verdict::BadData => "The measurement has to be put right before anything can be said of the physics.".into(),
+        Verdict::BadData if diagnosis.health.iter().any(|note| note.blocking) => {
+            "The measurement has to be put right before anything can be said of the physics.".into()
+        }
+        Verdict::BadData => {
+            "The measurement is at fault; beside that nothing is missing that this recording could show.".into()
+        }
     }
 }
 

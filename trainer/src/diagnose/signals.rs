@@ -60,20 +60,18 @@ impl Signals {
     }
 
     /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque
-    /// where the recording carries none.
+    /// where the recording carries none; friction that was separated before holds none any more.
     ///
     /// # Errors
-    /// `FRK-D009` when clock, motion or actuator is missing.
+    /// `FRK-D009` when clock, motion or actuator is missing, `FRK-D010` when its unit is not understood, `FRK-D014` for a rigid body
+    /// given in N m beside a current without a torque constant.
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
         let (recording, spikes) = &without_spikes(recording);
         let even = EvenClock::of(recording)?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
-        let actuator = recording
-            .actuator()
-            .or_else(|| recording.separated_friction())
-            .and_then(|channel| even.named(&channel.name))
-            .map(<[f64]>::to_vec);
-        let torque = match actuator {
+        let actuator = recording.actuator();
+        let channel = actuator.or_else(|| recording.separated_friction());
+        let torque = match channel.and_then(|channel| even.named(&channel.name)).map(<[f64]>::to_vec) {
             Some(torque) => torque,
             None => {
                 recording.require(&[Quantity::Torque, Quantity::Force, Quantity::Current], "a diagnosis")?;
@@ -93,7 +91,7 @@ impl Signals {
             period: even.period_s,
             time: even.time.clone(),
             velocity: owned(Quantity::Velocity),
-            rigid_body: owned(Quantity::RigidBodyTorque),
+            rigid_body: owned(Quantity::RigidBodyTorque).filter(|_| actuator.is_some()),
             load: owned(Quantity::LoadTorque),
             temperature: owned(Quantity::Temperature),
             link_position: owned(Quantity::LinkPosition),
@@ -109,14 +107,19 @@ impl Signals {
             position,
             ..Self::default()
         };
-        if signals.rigid_body.is_none() && (body.inertia_kgm2.is_some() || body.gravity_torque_nm.is_some()) {
+        let is_given = body.inertia_kgm2.is_some() || body.gravity_torque_nm.is_some();
+        if let Some(actuator) = actuator.filter(|_| is_given && signals.rigid_body.is_none()) {
+            let per_torque = joint.actuator_per_torque(actuator.unit)?;
             let phase = body.gravity_phase_rad.unwrap_or(0.0);
             // Beside a given inertia, a recorded load torque stands for the gravity that is not given.
-            let gravity = match body.gravity_torque_nm {
-                Some(gravity) => Some(signals.position.iter().map(|q| gravity * (q + phase).sin()).collect()),
-                None => signals.load.clone(),
+            let gravity: Option<Vec<f64>> = match (body.gravity_torque_nm, &signals.load) {
+                (Some(gravity), _) => {
+                    Some(signals.position.iter().map(|q| per_torque * gravity * (q + phase).sin()).collect())
+                }
+                (None, Some(load)) => Some(load.iter().map(|load| per_torque * load).collect()),
+                (None, None) => None,
             };
-            signals.give_rigid_body(body.inertia_kgm2.unwrap_or(0.0), gravity.as_deref());
+            signals.give_rigid_body(per_torque * body.inertia_kgm2.unwrap_or(0.0), gravity.as_deref());
         }
         Ok(signals)
     }
@@ -149,7 +152,8 @@ impl Signals {
         aligned
     }
 
-    /// Gives the nominal rigid body as an inertia (kg m2, or kg on a linear axis) and a gravity torque a sample.
+    /// Gives the nominal rigid body as an inertia and a gravity torque a sample, in the unit of the actuator (kg m2, or kg on a linear
+    /// axis).
     pub fn give_rigid_body(&mut self, inertia: f64, gravity: Option<&[f64]>) {
         let acceleration = second_derivative(&self.position, &self.segments, self.period);
         self.body_follows_position = true;

@@ -33,8 +33,8 @@ impl Hypothesis for KinematicError {
 
     fn coefficients(&self, _shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
         vec![
-            ("kinematic_cosine_amplitude", "A", Dimension::Inertia),
-            ("kinematic_sine_amplitude", "B", Dimension::Inertia),
+            ("kinematic_cosine_amplitude", "A", Dimension::InertiaPosition),
+            ("kinematic_sine_amplitude", "B", Dimension::InertiaPosition),
         ]
     }
 

@@ -48,6 +48,8 @@ pub enum Dimension {
     TorquePerVelocity,
     /// Torque per velocity to a power that is itself a parameter.
     TorquePerVelocityPower,
+    /// A temperature in degrees Celsius.
+    Celsius,
     /// Torque per kelvin.
     TorquePerKelvin,
     /// 1/K.
@@ -58,6 +60,8 @@ pub enum Dimension {
     TorquePerPosition,
     /// Torque per acceleration: an inertia or a mass.
     Inertia,
+    /// An inertia or a mass times a position.
+    InertiaPosition,
     /// Torque per second.
     TorquePerSecond,
     /// Torque per squared second.

@@ -39,7 +39,7 @@ impl Hypothesis for Presliding {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = sum_i F_i (z_i - tanh(v/v_eps)), dz_i/dq = (sign(v) - z_i) / delta_i, delta_i = delta 4^(i-1)"
+        "dF = sum_i F_i (z_i - tanh(v/v_eps)), dz_i = (sign(dq) - z_i) |dq| / delta_i, delta_i = delta 4^(i-1)"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {

@@ -23,7 +23,7 @@ impl Hypothesis for RecurrentFault {
     }
 
     fn equation(&self) -> &'static str {
-        "dF = A exp((cos(N q - phi) - 1)/w^2) [tanh(v/v_eps) where it is friction]"
+        "dF = A exp((cos(N q - phi) - 1)/(2 pi w)^2) [tanh(v/v_eps) where it is friction]"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {

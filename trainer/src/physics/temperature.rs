@@ -60,7 +60,7 @@ impl Hypothesis for Temperature {
     fn shape_names(&self) -> Vec<ShapeName> {
         vec![
             ShapeName::new("variant", "variant", Dimension::One),
-            ShapeName::new("reference_temperature", "T_ref", Dimension::One),
+            ShapeName::new("reference_temperature", "T_ref", Dimension::Celsius),
             ShapeName::new("viscosity_decay", "k", Dimension::PerKelvin),
         ]
     }

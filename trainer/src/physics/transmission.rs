@@ -26,24 +26,25 @@ pub(super) fn left_behind(state: &JointState, link_inertia: f64, sample: usize, 
     -bend - state.gravity_slope[sample] / link_inertia * twist
 }
 
-/// The column of a shape: what the measured twist leaves behind, or the one that `inferred` works out.
+/// The column of a shape: what the measured twist leaves behind, or the one that `inferred` works out. None where the twist was
+/// measured elsewhere and this recording lacks a second encoder.
 pub(super) fn column(
     state: &JointState,
     link_inertia: f64,
     variant: f64,
     inferred: impl FnOnce() -> Vec<f64>,
 ) -> Vec<Vec<f64>> {
-    vec![if variant == MEASURED { measured(state, link_inertia) } else { inferred() }]
+    if variant == MEASURED { measured(state, link_inertia).into_iter().collect() } else { vec![inferred()] }
 }
 
-/// What the measured twist leaves behind; empty without a second encoder.
-fn measured(state: &JointState, link_inertia: f64) -> Vec<f64> {
-    let Some(link) = &state.link else { return Vec::new() };
+/// What the measured twist leaves behind; `None` without a second encoder.
+fn measured(state: &JointState, link_inertia: f64) -> Option<Vec<f64>> {
+    let link = state.link.as_ref()?;
     let (offset, _) = line_of_twist(state, link, link_inertia);
-    state.map(|i| {
+    Some(state.map(|i| {
         let twist = state.position[i] - link.position[i] - offset;
         left_behind(state, link_inertia, i, twist, state.acceleration[i] - link.acceleration[i])
-    })
+    }))
 }
 
 /// Torque that the transmission carries: the link's gravity and its inertia.
@@ -82,11 +83,11 @@ pub(crate) fn usual_link_inertia(state: &JointState) -> Option<f64> {
     nominal_inertia(state).map(|inertia| LINK_SHARE * inertia)
 }
 
-/// Acceleration of the twist while the play is open: the motor's own and that of the free link.
+/// Acceleration of the twist while the play is open: the motor's own and that of the free link, which falls where gravity is known.
 pub(super) fn opening(state: &JointState, link_inertia: f64) -> Vec<f64> {
     match &state.gravity {
         Some(gravity) => state.map(|i| state.acceleration[i] + gravity[i] / link_inertia),
-        None => Vec::new(),
+        None => state.acceleration.clone(),
     }
 }
 

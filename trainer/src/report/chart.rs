@@ -204,9 +204,10 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut kept = Vec::with_capacity(2 * MOST_COLUMNS);
     for bucket in points.chunks(size) {
         let by = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
-        let (Some(low), Some(high)) = (bucket.iter().min_by(by), bucket.iter().max_by(by)) else { continue };
-        let pair = if low[0] <= high[0] { [*low, *high] } else { [*high, *low] };
-        kept.extend(pair);
+        let drawn = || bucket.iter().filter(|point| !point[1].is_nan());
+        if let (Some(low), Some(high)) = (drawn().min_by(by), drawn().max_by(by)) {
+            kept.extend(if low[0] <= high[0] { [*low, *high] } else { [*high, *low] });
+        }
         kept.extend(bucket.iter().find(|p| p[1].is_nan()).copied());
     }
     kept
@@ -240,4 +241,19 @@ pub(super) fn bars(rows: &[(String, f64, bool)], unit: &str) -> String {
     }
     svg.push_str("</svg>");
     svg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_line_keeps_its_peaks_beside_a_break() {
+        let mut points: Vec<[f64; 2]> = (0..10 * MOST_COLUMNS).map(|i| [i as f64, 0.0]).collect();
+        points[1234][1] = 7.0;
+        points[1235][1] = f64::NAN;
+        let kept = thinned(&points);
+        assert!(kept.contains(&[1234.0, 7.0]));
+        assert_eq!(kept.iter().filter(|point| point[1].is_nan()).count(), 1);
+    }
 }

@@ -126,7 +126,7 @@ pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
     if body.inertia_kgm2.is_none() && body.gravity_torque_nm.is_none() {
         return Ok(torque);
     }
-    let per_nm = actuator_per_torque(samples, joint)?;
+    let per_nm = joint.actuator_per_torque(samples.actuator_unit)?;
     if let Some((inertia, acceleration)) = body.inertia_kgm2.zip(samples.acceleration.as_deref()) {
         for (sum, a) in torque.iter_mut().zip(acceleration) {
             *sum += per_nm * inertia * a;
@@ -143,17 +143,6 @@ pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
         }
     }
     Ok(torque)
-}
-
-/// Actuator unit per N m (or N): one unless the actuator is a current.
-fn actuator_per_torque(samples: &Samples, joint: &Joint) -> Result<f64> {
-    if samples.actuator_unit != "A" {
-        return Ok(1.0);
-    }
-    joint.drive.joint_torque_per_ampere().map(f64::recip).ok_or_else(|| {
-        let message = "a rigid body in N m beside a current needs `torque_constant_Nm_A` under [drive] of joint.toml";
-        Error::new(&codes::MISSING_PARAMETER, message)
-    })
 }
 
 /// The rigid-body terms that these samples ask to be identified: those that `joint.toml` does not give.
@@ -231,8 +220,11 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
         }
     }
     let friction = actuator.iter().zip(&rigid_body).map(|(total, body)| total - body).collect();
-    let given_inertia =
-        joint.rigid_body.inertia_kgm2.zip(actuator_per_torque(samples, joint).ok()).map_or(0.0, |(j, k)| j * k);
+    let given_inertia = joint
+        .rigid_body
+        .inertia_kgm2
+        .zip(joint.actuator_per_torque(samples.actuator_unit).ok())
+        .map_or(0.0, |(j, k)| j * k);
     Ok(Separation {
         terms,
         parameters,

@@ -1,6 +1,7 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
 use super::{Diagnose, units};
+use crate::diagnose::sentence::Units;
 use crate::diagnose::simulation::{self, InverseLaw};
 use crate::diagnose::{Reference, Signals, model};
 use crate::error::{Error, Result, codes};
@@ -51,7 +52,7 @@ pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: 
         signals.compare_with(reference);
         Ok((signals, Compared::Model(Box::new(image.model))))
     } else {
-        Ok((joined(real, joint)?, Compared::Itself(Box::new(given_rigid_body(&real[0], joint)))))
+        Ok((joined(real, joint)?, Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
 }
 
@@ -66,17 +67,21 @@ fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
     Ok(all)
 }
 
-/// The rigid body of the joint file, where it stands for the recording's own.
-fn given_rigid_body(real: &Recording, joint: &Joint) -> RigidBody {
-    let mut body = RigidBody::default();
-    if real.channel(Quantity::RigidBodyTorque).is_none() {
-        let (gravity, phase) = (joint.rigid_body.gravity_torque_nm, joint.rigid_body.gravity_phase_rad);
-        let (gravity, phase) = (gravity.unwrap_or(0.0), phase.unwrap_or(0.0));
-        body.inertia = joint.rigid_body.inertia_kgm2.unwrap_or(0.0) as f32;
-        body.gravity_sin = (gravity * phase.cos()) as f32;
-        body.gravity_cos = (gravity * phase.sin()) as f32;
-    }
-    body
+/// The rigid body of the joint file, where it stands for the recording's own, in the unit of the actuator.
+fn given_rigid_body(real: &Recording, joint: &Joint) -> Result<RigidBody> {
+    let given = &joint.rigid_body;
+    let actuator = real.actuator().filter(|_| real.channel(Quantity::RigidBodyTorque).is_none());
+    let Some(actuator) = actuator.filter(|_| given.inertia_kgm2.or(given.gravity_torque_nm).is_some()) else {
+        return Ok(RigidBody::default());
+    };
+    let per_torque = joint.actuator_per_torque(actuator.unit)?;
+    let (gravity, phase) = (given.gravity_torque_nm.unwrap_or(0.0), given.gravity_phase_rad.unwrap_or(0.0));
+    Ok(RigidBody {
+        inertia: (per_torque * given.inertia_kgm2.unwrap_or(0.0)) as f32,
+        gravity_sin: (per_torque * gravity * phase.cos()) as f32,
+        gravity_cos: (per_torque * gravity * phase.sin()) as f32,
+        ..RigidBody::default()
+    })
 }
 
 /// The states of the recording, which need a segment longer than its filter.
@@ -92,11 +97,15 @@ fn same_units(real: &Recording, other: &Recording) -> Result<()> {
     if units(real) == units(other) {
         return Ok(());
     }
+    let said = |recording: &Recording| {
+        let Units { actuator, rotary } = units(recording);
+        format!("{actuator} of a {} axis", if rotary { "rotary" } else { "linear" })
+    };
     let message = format!(
         "this gives {}, {} gives {}; both have to be of one axis and one actuator quantity",
-        units(other).actuator,
+        said(other),
         real.file(),
-        units(real).actuator
+        said(real)
     );
     Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(other.file()))
 }

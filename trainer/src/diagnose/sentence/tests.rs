@@ -101,7 +101,7 @@ fn a_finding_reads_as_a_sentence() {
     );
     assert_eq!(
         story.headline,
-        "One effect is missing from the model: it is wrong by 0.92 N m, of which 0.4 N m is noise."
+        "One effect is missing from the model: its error is 0.92 N m (root mean square), and noise alone would leave 0.4 N m."
     );
     assert_eq!(
         story.proof.unwrap(),

@@ -4,6 +4,7 @@
 use super::super::base::BaseKind;
 use super::super::blocks::Lock;
 use super::super::candidates::Label;
+use super::super::gravity::give_body;
 use super::super::prepare::Prepared;
 use super::super::random::normal;
 use super::super::reference::Reference;
@@ -75,7 +76,12 @@ impl HeldEffects {
     /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
     pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
         let (predicted, base_friction) = (self.beside.torque(state), self.beside.friction_curve());
-        let state = JointState { predicted, base_friction, ..state.clone() };
+        let mut state = JointState { predicted, base_friction, ..state.clone() };
+        if state.rigid_body.is_none() {
+            // As the simulation stood when the effects were found in it.
+            let body = self.beside.rigid_body_torque(&state);
+            give_body(&mut state, body);
+        }
         let hypotheses = catalogue();
         let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);
         let columns = self.effects.iter().flat_map(|held| {

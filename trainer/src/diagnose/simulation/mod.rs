@@ -248,6 +248,17 @@ impl InverseLaw {
         weighted(&self.columns(state), &self.coefficients)
     }
 
+    /// The part of the torque that goes with acceleration, position and a given rigid body, constant torque included.
+    fn rigid_body_torque(&self, state: &JointState) -> Vec<f64> {
+        self.rigid_body_of(&self.columns(state))
+    }
+
+    fn rigid_body_of(&self, columns: &[Vec<f64>]) -> Vec<f64> {
+        let begin = self.friction_width();
+        let rigid_body = begin..begin + self.rigid_body_width();
+        weighted(&columns[rigid_body.clone()], &self.coefficients[rigid_body])
+    }
+
     /// Friction as pairs (velocity, torque) in ascending velocity.
     fn friction_curve(&self) -> Vec<(f64, f64)> {
         tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect()
@@ -257,14 +268,12 @@ impl InverseLaw {
     #[must_use]
     pub fn at(&self, state: &JointState) -> Reference {
         let columns = self.columns(state);
-        let friction = self.friction_width();
-        let rigid_body = friction..friction + self.rigid_body_width();
         let met = self.left.as_ref().and_then(|left| left.at(state));
         let unmet = met.as_ref().map_or(1.0, |met| 1.0 - met.share);
         let formula_error = self.formula_error * unmet.sqrt();
         Reference {
             torque: weighted(&columns, &self.coefficients),
-            rigid_body: weighted(&columns[rigid_body.clone()], &self.coefficients[rigid_body]),
+            rigid_body: self.rigid_body_of(&columns),
             jacobian: coulomb_and_viscous(state),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
             left: met.map(|met| met.torque),
