@@ -30,7 +30,7 @@ pub struct Joint {
     /// Parameters of the drive.
     #[serde(default)]
     pub drive: Drive,
-    /// Within which the joint may be moved.
+    /// Limits within which the joint may be moved.
     #[serde(default)]
     pub limits: Limits,
     /// Tables that other commands read (the simulated plant, for one), untouched.
@@ -101,7 +101,7 @@ pub struct Drive {
     pub rate_hz: Option<f64>,
 }
 
-/// Within which the joint may be moved; what is absent is taken from a recording.
+/// Limits within which the joint may be moved; what is absent is taken from a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {

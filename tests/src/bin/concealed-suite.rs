@@ -46,6 +46,9 @@ struct Arguments {
     /// Seeds of the other trajectories of the same joint; the confounded and the real recordings go with them.
     #[arg(long, default_value_t = 0)]
     afterwards: u64,
+    /// Title of the page.
+    #[arg(long, default_value = "Effects concealed in simulated recordings")]
+    title: String,
     /// Where the Markdown goes; standard output when absent.
     #[arg(short, long)]
     output: Option<std::path::PathBuf>,
@@ -54,12 +57,12 @@ struct Arguments {
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
     let outcomes: Vec<Result<Row, String>> = page::counted(&cases(&arguments), |case| {
-        run(case).map(|outcome| Row::of(&outcome)).map_err(|error| format!("{case:?}: {error}"))
+        run(case).map(|outcome| Row::of(&outcome)).map_err(|error| format!("{case}: {error}"))
     });
     let (rows, errors): (Vec<_>, Vec<_>) = outcomes.into_iter().partition(Result::is_ok);
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
     let errors: Vec<String> = errors.into_iter().filter_map(Result::err).collect();
-    let mut text = report(&rows, &errors, &page::command("concealed-suite"));
+    let mut text = report(&arguments.title, &rows, &errors, &page::command("concealed-suite"));
     if arguments.afterwards > 0 {
         text += &beyond(&arguments);
     }

@@ -68,10 +68,10 @@ const CASES: [Case; 10] = [
         arguments: kr300!("1"),
         joint: None,
         known: "The owner's rigid-body torque is that of the links. What it leaves out should come back on every axis: the \
-                rotors, which a gear of more than a hundred makes as heavy as the links, as an inertia that is wrong, and \
+                rotors, whose inertia counts with the square of a gear ratio above a hundred, as an inertia that is wrong, and \
                 gravity, which over a third of a radian is a preload with a little stiffness. Axis 1 stands upright: no \
-                gravity. Three passes of ten seconds hold few stops, all of them short: where break-away after a stop is \
-                named, its time scale lies at the lower bound, so that every stop counts alike.",
+                gravity. Three passes of ten seconds hold few stops, all of them short: where break-away after a stop or \
+                warm-up is named, its time lies at the lower bound: what decays within a pass of ten seconds need not be heat.",
     },
     Case {
         title: "KR300, axis 2",

@@ -17,7 +17,7 @@ pub fn controls(rows: &[Row], text: &mut String) {
     let names: Vec<&str> = bases.iter().map(|base| base_name(*base)).collect();
     let _ = writeln!(
         text,
-        "## Controls: nothing is missing\n\nFalse alarms by kind of recording and by the model that the diagnosis starts from.\n\n| kind | {} |\n|---{}|",
+        "## Controls: nothing is missing\n\nFalse alarms by kind of noise, as of `[plant.noise]` of `trainer simulate`, and by the model that the diagnosis starts from.\n\n| kind | {} |\n|---{}|",
         names.join(" | "),
         "|---".repeat(bases.len())
     );
@@ -27,7 +27,7 @@ pub fn controls(rows: &[Row], text: &mut String) {
             let of_base = || of_kind().filter(|row| row.case.base == base);
             share(of_base().filter(is_alarm).count(), of_base().count())
         };
-        let name = kind.map_or("all".to_string(), |kind| format!("{kind:?}"));
+        let name = kind.map_or("all", NoiseKind::name);
         let _ =
             writeln!(text, "| {name} | {} |", bases.iter().map(|base| alarms(*base)).collect::<Vec<_>>().join(" | "));
     }
@@ -35,6 +35,6 @@ pub fn controls(rows: &[Row], text: &mut String) {
     for alarm in controls.iter().filter(is_alarm) {
         let names: Vec<&str> = alarm.findings.iter().map(|(effect, ..)| effect.name()).collect();
         let Case { noise, base, seed, .. } = &alarm.case;
-        let _ = writeln!(text, "* {noise:?}, from {}, seed {seed}: {}", base_name(*base), names.join(" + "));
+        let _ = writeln!(text, "* {}, from {}, seed {seed}: {}", noise.name(), base_name(*base), names.join(" + "));
     }
 }

@@ -13,6 +13,8 @@ pub mod summary;
 pub mod symbolic;
 pub mod tables;
 
+use std::fmt;
+
 use frikan_trainer::diagnose::{
     BaseKind, Diagnosis, Finding, Lock, Options, Settings, Signals, Strength, diagnose, strength,
 };
@@ -41,6 +43,17 @@ pub struct Case {
     pub base: BaseKind,
     /// Seed of everything.
     pub seed: u64,
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.hidden {
+            Hidden::Nothing => write!(f, "nothing")?,
+            Hidden::Effect(effect, wanted) => write!(f, "{effect} at {wanted}")?,
+            Hidden::Pair(first, second, wanted) => write!(f, "{first} and {second} at {wanted}")?,
+        }
+        write!(f, ", {} noise, seed {}", self.noise.name(), self.seed)
+    }
 }
 
 /// Pairs whose members are far apart in the catalogue.

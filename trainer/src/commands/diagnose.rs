@@ -24,7 +24,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use summary::summary;
 
-/// Compare a recording with a simulation, a model or the best static model of itself, and name the physics that is missing.
+/// Compare a recording with a simulation, a model or a static friction model fitted to itself, and name the physics that is missing
+///
+/// Exit status: 0 nothing is missing, 1 something is, 2 usage, 3 the recording cannot be read (nothing is written) or is at fault itself
+/// (`bad_data`: what was found is written), 5 input or output.
 #[derive(Args, Clone, Debug)]
 pub struct Diagnose {
     /// Recording of the real joint; several are taken one behind the other
@@ -39,7 +42,7 @@ pub struct Diagnose {
     /// Static model of the same recording to start from, where neither simulation nor model is given
     #[arg(long, value_enum, default_value_t = StaticBase::CoulombViscous)]
     pub base: StaticBase,
-    /// Description of the joint
+    /// joint.toml: column names, rigid body, drive, limits
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
     /// What is locked away for the proof: `spread` (a fifth of every block), `tail:SHARE` or `none`

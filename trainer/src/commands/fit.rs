@@ -26,7 +26,7 @@ pub struct Fit {
     /// Recordings that are only scored
     #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
     pub tests: Vec<PathBuf>,
-    /// What is known of the joint
+    /// joint.toml: column names, rigid body, drive, limits
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
     /// Inputs of the law by name; chosen by relevance when absent

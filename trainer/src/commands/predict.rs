@@ -21,7 +21,7 @@ pub struct Predict {
     /// Recording to predict
     #[arg(value_name = "RECORDING")]
     pub recording: PathBuf,
-    /// What is known of the joint
+    /// joint.toml: column names, rigid body, drive, limits
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
     /// Recording to write

@@ -131,8 +131,10 @@ fn parse_effect(text: &str) -> std::result::Result<Hidden, String> {
 }
 
 fn parse_noise(text: &str) -> std::result::Result<NoiseKind, String> {
-    serde_json::from_value(json!(text))
-        .map_err(|_| "one of white, coloured, state_dependent, coarse_encoder, flexible_base is expected".to_owned())
+    NoiseKind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == text)
+        .ok_or_else(|| format!("one of {} is expected", NoiseKind::ALL.map(NoiseKind::name).join(", ")))
 }
 
 #[cfg(test)]

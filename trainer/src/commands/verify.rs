@@ -36,10 +36,10 @@ pub struct Verify {
     /// Compare along a recording as well
     #[arg(long, value_name = "RECORDING")]
     pub recording: Option<PathBuf>,
-    /// What is known of the joint, for the recording
+    /// joint.toml: column names, rigid body, drive, limits
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
-    /// Where to evaluate: host, or an emulated target such as cortex-m4f
+    /// Where to evaluate: host, or emulated: cortex-m0plus, cortex-m33, cortex-m4f, cortex-m7, riscv32imac, riscv32imc
     #[arg(long, default_value = "host")]
     pub target: String,
     /// Also write the result as JSON; `-` for standard output

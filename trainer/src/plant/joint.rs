@@ -115,6 +115,18 @@ impl NoiseKind {
     /// All five kinds.
     pub const ALL: [Self; 5] =
         [Self::White, Self::Coloured, Self::StateDependent, Self::CoarseEncoder, Self::FlexibleBase];
+
+    /// Its name in `[plant.noise]`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::White => "white",
+            Self::Coloured => "coloured",
+            Self::StateDependent => "state_dependent",
+            Self::CoarseEncoder => "coarse_encoder",
+            Self::FlexibleBase => "flexible_base",
+        }
+    }
 }
 
 /// Noise of the torque signal.

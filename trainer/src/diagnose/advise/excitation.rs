@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Within which a joint may move; SI units, rotary or linear.
+/// Limits within which a joint may move; SI units, rotary or linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Envelope {
     /// Lowest position, rad or m.

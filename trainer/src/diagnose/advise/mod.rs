@@ -43,13 +43,13 @@ pub struct Question<'a> {
     pub signals: &'a Signals,
     /// What came of it.
     pub diagnosis: &'a Diagnosis,
-    /// Within which the joint may move.
+    /// Limits within which the joint may move.
     pub limits: Limits,
     /// The reference of [`super::BaseKind::Reference`] at other states.
     pub reference: Option<&'a ReferenceAt<'a>>,
 }
 
-/// Within which a joint may move; SI units, rotary or linear. What is absent is taken from the recording.
+/// Limits within which a joint may move; SI units, rotary or linear. What is absent is taken from the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
     /// Lowest position, rad or m.
