@@ -6,7 +6,9 @@ mod summary;
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::diagnose::improve::{Origin, improve};
-use crate::diagnose::sentence::{Story, Units, capital, tell};
+use crate::diagnose::names::capital;
+use crate::diagnose::sentence::{Story, tell};
+use crate::diagnose::units::Units;
 use crate::diagnose::{
     BaseKind, Diagnosis, Limits, Lock, Options, Plan, Question, Refusal, Settings, Signals, Verdict, diagnose, plan,
 };
@@ -267,10 +269,7 @@ fn exit_status(verdict: Verdict) -> u8 {
 fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
     let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
-    let rest = [&story.proof, &story.minor, &story.doubtful, &story.negligible, &story.withdrawn, &story.limits]
-        .into_iter()
-        .flatten()
-        .map(|s| format!("{s}\n"));
+    let rest = story.rest().map(|sentence| format!("{sentence}\n"));
     let advice = advice.map(|plan| format!("{}.\n", capital(&plan.sentence())));
     let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()

@@ -118,7 +118,7 @@ impl Base {
             Some(reference) => (reference.effects.clone(), &reference.doubt[..]),
             None => (Vec::new(), &[][..]),
         };
-        let doubt = doubt.iter().map(|torque| prepared.filtered(torque)).collect();
+        let doubt = prepared.filtered_all(doubt);
         let formula_error = signals.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
         Some(Self { columns, names, target, held, doubt, grain, formula_error, delay })
     }

@@ -90,9 +90,7 @@ impl Design {
         }
         let built: Vec<Vec<Vec<f64>>> = jobs
             .par_iter()
-            .map(|(_, shape, index)| {
-                hypotheses[*index].columns(state, shape).iter().map(|raw| prepared.filtered(raw)).collect()
-            })
+            .map(|(_, shape, index)| prepared.filtered_all(&hypotheses[*index].columns(state, shape)))
             .collect();
         let mut design = Self { columns: Vec::new(), groups: Vec::new() };
         for ((label, shape, _), columns) in jobs.into_iter().zip(built) {
@@ -123,10 +121,8 @@ impl Design {
 
     fn add_generic_rivals(&mut self, prepared: &Prepared) {
         let rivals = generic_rivals(&prepared.state);
-        let built: Vec<Vec<Vec<f64>>> = rivals
-            .par_iter()
-            .map(|rival| rival.pool(&prepared.state).iter().map(|raw| prepared.filtered(raw)).collect())
-            .collect();
+        let built: Vec<Vec<Vec<f64>>> =
+            rivals.par_iter().map(|rival| prepared.filtered_all(&rival.pool(&prepared.state))).collect();
         for (rival, columns) in rivals.into_iter().zip(built) {
             let begin = self.columns.len();
             self.columns.extend(columns);

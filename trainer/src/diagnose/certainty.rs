@@ -1,7 +1,7 @@
 //! How sure a finding is, and what else it may be, in plain words.
 
+use super::names::plain_name;
 use super::outcome::Finding;
-use super::sentence::plain_name;
 
 /// The probability, the alternatives, and of a structure without a name its channels and the effect that comes nearest.
 pub(super) fn certainty(found: &Finding) -> String {

@@ -27,8 +27,8 @@ const ALL: f64 = 1e-6;
 /// chance what the name's formula misses.
 const UNKNOWN_LEAD_NATS: f64 = 12.0;
 
-/// Lead in nats up to which an effect does not rule out the one that it yields to, nor that one it: the further shape of the one may
-/// fit what the other's formula misses, and a recorded channel what an inferred one cannot.
+/// Lead in nats up to which an effect and the one that it yields to do not rule each other out: the further shape of the one may fit
+/// what the other's formula misses, and a recorded channel what an inferred one cannot.
 const YIELDING_LEAD_NATS: f64 = 8.0;
 
 impl Round<'_, '_> {
@@ -85,7 +85,7 @@ impl Round<'_, '_> {
                 rivals.push((effect, distance));
             }
         }
-        if rivals.len() > settings.most_rivals && !self.is_proved(best) {
+        if rivals.len() > settings.most_rivals && !self.is_significant(best) {
             return None;
         }
         Some(Accepted {
@@ -118,18 +118,18 @@ impl Round<'_, '_> {
     }
 
     /// Whether the open rows prove a hypothesis by themselves.
-    fn is_proved(&self, scored: &Scored) -> bool {
+    fn is_significant(&self, scored: &Scored) -> bool {
         scored.family_wise < self.search.settings.family_wise_level
     }
 
     /// The best hypothesis, or one within the margin that the open rows prove by themselves where they do not prove the best one:
     /// that was sought among more shapes, of which one fits by chance.
     fn surest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
-        if self.is_proved(best) || !matches!(best.label, Label::Named(_)) {
+        if self.is_significant(best) || !matches!(best.label, Label::Named(_)) {
             return best;
         }
         let margin = self.search.settings.ambiguity_margin;
-        passing.find(|rival| best.score - rival.score < margin && self.is_proved(rival)).unwrap_or(best)
+        passing.find(|rival| best.score - rival.score < margin && self.is_significant(rival)).unwrap_or(best)
     }
 
     /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
@@ -140,7 +140,7 @@ impl Round<'_, '_> {
         }
         let plainer = |rival: &&Scored| {
             let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
-            let is_as_sure = self.is_proved(rival) || !self.is_proved(best);
+            let is_as_sure = self.is_significant(rival) || !self.is_significant(best);
             let is_a_part =
                 || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL);
             is_as_sure && (self.yields(best, rival).is_some_and(as_good) || is_a_part())

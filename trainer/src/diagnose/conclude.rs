@@ -6,7 +6,7 @@ use super::linear::{dot, least_squares, residual, rows_in, weighted};
 use super::noise::Noise;
 use super::refine::refine;
 use super::search::{Accepted, Search, others};
-use crate::physics::{Dimension, EffectId, Shape};
+use crate::physics::{EffectId, Shape};
 
 /// A finding after the joint refit.
 #[derive(Clone, Debug)]
@@ -164,41 +164,4 @@ fn shape_tangents(search: &Search, effects: &[Fitted]) -> (Vec<(usize, usize)>, 
         of_columns.map(move |(slot, columns)| ((index, slot), weighted(&columns, &effect.coefficients)))
     });
     tangents.unzip()
-}
-
-/// Text of a dimension's unit for an axis and an actuator unit ("N m", "N" or "A").
-pub fn unit_text(dimension: Dimension, rotary: bool, actuator: &str) -> String {
-    let position = if rotary { "rad" } else { "m" };
-    match dimension {
-        Dimension::Torque => actuator.to_string(),
-        Dimension::TorquePerVelocity => format!("{actuator} s/{position}"),
-        Dimension::TorquePerVelocityPower => format!("{actuator} (s/{position})^p"),
-        Dimension::TorquePerKelvin => format!("{actuator}/K"),
-        Dimension::PerKelvin => "1/K".to_string(),
-        Dimension::TorquePerVelocityKelvin => format!("{actuator} s/({position} K)"),
-        Dimension::TorquePerPosition => format!("{actuator}/{position}"),
-        Dimension::Inertia => match (actuator, rotary) {
-            ("N m", true) => "kg m2".to_string(),
-            ("N", false) => "kg".to_string(),
-            _ => format!("{actuator} s2/{position}"),
-        },
-        Dimension::InertiaPosition => match (actuator, rotary) {
-            ("N m", true) => "kg m2".to_string(),
-            ("N", false) => "kg m".to_string(),
-            _ => format!("{actuator} s2"),
-        },
-        Dimension::Celsius => "degC".to_string(),
-        Dimension::TorquePerSecond => format!("{actuator}/s"),
-        Dimension::TorquePerSecondSquared => format!("{actuator}/s2"),
-        Dimension::TorquePerWatt => format!("{actuator}/W"),
-        Dimension::TorquePerWattVelocity => format!("{actuator} s/({position} W)"),
-        Dimension::PerTorque => format!("1/({actuator})"),
-        Dimension::Velocity => format!("{position}/s"),
-        Dimension::Position => position.to_string(),
-        Dimension::RadianPerSecond => "rad/s".to_string(),
-        Dimension::Second => "s".to_string(),
-        Dimension::TorquePerVelocitySquared => format!("{actuator} s2/{position}2"),
-        Dimension::Order => if rotary { "1/turn" } else { "rad/m" }.to_string(),
-        Dimension::One => "1".to_string(),
-    }
 }

@@ -3,7 +3,7 @@
 use super::advise::{Advice, separation};
 use super::base::Base;
 use super::candidates::Label;
-use super::conclude::{Fitted, Refit, unit_text};
+use super::conclude::{Fitted, Refit};
 use super::confidence::{alternatives, probability};
 use super::formula;
 use super::health::{HealthNote, unexplained_event};
@@ -15,6 +15,7 @@ use super::region::{Region, Side};
 use super::search::{Accepted, Search};
 use super::signals::Signals;
 use super::traces::{Traces, WorstLocked};
+use super::units::unit_text;
 use crate::parameter::Parameter;
 use crate::physics::{Action, Dimension, EffectId};
 

@@ -64,11 +64,13 @@ pub(super) fn examine(signals: &Signals) -> Vec<HealthNote> {
 /// Rows at which the model is asked for more than it was fitted on.
 fn beyond_the_model(outside: &Outside) -> Option<HealthNote> {
     let beyond = outside.samples.iter().filter(|beyond| **beyond).count();
-    let [first, ..] = &outside.channels[..] else { return None };
+    if outside.channels.is_empty() {
+        return None;
+    }
     let range = |(channel, [low, high], unit): &(String, [f64; 2], String)| {
         format!("{channel} from {} to {} {unit}", digits(*low), digits(*high))
     };
-    let ranges = outside.channels.iter().skip(1).fold(range(first), |all, next| all + ", " + &range(next));
+    let ranges = outside.channels.iter().map(range).collect::<Vec<_>>().join(", ");
     let share = 100.0 * beyond as f64 / outside.samples.len() as f64;
     Some(HealthNote {
         // Where a law ends nothing of the joint is missing.
@@ -155,8 +157,7 @@ pub(crate) fn late_torque(delay: f64, period: f64) -> HealthNote {
 /// An encoder so coarse that its grain alone left only a few hertz of the motion.
 pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
     let cut_off = prepared.filter.cut_off_hz;
-    let (low, high) = prepared.state.travel();
-    let is_coarse = signals.position_resolution > COARSE_STEP * (high - low);
+    let is_coarse = signals.position_resolution > COARSE_STEP * prepared.state.span();
     let coarse = is_coarse && prepared.grain_limited && cut_off < LEAST_BAND_HZ;
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,

@@ -23,10 +23,8 @@ pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
     let with = rest(search, refit);
     let effect = &refit.effects[index];
     let torque = search.torque_of(effect);
-    let mut white_with = with.clone();
-    let mut white_without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
-    refit.noise.whiten(&mut white_with, &runs);
-    refit.noise.whiten(&mut white_without, &runs);
+    let without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
+    let [white_with, white_without] = [with, without].map(|rest| refit.noise.whitened(&rest, &runs));
     let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
     let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
     let state = &search.prepared.state;

@@ -30,6 +30,7 @@ mod join;
 mod linear;
 mod localise;
 pub mod model;
+pub mod names;
 mod nearest;
 mod noise;
 mod null;
@@ -56,6 +57,7 @@ mod traces;
 mod turnover;
 mod twist;
 mod unit_or_sign;
+pub mod units;
 
 pub use advise::{Advice, Limits, Plan, Question, TOLD_APART_NATS, plan};
 pub use base::BaseKind;

@@ -163,7 +163,7 @@ fn moving_columns<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) 
     let Law::Expression(program) = &model.law else { return Vec::new() };
     (0..program.operations.len())
         .filter_map(|place| {
-            let constant = constant(program.operations[place])?;
+            let constant = *constant(&mut program.operations[place].clone())?;
             let step = STEP * f64::from(constant).abs().max(1e-3);
             let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
             let (up, down) = (shifted(step)?, shifted(-step)?);
@@ -193,7 +193,7 @@ pub(crate) fn is_odd(law: &Law) -> bool {
     matches!(law, Law::Geometric(layout) if layout.shape().symmetry == Symmetry::Odd)
 }
 
-fn constant(operation: Operation) -> Option<f32> {
+fn constant(operation: &mut Operation) -> Option<&mut f32> {
     match operation {
         Operation::ScaledInput(_, value)
         | Operation::ScaledMagnitude(_, value)
@@ -209,18 +209,9 @@ fn constant(operation: Operation) -> Option<f32> {
 /// The model with one constant of its formula moved; `None` where that is no model.
 pub(crate) fn moved<const CELLS: usize>(mut model: Model<CELLS>, place: usize, by: f64) -> Option<Model<CELLS>> {
     let Law::Expression(program) = &mut model.law else { return None };
-    let operation = program.operations.get_mut(place)?;
-    let add = |value: f32| (f64::from(value) + by) as f32;
-    *operation = match *operation {
-        Operation::ScaledInput(input, value) => Operation::ScaledInput(input, add(value)),
-        Operation::ScaledMagnitude(input, value) => Operation::ScaledMagnitude(input, add(value)),
-        Operation::AddScaledInput(input, value) => Operation::AddScaledInput(input, add(value)),
-        Operation::Constant(value) => Operation::Constant(add(value)),
-        Operation::Scale(value) => Operation::Scale(add(value)),
-        Operation::Offset(value) => Operation::Offset(add(value)),
-        Operation::PowerOf(value) => Operation::PowerOf(add(value)),
-        other => other,
-    };
+    if let Some(value) = constant(program.operations.get_mut(place)?) {
+        *value = (f64::from(*value) + by) as f32;
+    }
     model.validate().ok()?;
     Some(model)
 }

@@ -56,7 +56,14 @@ impl Noise {
         Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt() }
     }
 
-    /// Applies `sigma^-1 A(L)` to a column, in place.
+    /// A column behind `sigma^-1 A(L)`, on the rows of the runs.
+    pub fn whitened(&self, column: &[f64], runs: &[Range<usize>]) -> Vec<f64> {
+        let mut white = column.to_vec();
+        self.whiten(&mut white, runs);
+        white
+    }
+
+    /// The same in place.
     pub fn whiten(&self, column: &mut [f64], runs: &[Range<usize>]) {
         self.colour.remove(column, runs);
         for i in runs.iter().flat_map(Range::clone) {

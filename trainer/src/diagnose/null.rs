@@ -149,7 +149,7 @@ fn resample(pool: &[f64], blocks: &[Block]) -> Vec<f64> {
     (0..pool.len()).map(value).collect()
 }
 
-/// The variant with the largest surprise in a residual; `None` of none.
+/// The variant with the largest surprise in a residual; `None` where there are no variants.
 fn strongest<'v>(variants: &'v [Vec<Vec<f64>>], residual: &[f64]) -> Option<&'v Vec<Vec<f64>>> {
     let surprising = variants.iter().map(|variant| {
         let energy = variant.iter().map(|d| dot(d, residual, &[0..residual.len()]).powi(2)).sum();

@@ -117,7 +117,7 @@ pub struct Diagnosis {
     pub rollout: Option<Rollout>,
     /// The last round's table: every hypothesis that was not accepted.
     pub rivals: Vec<Scored>,
-    /// Refit of the base alone and with the effects.
+    /// Refit of the base alone.
     pub baseline_refit: Refit,
     /// Refit with the effects.
     pub improved_refit: Refit,

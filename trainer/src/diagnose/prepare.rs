@@ -159,6 +159,11 @@ impl Prepared {
         self.rows.iter().map(|&i| self.filter.at(series, i)).collect()
     }
 
+    /// Several series behind it.
+    pub(super) fn filtered_all(&self, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        series.iter().map(|series| self.filtered(series)).collect()
+    }
+
     /// A series at the working rows, unfiltered.
     pub fn at_rows(&self, series: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|&i| series[i]).collect()
@@ -290,7 +295,7 @@ pub(super) fn simplest_model(prepared: &Prepared) -> Vec<Vec<f64>> {
 pub(super) fn identified_inertia(prepared: &Prepared) -> Option<f64> {
     let state = &prepared.state;
     let mut columns = simplest_model(prepared);
-    columns.extend(torques_of_position(state).iter().map(|torque| prepared.filtered(torque)));
+    columns.extend(prepared.filtered_all(&torques_of_position(state)));
     let torque = prepared.filtered(&prepared.torque);
     least_squares(&columns, &torque, &prepared.open_runs()).map(|coefficients| coefficients[2])
 }

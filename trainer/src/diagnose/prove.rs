@@ -40,11 +40,7 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     let total = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     let ratio = (total.1 / total.0).sqrt();
     let (open, locked) = (search.prepared.open_runs(), search.prepared.locked_runs());
-    let white = |series: &[f64], runs: &[Range<usize>]| {
-        let mut white = series.to_vec();
-        improved.noise.whiten(&mut white, runs);
-        white
-    };
+    let white = |series: &[f64], runs: &[Range<usize>]| improved.noise.whitened(series, runs);
     let change: Vec<f64> = before.iter().zip(&after).map(|(b, a)| b - a).collect();
     let locked_change = white(&change, &locked);
     let locked_energy = energy(&locked_change, &locked);

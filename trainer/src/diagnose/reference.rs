@@ -62,6 +62,6 @@ pub(super) fn coulomb_and_viscous(state: &JointState) -> Vec<(&'static str, Vec<
 pub(crate) fn tabulated_velocities(reach: f64) -> impl Iterator<Item = f64> {
     (-120..=120).map(move |k| {
         let x = f64::from(k) / 120.0;
-        reach * x * x.abs() * x.abs()
+        reach * x * x * x
     })
 }

@@ -42,12 +42,12 @@ pub(crate) fn roll_out(search: &Search, baseline: &Refit, improved: &Refit) -> O
     let inertia = |refit: &Refit| inertia(state, &search.base.names, refit).filter(|inertia| *inertia > 0.0);
     let before = squares(state, &prepared.rows, &runs, &rest(search, baseline), inertia(baseline)?);
     let after = squares(state, &prepared.rows, &runs, &rest(search, improved), inertia(improved)?);
-    let mean = |errors: &[f64]| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt();
+    let root_mean = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     (!before.is_empty()).then(|| Rollout {
         horizon_s: HORIZON_S,
         starts: before.len(),
-        baseline_rmse: mean(&before),
-        improved_rmse: mean(&after),
+        baseline_rmse: root_mean(&before),
+        improved_rmse: root_mean(&after),
     })
 }
 

@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
 
     /// The same at other states of the rows.
     pub(crate) fn filtered_columns_at(&self, state: &JointState, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
-        self.raw_columns(state, label, shape).iter().map(|raw| self.prepared.filtered(raw)).collect()
+        self.prepared.filtered_all(&self.raw_columns(state, label, shape))
     }
 
     /// The outcome of a search that was not made: no findings, noise of the base alone.
@@ -283,14 +283,7 @@ impl<'a> Search<'a> {
 
     pub(crate) fn whitened(&self, columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
         let runs = self.prepared.open_runs();
-        columns
-            .par_iter()
-            .map(|column| {
-                let mut white = column.clone();
-                noise.whiten(&mut white, &runs);
-                white
-            })
-            .collect()
+        columns.par_iter().map(|column| noise.whitened(column, &runs)).collect()
     }
 
     pub(crate) fn bench(&self, base: Vec<Vec<f64>>, noise: &Noise) -> Bench {

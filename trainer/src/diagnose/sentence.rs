@@ -4,8 +4,10 @@
 mod tests;
 
 use super::certainty::certainty;
+use super::names::{capital, plain_name};
 use super::outcome::{Diagnosis, Finding, Verdict};
 use super::region::{Region, Side};
+use super::units::Units;
 use crate::figures::{digits, pair, quantity};
 use crate::parameter::Parameter;
 use crate::physics::{Action, EffectId};
@@ -17,32 +19,6 @@ const ONE_WAY: f64 = 0.5;
 
 /// Error of a given model over that after a refit of its parameters from which the change is told.
 const TELLING_CHANGE: f64 = 1.05;
-
-/// What the recording is measured in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Units {
-    /// Unit of the actuator as printed: `N m`, `N` or `A`.
-    pub actuator: &'static str,
-    /// Whether the axis turns (else it slides).
-    pub rotary: bool,
-}
-
-impl Units {
-    /// Unit of a channel or derived axis, as printed.
-    #[must_use]
-    pub fn of_channel(self, channel: &str) -> String {
-        let position = if self.rotary { "rad" } else { "m" };
-        match channel {
-            "velocity" | "other_velocity" => format!("{position}/s"),
-            "position" | "other_position" | "distance_since_reversal" => position.to_string(),
-            "acceleration" => format!("{position}/s2"),
-            "load" => self.actuator.to_string(),
-            "temperature" => "degC".to_string(),
-            "time" | "time_since_reversal" | "dwell" => "s".to_string(),
-            _ => String::new(),
-        }
-    }
-}
 
 /// Everything there is to say, in the order in which it should be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -67,6 +43,15 @@ pub struct Story {
     pub withdrawn: Option<String>,
     /// What would have been seen.
     pub limits: Option<String>,
+}
+
+impl Story {
+    /// What follows the findings.
+    pub fn rest(&self) -> impl Iterator<Item = &String> {
+        [&self.proof, &self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.limits]
+            .into_iter()
+            .flatten()
+    }
 }
 
 /// Tells a diagnosis.
@@ -331,48 +316,4 @@ fn limits(diagnosis: &Diagnosis, units: Units) -> Option<String> {
         .map(|limit| format!("{} above {}", plain_name(limit.effect), quantity(limit.torque_rms, units.actuator)))
         .collect();
     (!told.is_empty()).then(|| format!("Would have been seen (root mean square): {}.", told.join(", ")))
-}
-
-/// An effect's name for people.
-#[must_use]
-pub fn plain_name(effect: EffectId) -> &'static str {
-    use EffectId::*;
-    match effect {
-        Stribeck => "Stribeck friction",
-        ViscousNonlinearity => "viscous friction that grows with a power of speed",
-        DirectionAsymmetry => "friction that differs between the directions",
-        Temperature => "friction that depends on temperature",
-        WarmUp => "friction that falls as the joint warms itself up",
-        LoadFriction => "load-dependent friction",
-        DriveBackdrive => "gear losses that differ between driving and backdriving",
-        SlowDrift => "friction that drifts with time",
-        Presliding => "presliding hysteresis",
-        FrictionalLag => "frictional lag",
-        DwellBreakaway => "break-away that grows with the stop before it",
-        PositionRipple => "torque ripple over position",
-        KinematicError => "kinematic error of the gear",
-        PositionFriction => "friction that depends on position",
-        GravityError => "wrong gravity torque",
-        InertiaError => "wrong inertia",
-        TorqueScale => "wrong torque constant",
-        TorqueOffset => "torque offset",
-        Spring => "spring of a cable, hose or balancer",
-        Coupling => "inertial coupling with another joint",
-        Saturation => "saturated actuator",
-        Contact => "hard stop or contact",
-        TransientEvent => "one-off event",
-        RecurrentFault => "local fault that comes back at one angle",
-        Backlash => "backlash",
-        Elasticity => "elastic transmission",
-        WindupHysteresis => "windup hysteresis of the transmission",
-        TimeMisalignment => "torque and position recorded out of step",
-        Quantisation => "resolution too coarse",
-        UnitOrSign => "wrong unit or sign",
-        Unknown => "a structure that the catalogue does not hold",
-    }
-}
-
-pub(crate) fn capital(sentence: &str) -> String {
-    let mut characters = sentence.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }

@@ -23,17 +23,17 @@ pub struct Signals {
     pub velocity: Option<Vec<f64>>,
     /// Actuator torque (N m, N or A).
     pub torque: Vec<f64>,
-    /// Torque of the nominal rigid body, where one is given.
+    /// Torque of the nominal rigid body in the unit of the actuator, where one is given.
     pub rigid_body: Option<Vec<f64>>,
     /// Whether that was worked out from the recorded position.
     pub body_follows_position: bool,
-    /// Transmitted load torque.
+    /// Transmitted load torque in N m.
     pub load: Option<Vec<f64>>,
     /// Temperature in degrees Celsius.
     pub temperature: Option<Vec<f64>>,
-    /// Link-side position.
+    /// Link-side position in rad or m.
     pub link_position: Option<Vec<f64>>,
-    /// Positions of other joints on the same clock.
+    /// Positions of other joints on the same clock, in rad or m.
     pub other_positions: Vec<Vec<f64>>,
     /// The fitted model or simulation that it is compared with, at the recorded states.
     pub reference: Option<Reference>,

@@ -31,11 +31,7 @@ pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind
     let filtered = prepared.filtered(torque);
     let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();
     let model = Noise::fit(&left_by_fit(&known, &base.target, &runs)?, &runs, &noise_features(&prepared));
-    let white = |column: &[f64]| {
-        let mut white = column.to_vec();
-        model.whiten(&mut white, &runs);
-        white
-    };
+    let white = |column: &[f64]| model.whitened(column, &runs);
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
     let whitened = Bench::new(columns, white(&filtered), vec![runs.clone()]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;

@@ -16,7 +16,7 @@ pub struct Traces {
     pub time: Vec<f64>,
     /// Velocity in rad/s or m/s.
     pub velocity: Vec<f64>,
-    /// Recorded actuator torque.
+    /// Recorded actuator torque (N m, N or A), as are those below.
     pub torque: Vec<f64>,
     /// What the refitted base model leaves.
     pub before: Vec<f64>,

@@ -14,8 +14,8 @@ const WIDTHS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 /// The widest, over the least.
 const WIDEST: f64 = 30.0;
 
-/// Share of the energy that the least width leaves, up to which a wider one is the joint's own: less would be left of what presliding
-/// or the Stribeck effect is taken for a softer sign.
+/// Share of the energy that the least width leaves, up to which a wider one is the joint's own: a looser
+/// limit would let presliding or the Stribeck effect pass for a softer sign.
 const OWN_WIDTH: f64 = 0.01;
 /// The same up to which the width is sought closer.
 const WORTH_A_CLOSER_LOOK: f64 = 0.1;

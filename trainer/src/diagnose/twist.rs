@@ -37,8 +37,7 @@ fn shown(state: &JointState) -> Option<Twist> {
         left_by_fit(&columns, &twist, all).map(|left| dot(&left, &left, all))
     };
     let whole = left_by_fit(&line[..1], &twist, all).map(|left| dot(&left, &left, all))?;
-    let (low, high) = state.travel();
-    let grain = state.resolution.max(ROUNDING * (high - low));
+    let grain = state.resolution.max(ROUNDING * state.span());
     if whole <= state.len() as f64 * grain * grain {
         return Some(Twist::Rigid);
     }

@@ -35,10 +35,15 @@ const VELOCITY_UNITS: [(f64, &str); 6] = [
     (1000.0, "milli-units and units"),
 ];
 
+/// What a unit or a sign is seen behind: little of the encoder's grain.
+fn slow_filter(signals: &Signals) -> ZeroPhase {
+    ZeroPhase::new((0.05 / signals.period).min(15.0), signals.period)
+}
+
 /// A recorded velocity that goes with the derivative of the position, but is not it.
 pub(super) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
     let velocity = signals.velocity.as_ref()?;
-    let filter = ZeroPhase::new((0.05 / signals.period).min(15.0), signals.period);
+    let filter = slow_filter(signals);
     let segments = &signals.segments;
     let derivative = first_derivative(&filter.over(&signals.position, segments), segments, signals.period);
     let velocity = filter.over(velocity, segments);
@@ -68,11 +73,7 @@ pub(super) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
 /// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a given
 /// body that enters with its sign turned or near a unit's factor betray a wrong sign or unit.
 pub(super) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
-    if signals.period <= 0.0 {
-        return None;
-    }
-    let cut_off = (0.05 / signals.period).min(15.0);
-    let filter = ZeroPhase::new(cut_off, signals.period);
+    let filter = slow_filter(signals);
     let segments = &signals.segments;
     let position = filter.over(&signals.position, segments);
     let velocity = first_derivative(&position, segments, signals.period);

@@ -50,7 +50,6 @@ impl Hypothesis for Contact {
     }
 
     fn step(&self, state: &JointState, _index: usize, _shape: &[f64]) -> f64 {
-        let (low, high) = state.travel();
-        0.02 * (high - low)
+        0.02 * state.span()
     }
 }

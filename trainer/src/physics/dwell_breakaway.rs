@@ -22,8 +22,7 @@ impl Hypothesis for DwellBreakaway {
         if starts < 3 {
             return Vec::new();
         }
-        let (low, high) = state.travel();
-        let travel = high - low;
+        let travel = state.span();
         geometric_grid(1e-3 * travel, 0.1 * travel, 5)
             .into_iter()
             .flat_map(|reach| [vec![reach, 0.05], vec![reach, 0.5]])
@@ -57,7 +56,7 @@ impl Hypothesis for DwellBreakaway {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let (low, high) = state.travel();
-        Some(if index == 0 { (1e-4 * (high - low), 0.5 * (high - low)) } else { (0.01, 5.0) })
+        let travel = state.span();
+        Some(if index == 0 { (1e-4 * travel, 0.5 * travel) } else { (0.01, 5.0) })
     }
 }

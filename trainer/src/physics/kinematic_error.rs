@@ -1,7 +1,7 @@
 //! D2, Tuttle and Seering 1996; Ghorbel, Gandhi and Alpeter 2001: position error of the gear, periodic in position,
 //! felt with one encoder as an inertial torque that grows with the square of speed.
 
-use super::ripple::orders;
+use super::ripple::{orders, step_of_order};
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
 pub(super) struct KinematicError;
@@ -47,7 +47,6 @@ impl Hypothesis for KinematicError {
     }
 
     fn step(&self, state: &JointState, _index: usize, _shape: &[f64]) -> f64 {
-        let (low, high) = state.travel();
-        0.2 * std::f64::consts::TAU / (high - low).max(f64::MIN_POSITIVE)
+        step_of_order(state)
     }
 }

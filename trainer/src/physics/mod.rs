@@ -106,8 +106,7 @@ pub trait Hypothesis: Sync {
     /// Name, symbol and dimension of each linear coefficient for a shape.
     fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)>;
 
-    /// Name, symbol, dimension and bounds of each shape parameter that may be refined continuously
-    /// (a discrete variant has `low == high`).
+    /// Name, symbol and dimension of each shape parameter.
     fn shape_names(&self) -> Vec<ShapeName> {
         Vec::new()
     }

@@ -6,7 +6,7 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 pub(super) struct Presliding;
 
 /// Normalised bristle deflection in [-1, 1] with the exact exponential step
-/// z <- S + (z - S) exp(-|dq| / distance), S = sign(dq); at rest until the first motion of a segment.
+/// z <- S + (z - S) exp(-|dq| / distance), S = sign(dq); at the start of a segment as if it had moved so before.
 pub(crate) fn bristle(state: &JointState, distance: f64) -> Vec<f64> {
     let mut deflection = vec![0.0; state.len()];
     for segment in &state.segments {
@@ -43,8 +43,7 @@ impl Hypothesis for Presliding {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let (low, high) = state.travel();
-        let travel = high - low;
+        let travel = state.span();
         let finest = (4.0 * state.resolution).max(3e-5 * travel).max(shortest(state));
         geometric_grid(finest, (0.4 * travel).min(longest(state)).max(finest), 10)
             .into_iter()
@@ -78,7 +77,6 @@ impl Hypothesis for Presliding {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let (low, high) = state.travel();
-        (index == 0).then(|| (shortest(state), (1.5 * (high - low)).min(longest(state))))
+        (index == 0).then(|| (shortest(state), (1.5 * state.span()).min(longest(state))))
     }
 }

@@ -18,8 +18,7 @@ const LEAST_PERIODS: f64 = 3.0;
 /// Steps are fine enough that an order between two steps keeps most of its power; whole orders where the joint
 /// turns through more than one turn.
 pub(crate) fn orders(state: &JointState, most: usize) -> Vec<f64> {
-    let (low, high) = state.travel();
-    let travel = high - low;
+    let travel = state.span();
     if travel <= 0.0 {
         return Vec::new();
     }
@@ -78,12 +77,15 @@ impl Hypothesis for PositionRipple {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        let (low, high) = state.travel();
-        (index == 0).then(|| (LEAST_PERIODS * std::f64::consts::TAU / (high - low), f64::INFINITY))
+        (index == 0).then(|| (LEAST_PERIODS * std::f64::consts::TAU / state.span(), f64::INFINITY))
     }
 
     fn step(&self, state: &JointState, _index: usize, _shape: &[f64]) -> f64 {
-        let (low, high) = state.travel();
-        0.2 * std::f64::consts::TAU / (high - low).max(f64::MIN_POSITIVE)
+        step_of_order(state)
     }
+}
+
+/// Step of an order in its refinement: a fifth of a period over the whole travel.
+pub(super) fn step_of_order(state: &JointState) -> f64 {
+    0.2 * std::f64::consts::TAU / state.span().max(f64::MIN_POSITIVE)
 }

@@ -19,11 +19,11 @@ pub struct JointState {
     pub acceleration: Vec<f64>,
     /// Velocity below which the smoothed sign turns, in the unit of velocity.
     pub sign_velocity: f64,
-    /// Smoothed sign `tanh(v / sign_velocity)`.
+    /// Smoothed sign: the mean of `tanh(v / sign_velocity)` over the sample.
     pub sign: Vec<f64>,
-    /// Torque of the nominal rigid body, where one is given.
+    /// Torque of the nominal rigid body in the unit of the actuator, where one is given.
     pub rigid_body: Option<Vec<f64>>,
-    /// Torque transmitted through the gear, where recorded or known from the rigid body.
+    /// Torque transmitted through the gear (N m), where recorded or known from the rigid body.
     pub load: Option<Vec<f64>>,
     /// The part of the rigid body's torque that does not go with the acceleration, where a rigid body is given.
     pub gravity: Option<Vec<f64>>,
@@ -37,11 +37,11 @@ pub struct JointState {
     pub twist: Twist,
     /// Motions of other joints on the same clock.
     pub other_joints: Vec<OtherJoint>,
-    /// Recorded actuator torque, smoothed like the states.
+    /// Recorded actuator torque (N m, N or A), smoothed like the states.
     pub torque: Vec<f64>,
-    /// Torque that the base model predicts.
+    /// Torque that the base model predicts, in the unit of the actuator.
     pub predicted: Vec<f64>,
-    /// Friction part of the base model, as pairs (velocity, torque) in ascending velocity.
+    /// Friction part of the base model, as pairs (velocity, torque) in ascending velocity, torque in the unit of the actuator.
     pub base_friction: Vec<(f64, f64)>,
     /// Stretches of uninterrupted time; memories restart at each.
     pub segments: Vec<Range<usize>>,
@@ -176,6 +176,12 @@ impl JointState {
     /// Travel between the 0.5 % and 99.5 % quantiles of position.
     pub fn travel(&self) -> (f64, f64) {
         (quantile(self.position.iter().copied(), 0.005), quantile(self.position.iter().copied(), 0.995))
+    }
+
+    /// Length of that.
+    pub fn span(&self) -> f64 {
+        let (low, high) = self.travel();
+        high - low
     }
 
     /// Recorded duration in s, gaps left out.

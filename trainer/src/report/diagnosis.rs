@@ -5,8 +5,10 @@ use super::chart::{Chart, Ink, bars};
 use super::finding::evidence;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::sentence::{Story, Units, capital, plain_name};
-use crate::diagnose::{Diagnosis, Finding, Label, Plan, Traces};
+use crate::diagnose::names::{capital, plain_name};
+use crate::diagnose::sentence::Story;
+use crate::diagnose::units::Units;
+use crate::diagnose::{Diagnosis, Finding, Plan, Traces};
 use crate::figures::{digits, quantity};
 
 /// What goes onto the page.
@@ -49,12 +51,7 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         page.paragraph(sentence);
     }
     page.list(&story.findings, "findings");
-    for sentence in [&story.proof, &story.minor, &story.doubtful, &story.negligible, &story.withdrawn, &story.limits]
-        .into_iter()
-        .flatten()
-    {
-        page.paragraph(sentence);
-    }
+    story.rest().for_each(|sentence| page.paragraph(sentence));
     if !story.health.is_empty() {
         page.heading("The measurement");
         page.list(&story.health, "findings");
@@ -182,10 +179,6 @@ fn next(page: &mut Page, plan: &Plan, units: Units) {
 }
 
 fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
-    let named = |label: &Label| match label {
-        Label::Named(effect) => effect.name().to_string(),
-        Label::Generic(_) => label.to_string(),
-    };
     let mut rows: Vec<(String, f64, bool)> =
         diagnosis.findings.iter().map(|found| (found.effect.name().to_string(), found.score, true)).collect();
     rows.extend(
@@ -194,7 +187,7 @@ fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
             .iter()
             .filter(|rival| rival.score > 0.0)
             .take(MOST_RIVALS)
-            .map(|rival| (named(&rival.label), rival.score, false)),
+            .map(|rival| (rival.label.to_string(), rival.score, false)),
     );
     if rows.is_empty() {
         return;

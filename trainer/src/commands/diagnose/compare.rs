@@ -1,8 +1,8 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
 use super::{Diagnose, units};
-use crate::diagnose::sentence::Units;
 use crate::diagnose::simulation::{self, InverseLaw};
+use crate::diagnose::units::Units;
 use crate::diagnose::{Reference, Signals, model};
 use crate::error::{Error, Result, codes};
 use crate::fit::{self, HostModel};

@@ -49,8 +49,7 @@ impl Outlook {
             let Label::Named(effect) = found.fitted.label else { continue };
             let Some(hypothesis) = hypotheses.iter().find(|h| h.id() == effect) else { continue };
             let begin = columns.len();
-            let raw = hypothesis.columns(&prepared.state, &found.fitted.shape);
-            columns.extend(raw.iter().map(|raw| prepared.filtered(raw)));
+            columns.extend(prepared.filtered_all(&hypothesis.columns(&prepared.state, &found.fitted.shape)));
             places.push((effect, begin..columns.len()));
         }
         let coefficients = least_squares(&columns, &base.target, &made)?;
@@ -123,13 +122,10 @@ impl Outlook {
 
     fn filtered(&self, effect: EffectId, shape: &[f64]) -> Option<Vec<Vec<f64>>> {
         let hypothesis = self.hypotheses.iter().find(|h| h.id() == effect)?;
-        let raw = hypothesis.columns(&self.prepared.state, shape);
-        Some(raw.iter().map(|raw| self.prepared.filtered(raw)).collect())
+        Some(self.prepared.filtered_all(&hypothesis.columns(&self.prepared.state, shape)))
     }
 
     fn white(&self, column: &[f64]) -> Vec<f64> {
-        let mut white = column.to_vec();
-        self.noise.whiten(&mut white, &self.open);
-        white
+        self.noise.whitened(column, &self.open)
     }
 }

@@ -53,10 +53,9 @@ impl Left {
         if differences.is_empty() {
             return None;
         }
-        let (low, high) = state.travel();
         let difference = root_mean_square(&differences);
         let share = differences.len() as f64 / torque.len() as f64;
-        (difference <= ONE_MOTION * (high - low)).then_some(Met { torque, share })
+        (difference <= ONE_MOTION * state.span()).then_some(Met { torque, share })
     }
 }
 

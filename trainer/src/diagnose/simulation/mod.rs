@@ -92,8 +92,7 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
     if rows < LEAST_ROWS {
         return Err(Unlearnable::Rest { rows });
     }
-    let (low, high) = state.travel();
-    let gravity = state.rotary && high - low > GRAVITY_TRAVEL_RAD;
+    let gravity = state.rotary && state.span() > GRAVITY_TRAVEL_RAD;
     let laws: Vec<(InverseLaw, Vec<f64>)> = KNOTS
         .into_iter()
         .filter_map(|knots| {
@@ -118,8 +117,7 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
     let runs = prepared.open_runs();
     let noise = Noise::fit(finest, &runs, &noise_features(prepared));
     let criterion = |(law, rest): &(InverseLaw, Vec<f64>)| {
-        let mut white = rest.clone();
-        noise.whiten(&mut white, &runs);
+        let white = noise.whitened(rest, &runs);
         let rows = rows as f64;
         2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
     };
@@ -130,7 +128,7 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
 }
 
 fn filtered_with_nuisances(prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    raw.iter().map(|column| prepared.filtered(column)).chain(nuisances(prepared)).collect()
+    prepared.filtered_all(raw).into_iter().chain(nuisances(prepared)).collect()
 }
 
 impl InverseLaw {
@@ -164,13 +162,9 @@ impl InverseLaw {
     /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
     fn doubts(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
         let mut runs = prepared.open_runs();
-        let white = |mut column: Vec<f64>| {
-            noise.whiten(&mut column, &runs);
-            column
-        };
         let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
-        let mut columns: Vec<Vec<f64>> = columns.into_iter().map(white).collect();
-        let mut rest = white(rest.to_vec());
+        let mut columns: Vec<Vec<f64>> = columns.iter().map(|column| noise.whitened(column, &runs)).collect();
+        let mut rest = noise.whitened(rest, &runs);
         runs.push(Bends::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
         let Some(all) = of_whitened(&columns, &rest, &[], &runs) else { return Vec::new() };
         let width = self.coefficients.len();

@@ -27,8 +27,7 @@ pub(super) fn rest_of(recording: &Signals, law: &InverseLaw) -> Option<Rest> {
     let rest = left_by_fit(&base.columns, &base.target, &runs)?;
     let model = Noise::fit(&rest, &runs, &[]);
     let noise = *model.deviation.first()?;
-    let mut white = rest.clone();
-    model.whiten(&mut white, &runs);
+    let white = model.whitened(&rest, &runs);
     let of_most_rows = noise * DEVIATION_PER_MEDIAN * quantile(white.iter().map(|value| value.abs()), 0.5);
     let formula_error = (root_mean_square(&rest).powi(2) - of_most_rows.powi(2)).max(0.0).sqrt();
     Some(Rest { noise, formula_error })

@@ -1,0 +1,48 @@
+//! What effects are called in a sentence.
+
+use crate::physics::EffectId;
+
+/// An effect's name for people.
+#[must_use]
+pub fn plain_name(effect: EffectId) -> &'static str {
+    use EffectId::*;
+    match effect {
+        Stribeck => "Stribeck friction",
+        ViscousNonlinearity => "viscous friction that grows with a power of speed",
+        DirectionAsymmetry => "friction that differs between the directions",
+        Temperature => "friction that depends on temperature",
+        WarmUp => "friction that falls as the joint warms itself up",
+        LoadFriction => "load-dependent friction",
+        DriveBackdrive => "gear losses that differ between driving and backdriving",
+        SlowDrift => "friction that drifts with time",
+        Presliding => "presliding hysteresis",
+        FrictionalLag => "frictional lag",
+        DwellBreakaway => "break-away that grows with the stop before it",
+        PositionRipple => "torque ripple over position",
+        KinematicError => "kinematic error of the gear",
+        PositionFriction => "friction that depends on position",
+        GravityError => "wrong gravity torque",
+        InertiaError => "wrong inertia",
+        TorqueScale => "wrong torque constant",
+        TorqueOffset => "torque offset",
+        Spring => "spring of a cable, hose or balancer",
+        Coupling => "inertial coupling with another joint",
+        Saturation => "saturated actuator",
+        Contact => "hard stop or contact",
+        TransientEvent => "one-off event",
+        RecurrentFault => "local fault that comes back at one angle",
+        Backlash => "backlash",
+        Elasticity => "elastic transmission",
+        WindupHysteresis => "windup hysteresis of the transmission",
+        TimeMisalignment => "torque and position recorded out of step",
+        Quantisation => "resolution too coarse",
+        UnitOrSign => "wrong unit or sign",
+        Unknown => "a structure that the catalogue does not hold",
+    }
+}
+
+/// A sentence with a capital.
+pub(crate) fn capital(sentence: &str) -> String {
+    let mut characters = sentence.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
