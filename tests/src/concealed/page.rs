@@ -28,7 +28,8 @@ pub fn counted<C: Sync, R: Send>(cases: &[C], run: impl Fn(&C) -> R + Sync) -> V
 
 /// The command line with which a program of this package was called, as cargo runs it.
 pub fn command(program: &str) -> String {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let quoted = |argument: String| if argument.contains(' ') { format!("'{argument}'") } else { argument };
+    let arguments: Vec<String> = std::env::args().skip(1).map(quoted).collect();
     format!("cargo run --release -p frikan-tests --bin {program} -- {}", arguments.join(" "))
 }
 

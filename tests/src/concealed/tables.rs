@@ -93,7 +93,7 @@ fn by_strength(rows: &[&Row], base: &str, text: &mut String) {
 fn removed(rows: &[Row], text: &mut String) {
     let _ = writeln!(
         text,
-        "\n## Removable error removed on locked rows, where the first name is right\n\nEffect-to-noise is the root mean square of that torque over that of the noise. A negative share: on locked rows the improved model\nis further from the truth than the base, which happens where the effect is a tenth of the noise.\n\n| effect-to-noise | runs | median | lower decile |\n|---|---|---|---|"
+        "\n## Removable error removed on locked rows, where the first name is right\n\nEffect-to-noise is the root mean square of what the base cannot absorb of the hidden torque, over that of the noise. A negative\nshare: on locked rows the improved model is further from the truth than the base, which happens where the effect is a tenth of the\nnoise.\n\n| effect-to-noise | runs | median | lower decile |\n|---|---|---|---|"
     );
     for (low, high) in [(0.0, 0.1), (0.1, 0.15), (0.15, 0.3), (0.3, 0.6), (0.6, 1e9)] {
         let mut shares: Vec<f64> = singles(rows)
