@@ -11,7 +11,7 @@ const NARROWLY_ALONE: f64 = 0.95;
 /// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_NATS`] away or more.
 const BESIDE_FAR_RIVALS: f64 = 0.8;
 /// The same beside one nearer rival, and beside several of which one is nearer.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.7;
+const BESIDE_A_NEAR_RIVAL: f64 = 0.75;
 const BESIDE_NEAR_RIVALS: f64 = 0.5;
 /// Margin in nats from which a name that stands alone was hardly ever wrong there.
 const CLEAR_NATS: f64 = 6.0;
