@@ -138,9 +138,14 @@ fn tell(page: &mut String, case: &Case, answer: &str) -> std::fmt::Result {
     if let Some(description) = case.joint {
         writeln!(page, "with `{}` in `joint.toml`:\n", description.trim_end().replace('\n', " "))?;
     }
-    answer.lines().enumerate().try_for_each(|(index, line)| match line.trim_start().strip_prefix("* ") {
-        Some(finding) => writeln!(page, "> * {finding}"),
+    answer.lines().enumerate().try_for_each(|(index, line)| match bullet(line) {
+        Some(told) => writeln!(page, "> * {told}"),
         None if index == 0 => writeln!(page, "> {line}\n>"),
         None => writeln!(page, ">\n> {line}"),
     })
+}
+
+/// What a line of a list says.
+fn bullet(line: &str) -> Option<&str> {
+    ["* ", "- "].into_iter().find_map(|mark| line.trim_start().strip_prefix(mark))
 }
