@@ -17,7 +17,7 @@ const VELOCITIES: usize = 200;
 /// A file that MuJoCo includes: a default class of joints with `frictionloss` and `damping`.
 ///
 /// # Errors
-/// As [`nearest`].
+/// `FRK-U001` for a law that does not depend on the velocity, or that is not in N m or N.
 pub fn mujoco(image: &Image<CELLS>, title: &str) -> Result<String> {
     let friction = nearest(&image.model)?;
     let name = joint_name(image);
@@ -33,7 +33,7 @@ pub fn mujoco(image: &Image<CELLS>, title: &str) -> Result<String> {
 /// The `dynamics` of a URDF's joint, within the joint of that name.
 ///
 /// # Errors
-/// As [`nearest`].
+/// `FRK-U001` for a law that does not depend on the velocity, or that is not in N m or N.
 pub fn urdf(image: &Image<CELLS>, title: &str) -> Result<String> {
     let friction = nearest(&image.model)?;
     let kind = if friction.is_linear { "prismatic" } else { "revolute" };
