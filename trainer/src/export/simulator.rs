@@ -145,7 +145,7 @@ fn comment(image: &Image<CELLS>, friction: &CoulombViscous, title: &str, usage: 
             digits(f64::from(model.rigid_body.inertia))
         );
     }
-    escape(&format!("{text} {usage}")).replace("--", "- -")
+    format!("{text} {usage}").replace("--", "- -")
 }
 
 #[cfg(test)]
