@@ -118,11 +118,10 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
     }
     let mut remarks = Vec::new();
-    let is_blocked = diagnosis.health.iter().any(|note| note.blocking);
-    if is_blocked && arguments.output.is_some() {
+    if diagnosis.is_blocked() && arguments.output.is_some() {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
-    if let Some(path) = arguments.output.as_ref().filter(|_| !is_blocked) {
+    if let Some(path) = arguments.output.as_ref().filter(|_| !diagnosis.is_blocked()) {
         let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &signals, &compared)?;
         outputs.add(path, image);
         remarks = export;

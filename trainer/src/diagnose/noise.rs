@@ -64,7 +64,7 @@ impl Noise {
     }
 
     /// The same in place.
-    pub fn whiten(&self, column: &mut [f64], runs: &[Range<usize>]) {
+    fn whiten(&self, column: &mut [f64], runs: &[Range<usize>]) {
         self.colour.remove(column, runs);
         for i in runs.iter().flat_map(Range::clone) {
             column[i] /= self.deviation[i];

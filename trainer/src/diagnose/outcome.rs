@@ -133,6 +133,14 @@ pub struct Diagnosis {
     pub traces: Traces,
 }
 
+impl Diagnosis {
+    /// Whether the measurement kept physics from being looked for.
+    #[must_use]
+    pub fn is_blocked(&self) -> bool {
+        self.health.iter().any(|note| note.blocking)
+    }
+}
+
 impl Verdict {
     /// What findings amount to; where the measurement is `blocked` nothing can be said of the physics.
     pub(super) fn of(findings: &[Finding], blocked: bool) -> Self {

@@ -93,7 +93,7 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
              noise alone would leave {noise}.",
             quantity(diagnosis.baseline.rmse, units.actuator)
         ),
-        Verdict::BadData if diagnosis.health.iter().any(|note| note.blocking) => {
+        Verdict::BadData if diagnosis.is_blocked() => {
             "The measurement has to be put right before anything can be said of the physics.".into()
         }
         Verdict::BadData => {

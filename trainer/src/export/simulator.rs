@@ -10,6 +10,7 @@ use crate::figures::digits;
 use crate::fit::{CELLS, HostModel};
 use crate::markup::escape;
 use crate::samples::regression::least_squares;
+use crate::statistics::root_mean_square;
 
 /// Velocities of each direction at which the law is asked.
 const VELOCITIES: usize = 200;
@@ -112,8 +113,7 @@ fn nearest(model: &HostModel) -> Result<CoulombViscous> {
         },
     };
     let [coulomb, viscous] = coefficients.map(|coefficient| coefficient.max(0.0) as f32);
-    let of_law = (law.iter().map(|torque| torque * torque).sum::<f64>() / law.len() as f64).sqrt();
-    Ok(CoulombViscous { coulomb, viscous, law: of_law, left, from, to, is_linear })
+    Ok(CoulombViscous { coulomb, viscous, law: root_mean_square(&law), left, from, to, is_linear })
 }
 
 fn joint_name(image: &Image<CELLS>) -> String {

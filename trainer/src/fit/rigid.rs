@@ -15,10 +15,7 @@ const COLLINEAR_SHARE: f64 = 1e-4;
 /// The rigid body for an image from one coefficient for each column of the material.
 pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
     let Some(separation) = &material.separation else { return RigidBody::default() };
-    let per_newton_metre = match material.samples.actuator_unit {
-        "A" => joint.drive.joint_torque_per_ampere().map_or(1.0, f64::recip),
-        _ => 1.0,
-    };
+    let per_newton_metre = joint.actuator_per_torque(material.samples.actuator_unit).unwrap_or(1.0);
     let mut body = [0.0; 5];
     let [inertia, gravity_sin, gravity_cos, offset, given_scale] = &mut body;
     *inertia = per_newton_metre * joint.rigid_body.inertia_kgm2.unwrap_or(0.0);

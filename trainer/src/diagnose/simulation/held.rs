@@ -5,6 +5,7 @@ use super::super::base::BaseKind;
 use super::super::blocks::Lock;
 use super::super::candidates::Label;
 use super::super::gravity::give_body;
+use super::super::linear::weighted;
 use super::super::prepare::Prepared;
 use super::super::random::normal;
 use super::super::reference::Reference;
@@ -75,12 +76,13 @@ fn add_noise(signals: &mut Signals, deviation: f64) {
 impl HeldEffects {
     /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
     pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let (predicted, base_friction) = (self.beside.torque(state), self.beside.friction_curve());
+        let beside = self.beside.columns(state);
+        let predicted = weighted(&beside, &self.beside.coefficients);
+        let base_friction = self.beside.friction_curve();
         let mut state = JointState { predicted, base_friction, ..state.clone() };
         if state.rigid_body.is_none() {
             // As the simulation stood when the effects were found in it.
-            let body = self.beside.rigid_body_torque(&state);
-            give_body(&mut state, body);
+            give_body(&mut state, self.beside.rigid_body_of(&beside));
         }
         let hypotheses = catalogue();
         let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);

@@ -242,11 +242,8 @@ impl InverseLaw {
         weighted(&self.columns(state), &self.coefficients)
     }
 
-    /// The part of the torque that goes with acceleration, position and a given rigid body, constant torque included.
-    fn rigid_body_torque(&self, state: &JointState) -> Vec<f64> {
-        self.rigid_body_of(&self.columns(state))
-    }
-
+    /// The part of the torque that goes with acceleration, position and a given rigid body, constant torque included, from the columns
+    /// of the law.
     fn rigid_body_of(&self, columns: &[Vec<f64>]) -> Vec<f64> {
         let begin = self.friction_width();
         let rigid_body = begin..begin + self.rigid_body_width();
