@@ -3,7 +3,7 @@
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_tests::concealed::{Case, Concealed, Hidden, conceal, signals};
-use frikan_trainer::diagnose::improve::{Origin, improve};
+use frikan_trainer::compile::improved::{Origin, improve};
 use frikan_trainer::diagnose::{BaseKind, Lock, Options, Prepared, diagnose, model};
 use frikan_trainer::plant::NoiseKind;
 

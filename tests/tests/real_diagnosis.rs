@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_tests::recordings;
-use frikan_trainer::diagnose::improve::{Origin, improve};
+use frikan_trainer::compile::improved::{Origin, improve};
 use frikan_trainer::diagnose::{Diagnosis, Lock, Options, Signals, diagnose};
 use frikan_trainer::fit::predict::trace;
 use frikan_trainer::joint::Joint;

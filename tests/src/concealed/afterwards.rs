@@ -6,7 +6,7 @@ use super::summary::share;
 use super::{Case, Hidden, conceal, signals};
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
-use frikan_trainer::diagnose::improve::{Origin, improve};
+use frikan_trainer::compile::improved::{Origin, improve};
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Prepared, Settings, Signals, diagnose, model};
 use frikan_trainer::plant::{self, NoiseKind};
 

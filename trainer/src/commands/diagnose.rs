@@ -5,19 +5,25 @@ mod summary;
 
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
-use crate::diagnose::improve::{Origin, improve};
-use crate::diagnose::names::capital;
-use crate::diagnose::sentence::{Story, tell};
-use crate::diagnose::units::Units;
-use crate::diagnose::{
-    BaseKind, Diagnosis, Limits, Lock, Options, Plan, Question, Refusal, Settings, Signals, Verdict, diagnose, plan,
-};
+use crate::compile::improved::{Origin, improve};
+use crate::diagnose::advice::{Limits, Plan, Question, plan};
+use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
+use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::run::{Options, Refusal, diagnose};
+use crate::diagnose::search::thresholds::Settings;
 use crate::error::{Error, Result, codes};
 use crate::fit;
 use crate::joint::Joint;
 use crate::physics::JointState;
-use crate::recording::{self, Axis, Quantity, Recording};
-use crate::report::{self, DiagnosisPage};
+use crate::physics::names::capital;
+use crate::physics::units::Units;
+use crate::recording;
+use crate::recording::{Axis, Quantity, Recording};
+use crate::report;
+use crate::report::DiagnosisPage;
+use crate::report::tell::{Story, tell};
 use clap::{Args, ValueEnum};
 use compare::{Compared, compared_signals};
 use frikan_shared::image::Image;

@@ -15,7 +15,8 @@ use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
 use crate::joint::Joint;
 use crate::kan::{Architecture, Sparsity};
-use crate::recording::{self, Recording};
+use crate::recording;
+use crate::recording::Recording;
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]

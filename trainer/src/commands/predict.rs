@@ -9,7 +9,8 @@ use crate::error::{Error, Result, codes};
 use crate::fit::predict::{every_row, predict};
 use crate::fit::{HostModel, model};
 use crate::joint::Joint;
-use crate::recording::{self, Channel, Recording};
+use crate::recording;
+use crate::recording::{Channel, Recording};
 use frikan_shared::units::Unit;
 
 /// Copy a recording and add what the model predicts, `predicted_<quantity>_<unit>` and `residual_<unit>`.

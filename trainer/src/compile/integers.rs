@@ -148,7 +148,8 @@ fn fill(curve: &dyn Curve, shape: IntegerShape, bound: f64) -> Option<CompiledIn
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::formula::tests::stribeck_law;
+    use crate::compile::formula::{Formula, Function, Operator};
     use crate::compile::reference::integer_value;
     use frikan_runtime::integer_table::{evaluate_integer, evaluate_steps};
     use frikan_shared::pool::Pool;

@@ -7,6 +7,7 @@ pub mod cells;
 pub mod cost;
 pub mod effects;
 pub mod formula;
+pub mod improved;
 pub mod integers;
 pub mod interval;
 pub mod networks;

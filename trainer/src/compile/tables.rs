@@ -215,7 +215,8 @@ fn uniform_layout(layout: Uniform) -> Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::formula::tests::stribeck_law;
+    use crate::compile::formula::{Formula, Function, Operator};
     use frikan_runtime::table::evaluate_table;
     use frikan_shared::pool::Pool;
 

@@ -164,7 +164,8 @@ pub fn compare_patterns<const CELLS: usize>(model: &Model<CELLS>, first: u32, co
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::formula::{Formula, Function, Operator, tests::stribeck_law};
+    use crate::compile::formula::tests::stribeck_law;
+    use crate::compile::formula::{Formula, Function, Operator};
     use crate::compile::integers::compile_integer_table;
     use crate::compile::networks::{Edge, Edges, Nodes, assemble, node_ranges};
     use crate::compile::program::compile_program;

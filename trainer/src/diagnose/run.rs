@@ -1,26 +1,28 @@
 //! One diagnosis from signals to outcome.
 
-use super::base::{Base, BaseKind, Delay};
-use super::blocks::Lock;
-use super::candidates::Label;
-use super::command::Command;
-use super::conclude::{Refit, polish, refit};
-use super::delay::diagnose_in_step;
-use super::findings::{base_parameters, finding, measurement_finding, unexplained_finding};
-use super::health::{AsRecorded, HealthNote, coarse_position, examine, scattered_sampling, unexplained_event};
-use super::linear::{rows_in, weighted};
-use super::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
-use super::prepare::Prepared;
-use super::prove::{prove, rest};
-use super::rollout::roll_out;
-use super::round::Scored;
-use super::search::{Search, SearchOutcome};
-use super::set_aside::{
+use crate::diagnose::answer::finding::{base_parameters, finding, measurement_finding, unexplained_finding};
+use crate::diagnose::answer::outcome::{DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
+use crate::diagnose::answer::traces::Traces;
+use crate::diagnose::checks::command_beyond_limit::Command;
+use crate::diagnose::checks::health::{
+    AsRecorded, HealthNote, coarse_position, examine, scattered_sampling, unexplained_event,
+};
+use crate::diagnose::comparison::base::{Base, BaseKind, Delay};
+use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::proof::discarded::{
     FORMULA_ERROR, least_torque, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
 };
-use super::settings::Settings;
-use super::signals::Signals;
-use super::traces::Traces;
+use crate::diagnose::proof::locked_rows::{prove, rest};
+use crate::diagnose::proof::refit::{Refit, polish, refit};
+use crate::diagnose::proof::rollout::roll_out;
+use crate::diagnose::realign::diagnose_in_step;
+use crate::diagnose::search::forward_backward::{Search, SearchOutcome};
+use crate::diagnose::search::round::Scored;
+use crate::diagnose::search::thresholds::Settings;
+use crate::numerics::least_squares::{rows_in, weighted};
 use crate::physics::{EffectId, catalogue};
 
 /// What a diagnosis is asked for.

@@ -9,8 +9,8 @@ use crate::error::{Error, Result, codes};
 use crate::figures::digits;
 use crate::fit::{CELLS, HostModel};
 use crate::markup::escape;
+use crate::numerics::statistics::root_mean_square;
 use crate::samples::regression::least_squares;
-use crate::statistics::root_mean_square;
 
 /// Velocities of each direction at which the law is asked.
 const VELOCITIES: usize = 200;

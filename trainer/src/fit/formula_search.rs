@@ -7,10 +7,11 @@ use super::inputs::{ChosenInput, symbol};
 use super::outcome::{ClassicalLaw, FrontLaw, LawStory};
 use super::rigid;
 use crate::error::{Error, Result, codes};
+use crate::law;
 use crate::law::known_forms::refit;
 use crate::law::structure::Nonlinear;
 use crate::law::{
-    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, Start,
+    Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, Start,
     discover, fit_form, render,
 };
 use crate::parameter::Parameter;

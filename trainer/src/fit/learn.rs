@@ -6,7 +6,8 @@ use super::inputs::ChosenInput;
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::NetworkStory;
 use crate::error::{Error, Result, codes};
-use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
+use crate::kan;
+use crate::kan::{Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
 use crate::samples::rigid_body::TermKind;
 
 /// Points of a drawn curve.

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::model::{Model, Unknowns};
-use crate::statistics::mean;
+use crate::numerics::statistics::mean;
 
 /// Weights of the two, relative to the mean squared error of the normalised target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

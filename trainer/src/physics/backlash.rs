@@ -5,7 +5,7 @@ use super::transmission::{
     INFERRED, MEASURED, column, half_span_of_twist, is_possible, is_shown, left_behind, nominal_inertia, opening,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct Backlash;
 

@@ -1,7 +1,7 @@
 //! F2, Haddadin, De Luca and Albu-Schaeffer 2017: a one-sided stop or contact.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct Contact;
 

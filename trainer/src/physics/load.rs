@@ -2,7 +2,7 @@
 //! differently when driving and backdriving.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct LoadFriction;
 

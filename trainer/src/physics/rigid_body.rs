@@ -2,7 +2,7 @@
 //! (Atkeson, An and Hollerbach 1986; Gautier and Khalil 1990; Gautier and Briot 2014).
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct GravityError;
 

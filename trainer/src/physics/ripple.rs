@@ -1,7 +1,7 @@
 //! D1, Holtz and Springob 1996; Piccoli and Yim 2016: torque ripple at fixed orders of position.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct PositionRipple;
 

@@ -2,7 +2,7 @@
 //! gives less, or the record itself stands at the limit where the joint needed more.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct Saturation;
 

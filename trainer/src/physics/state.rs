@@ -1,7 +1,7 @@
 //! The recorded states at which every hypothesis evaluates its torque.
 
 use super::EffectId;
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
 /// States of one joint at the recording's own rate, all series of one length; SI units, joint side.

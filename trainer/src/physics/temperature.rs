@@ -2,7 +2,7 @@
 //! part linearly or as the viscosity of a grease that falls exponentially.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct Temperature;
 

@@ -2,7 +2,7 @@
 //! so their score pays for all that were looked at.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
 pub(super) struct TransientEvent;

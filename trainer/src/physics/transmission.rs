@@ -1,7 +1,7 @@
 //! What the effects of a transmission have in common: how motor and link would part if nothing held them together.
 
 use super::{EffectId, JointState, OtherJoint, Twist};
-use crate::statistics::{mean, quantile};
+use crate::numerics::statistics::{mean, quantile};
 
 /// Variant of a shape that works out the twist from the motor's own motion, and the one that takes it from both encoders.
 pub(super) const INFERRED: f64 = 0.0;

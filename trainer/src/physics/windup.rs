@@ -8,7 +8,7 @@ use super::transmission::{
     opening, usual_link_inertia,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
-use crate::statistics::quantile;
+use crate::numerics::statistics::quantile;
 
 pub(super) struct WindupHysteresis;
 

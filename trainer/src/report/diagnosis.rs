@@ -5,11 +5,13 @@ use super::chart::{Chart, Ink, bars};
 use super::finding::evidence;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::names::{capital, plain_name};
-use crate::diagnose::sentence::Story;
-use crate::diagnose::units::Units;
-use crate::diagnose::{Diagnosis, Finding, Plan, Traces};
+use crate::diagnose::advice::Plan;
+use crate::diagnose::answer::outcome::{Diagnosis, Finding};
+use crate::diagnose::answer::traces::Traces;
 use crate::figures::{digits, quantity};
+use crate::physics::names::{capital, plain_name};
+use crate::physics::units::Units;
+use crate::report::tell::Story;
 
 /// What goes onto the page.
 #[derive(Clone, Copy, Debug)]

@@ -5,10 +5,12 @@ use super::chart::{Chart, Ink, bars};
 use super::diagnosis::axis_label;
 use super::on_the_drive::on_the_drive;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
-use crate::diagnose::names::{capital, plain_name};
-use crate::diagnose::units::Units;
-use crate::diagnose::{Diagnosis, Finding, Region, Side, Traces};
+use crate::diagnose::answer::outcome::{Diagnosis, Finding};
+use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::answer::traces::Traces;
 use crate::figures::digits;
+use crate::physics::names::{capital, plain_name};
+use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
 
 /// Names in the chart of one finding's rivals, its own included.

@@ -11,6 +11,7 @@ mod heat_map;
 mod on_the_drive;
 mod page;
 pub mod picture;
+pub mod tell;
 
 pub use diagnosis::{DiagnosisPage, diagnosis};
 pub use fit::fit;

@@ -1,7 +1,7 @@
 //! Glitches of a line or a converter: one to three rows in which a channel leaves its neighbours and comes back.
 
+use crate::numerics::statistics::quantile;
 use crate::recording::{Quantity, Recording};
-use crate::statistics::quantile;
 use std::borrow::Cow;
 use std::ops::Range;
 

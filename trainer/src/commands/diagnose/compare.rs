@@ -1,14 +1,20 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
 use super::{Diagnose, units};
-use crate::diagnose::simulation::{self, InverseLaw};
-use crate::diagnose::units::Units;
-use crate::diagnose::{Reference, Signals, model};
+use crate::diagnose::comparison::from_model;
+use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::comparison::simulation;
+use crate::diagnose::comparison::simulation::InverseLaw;
+use crate::diagnose::measurement::signals::Signals;
 use crate::error::{Error, Result, codes};
-use crate::fit::{self, HostModel};
-use crate::joint::{self, Joint};
+use crate::fit;
+use crate::fit::HostModel;
+use crate::joint;
+use crate::joint::Joint;
 use crate::physics::JointState;
-use crate::recording::{self, Quantity, Recording};
+use crate::physics::units::Units;
+use crate::recording;
+use crate::recording::{Quantity, Recording};
 use frikan_shared::model::RigidBody;
 
 /// What the recording is compared with.
@@ -24,7 +30,9 @@ impl Compared {
         match self {
             Self::Itself(_) => None,
             Self::Simulation(law) => Some(law.at(state)),
-            Self::Model(image) => model::at(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok(),
+            Self::Model(image) => {
+                from_model::at(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok()
+            }
         }
     }
 }
@@ -47,7 +55,7 @@ pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: 
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let mut signals = joined(real, &bare)?;
         let state = states(&signals, &real[0])?;
-        let reference = model::at(&image.model, &state, state.rigid_body.as_deref())
+        let reference = from_model::at(&image.model, &state, state.rigid_body.as_deref())
             .map_err(|error| error.in_file(real[0].file()))?;
         signals.compare_with(reference);
         Ok((signals, Compared::Model(Box::new(image.model))))

@@ -1,8 +1,12 @@
 //! A diagnosis as JSON, schema `frikan.diagnose/1`.
 
-use crate::diagnose::sentence::Story;
-use crate::diagnose::{BaseKind, Diagnosis, Finding, Plan, Region, Scored, Side};
+use crate::diagnose::advice::Plan;
+use crate::diagnose::answer::outcome::{Diagnosis, Finding};
+use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::search::round::Scored;
 use crate::physics::EffectId;
+use crate::report::tell::Story;
 use serde_json::{Value, json};
 
 /// Rivals listed with a finding, nearest first.

@@ -1,0 +1,298 @@
+//! What to record next, so that effects which this recording cannot tell apart come apart.
+//!
+//! A library of excitations, within the limits of the joint, is weighed by the evidence that each would bring (Box and
+//! Hill 1967; T-optimality of Atkinson and Fedorov 1975): half the whitened energy of one effect's torque that neither the
+//! base nor its rival can hold, over the recording and the planned motion together. The least evidence over both
+//! directions and all pairs that can be told apart at all counts; the excitation with the most of it is proposed.
+
+mod excitation;
+mod future;
+mod outlook;
+
+use crate::diagnose::answer::outcome::{Diagnosis, Finding};
+use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::filter::{first_derivative, second_derivative};
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::proof::refit::Fitted;
+use crate::numerics::statistics::quantile;
+use crate::physics::names::plain_name;
+use crate::physics::{EffectId, JointState};
+use excitation::{Envelope, Excitation};
+use future::Future;
+use outlook::Outlook;
+use rayon::prelude::*;
+
+/// An excitation that would separate a finding from its rivals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advice {
+    /// In words.
+    pub sentence: String,
+}
+
+/// Predicts the reference's torque at given states.
+pub type ReferenceAt<'a> = dyn Fn(&JointState) -> Option<Reference> + Sync + 'a;
+
+/// Everything from which a plan is made.
+pub struct Question<'a> {
+    /// The recording that was diagnosed.
+    pub signals: &'a Signals,
+    /// What came of it.
+    pub diagnosis: &'a Diagnosis,
+    /// Limits within which the joint may move.
+    pub limits: Limits,
+    /// The reference of [`super::BaseKind::Reference`] at other states.
+    pub reference: Option<&'a ReferenceAt<'a>>,
+}
+
+/// Limits within which a joint may move; SI units, rotary or linear. What is absent is taken from the recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// Lowest position, rad or m.
+    pub lowest_position: Option<f64>,
+    /// Highest position.
+    pub highest_position: Option<f64>,
+    /// Largest speed.
+    pub speed: Option<f64>,
+    /// Largest acceleration.
+    pub acceleration: Option<f64>,
+}
+
+impl Limits {
+    /// The limits that are given, filled in with what the recording shows.
+    fn envelope(&self, state: &JointState) -> Envelope {
+        let (low, high) = state.travel();
+        let (low, high) = (self.lowest_position.unwrap_or(low), self.highest_position.unwrap_or(high));
+        let common = |series: &[f64]| quantile(series.iter().map(|x| x.abs()), COMMON);
+        let home = state.position.last().copied().unwrap_or(low);
+        Envelope {
+            low,
+            high,
+            home: home.clamp(low.min(high), high),
+            speed: self.speed.unwrap_or_else(|| common(&state.velocity)),
+            acceleration: self.acceleration.unwrap_or_else(|| common(&state.acceleration)),
+            resolution: state.resolution,
+        }
+    }
+}
+
+/// Quantile of recorded speed and acceleration up to which a joint may certainly be moved.
+const COMMON: f64 = 0.995;
+
+/// A motion to record next.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Pairs of effects that it is to tell apart.
+    pub pairs: Vec<(EffectId, EffectId)>,
+    /// Pairs that no motion of the library tells apart within the limits.
+    pub left_open: Vec<(EffectId, EffectId)>,
+    /// The motion in words, with payload and rest before it.
+    pub words: String,
+    /// Rest before the motion, s.
+    pub rest_before_s: f64,
+    /// Load torque while it is followed, one value a sample, where the payload is part of the plan.
+    pub load: Option<Vec<f64>>,
+    /// Sample period, s.
+    pub period: f64,
+    /// Position, one value a sample; from rest to rest, rad or m.
+    pub position: Vec<f64>,
+    /// Expected evidence in nats between the least separated pair, after the motion was recorded.
+    pub expected_nats: f64,
+    /// The same of the recording as it is.
+    pub present_nats: f64,
+}
+
+impl Plan {
+    /// Length of the motion, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.position.len() as f64 * self.period
+    }
+
+    /// Whether the motion is expected to tell the effects apart.
+    #[must_use]
+    pub fn suffices(&self) -> bool {
+        self.expected_nats >= TOLD_APART_NATS
+    }
+
+    /// The plan in one sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let text = |pairs: &[(EffectId, EffectId)]| {
+            let pairs: Vec<String> =
+                pairs.iter().map(|(a, b)| format!("{} from {}", plain_name(*a), plain_name(*b))).collect();
+            pairs.join(", and ")
+        };
+        let (seconds, words, pairs) = (self.duration_s(), &self.words, text(&self.pairs));
+        let (expected, present) = (self.expected_nats, self.present_nats);
+        if !self.suffices() {
+            return format!(
+                "no motion within the limits tells {pairs}: the best of them, {seconds:.0} s of {words}, promises \
+                 {expected:.1} nats, where {TOLD_APART_NATS} are needed"
+            );
+        }
+        let told = format!(
+            "{seconds:.0} s of {words}, recorded next, would tell {pairs}: expected margin {expected:.1} nats, where \
+             {TOLD_APART_NATS} suffice and this recording holds {present:.1}"
+        );
+        if self.left_open.is_empty() { told } else { format!("{told}; it cannot tell {}", text(&self.left_open)) }
+    }
+
+    /// The motion as CSV: time, position, velocity, acceleration, and the load torque where a payload is asked for. A
+    /// rest is the step of time behind the first row, over which the position is held.
+    #[must_use]
+    pub fn to_csv(&self, rotary: bool) -> String {
+        use std::fmt::Write;
+        let all = [0..self.position.len()];
+        let velocity = first_derivative(&self.position, &all, self.period);
+        let acceleration = second_derivative(&self.position, &all, self.period);
+        let header = match (rotary, self.load.is_some()) {
+            (true, false) => "time_s,position_rad,velocity_rad_s,acceleration_rad_s2",
+            (true, true) => "time_s,position_rad,velocity_rad_s,acceleration_rad_s2,load_torque_Nm",
+            (false, false) => "time_s,position_m,velocity_m_s,acceleration_m_s2",
+            (false, true) => "time_s,position_m,velocity_m_s,acceleration_m_s2,load_torque_N",
+        };
+        let mut text = format!("{header}\n");
+        for (k, position) in self.position.iter().enumerate() {
+            let rest = if k > 0 { self.rest_before_s } else { 0.0 };
+            let time = rest + k as f64 * self.period;
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{time:.6},{position:.9},{:.6},{:.6}", velocity[k], acceleration[k]);
+            let _ = match &self.load {
+                Some(load) => writeln!(text, ",{:.6}", load[k]),
+                None => writeln!(text),
+            };
+        }
+        text
+    }
+}
+
+/// Evidence in nats from which two effects are told apart.
+pub const TOLD_APART_NATS: f64 = 3.0;
+/// Excitations whose expected evidence is worked out with the rivals' shapes refined.
+const REFINED: usize = 3;
+
+/// The most telling excitation for the findings that have rivals; `None` where every name is certain or nothing in the
+/// library can be moved.
+#[must_use]
+pub fn plan(question: &Question) -> Option<Plan> {
+    let pairs = pairs(question.diagnosis);
+    if pairs.is_empty() {
+        return None;
+    }
+    let past = Prepared::at_cut_off(question.signals, question.diagnosis.cut_off_hz, question.diagnosis.lock);
+    let future = Future::new(question.signals, &past.state);
+    let present = Outlook::new(question, question.signals.clone())?.evidence(&pairs, true);
+    let weigh = |candidates: Vec<Candidate>, refined: bool| -> Vec<Weighed> {
+        candidates
+            .into_par_iter()
+            .filter_map(|candidate| {
+                let outlook = Outlook::new(question, future.with(&candidate))?;
+                Some(Weighed { nats: outlook.evidence(&pairs, refined), candidate })
+            })
+            .collect()
+    };
+    let mut weighed = weigh(candidates(question, &future, &past.state, &pairs), false);
+    let separable = separable(&weighed, pairs.len());
+    weighed.sort_by(|a, b| least(&b.nats, &separable).total_cmp(&least(&a.nats, &separable)));
+    weighed.truncate(REFINED);
+    let weighed = weigh(weighed.into_iter().map(|weighed| weighed.candidate).collect(), true);
+    let separable = self::separable(&weighed, pairs.len());
+    let better = |a: Weighed, b: Weighed| if least(&b.nats, &separable) > least(&a.nats, &separable) { b } else { a };
+    let Weighed { nats, candidate } = weighed.into_iter().reduce(better)?;
+    let named = |told: bool| {
+        (0..pairs.len()).filter(|pair| separable.contains(pair) == told).map(|k| (pairs[k].0, pairs[k].2)).collect()
+    };
+    Some(Plan {
+        pairs: named(true),
+        left_open: named(false),
+        words: candidate.words(),
+        rest_before_s: candidate.rest_before_s,
+        load: candidate.payload.map(|_| future.load(&candidate)),
+        period: question.signals.period,
+        expected_nats: least(&nats, &separable),
+        present_nats: least(&present, &separable),
+        position: candidate.excitation.position,
+    })
+}
+
+/// A candidate with its expected evidence for every pair, in nats.
+struct Weighed {
+    nats: Vec<f64>,
+    candidate: Candidate,
+}
+
+/// Pairs that some candidate is expected to tell apart; all of them where there is none. Some effects coincide whatever
+/// the motion: those must not decide.
+fn separable(weighed: &[Weighed], pairs: usize) -> Vec<usize> {
+    let told: Vec<usize> =
+        (0..pairs).filter(|&pair| weighed.iter().any(|weighed| weighed.nats[pair] >= TOLD_APART_NATS)).collect();
+    if told.is_empty() { (0..pairs).collect() } else { told }
+}
+
+/// Least evidence among some pairs.
+fn least(nats: &[f64], among: &[usize]) -> f64 {
+    among.iter().map(|&pair| nats[pair]).fold(f64::INFINITY, f64::min)
+}
+
+/// A finding's effect, its fitted term and a rival.
+type Pair<'a> = (EffectId, &'a Fitted, EffectId);
+
+fn pairs(diagnosis: &Diagnosis) -> Vec<Pair<'_>> {
+    let named =
+        |found: &&Finding| matches!(found.fitted.label, Label::Named(_)) && !found.fitted.coefficients.is_empty();
+    let rivals = |found: &'_ Finding| found.alternatives.iter().map(|(rival, _)| *rival).collect::<Vec<_>>();
+    diagnosis
+        .findings
+        .iter()
+        .filter(named)
+        .flat_map(|found| rivals(found).into_iter().map(move |rival| (found.effect, &found.fitted, rival)))
+        .collect()
+}
+
+/// One excitation under one payload, behind one rest.
+#[derive(Clone, Debug)]
+struct Candidate {
+    excitation: Excitation,
+    /// Share of the typical recorded load torque; as recorded last where `None`.
+    payload: Option<f64>,
+    rest_before_s: f64,
+}
+
+impl Candidate {
+    fn words(&self) -> String {
+        let payload = match self.payload {
+            None => String::new(),
+            Some(0.0) => " without payload".to_string(),
+            Some(share) => format!(" with {share:.2} times the usual payload"),
+        };
+        let rest = match self.rest_before_s {
+            0.0 => String::new(),
+            rest => format!(" after a rest of {rest:.0} s"),
+        };
+        format!("{}{payload}{rest}", self.excitation.words)
+    }
+}
+
+/// Shortest and longest planned motion, s.
+const DURATION_S: (f64, f64) = (20.0, 60.0);
+
+fn candidates(question: &Question, future: &Future, state: &JointState, pairs: &[Pair]) -> Vec<Candidate> {
+    let signals = question.signals;
+    let duration = (signals.period * signals.time.len() as f64).clamp(DURATION_S.0, DURATION_S.1);
+    let motions = excitation::library(&question.limits.envelope(state), duration, signals.period);
+    let slow = [EffectId::Temperature, EffectId::WarmUp, EffectId::SlowDrift];
+    let cooling = pairs.iter().any(|(effect, _, rival)| slow.contains(effect) || slow.contains(rival));
+    let rests: Vec<f64> = if cooling { vec![0.0, future.cooling_s()] } else { vec![0.0] };
+    let payloads: Vec<Option<f64>> = std::iter::once(None).chain(future.payloads().into_iter().map(Some)).collect();
+    let mut candidates = Vec::new();
+    for excitation in motions {
+        for &payload in &payloads {
+            for &rest_before_s in &rests {
+                candidates.push(Candidate { excitation: excitation.clone(), payload, rest_before_s });
+            }
+        }
+    }
+    candidates
+}

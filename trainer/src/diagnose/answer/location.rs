@@ -1,0 +1,105 @@
+//! Where a finding sits: evidence density along time and every channel, and the interval that holds most of it.
+
+use crate::diagnose::answer::region::{Axis, Region, maximal_sum, regions};
+use crate::diagnose::hypotheses::channel::Channel;
+use crate::diagnose::proof::locked_rows::rest;
+use crate::diagnose::proof::refit::Refit;
+use crate::diagnose::search::forward_backward::Search;
+use crate::physics::EffectId;
+use std::ops::Range;
+
+/// Regions and times of one finding.
+#[derive(Clone, Debug, Default)]
+pub struct Location {
+    /// Regions: first that which a sentence names, then the sharpest.
+    pub regions: Vec<Region>,
+    /// Stretches of time in s that hold the most evidence.
+    pub when_s: Vec<[f64; 2]>,
+}
+
+/// Locates one effect of a refit: the evidence that it adds to all the others.
+pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
+    let runs = search.prepared.open_runs();
+    let with = rest(search, refit);
+    let effect = &refit.effects[index];
+    let torque = search.torque_of(effect);
+    let without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
+    let [white_with, white_without] = [with, without].map(|rest| refit.noise.whitened(&rest, &runs));
+    let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
+    let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
+    let state = &search.prepared.state;
+    let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };
+    let mut axes = vec![("velocity", at_rows(&state.velocity))];
+    axes.extend(Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))));
+    let axes: Vec<Axis> = axes.iter().map(|(name, values)| (*name, values.as_slice())).collect();
+    let mut location = locate_density(&axes, &at_rows(&state.time), &density);
+    location.name_first(effect.label.effect());
+    location
+}
+
+impl Location {
+    /// Puts first the sharpest region that says something of the effect: of an event that in time, of what lasts that of a channel.
+    fn name_first(&mut self, effect: EffectId) {
+        let says_something = |region: &Region| match effect {
+            EffectId::TransientEvent => region.side.channel == "time",
+            EffectId::SlowDrift | EffectId::WarmUp | EffectId::Unknown => true,
+            _ => region.side.channel != "time",
+        };
+        let first = self.regions.iter().position(|region| region.is_telling() && says_something(region));
+        if let Some(first) = first {
+            self.regions[..=first].rotate_right(1);
+        }
+    }
+}
+
+/// Locates a density of evidence along time and along every axis.
+pub(crate) fn locate_density(axes: &[Axis], time: &[f64], density: &[f64]) -> Location {
+    Location { regions: regions(axes, density), when_s: when(time, density) }
+}
+
+/// Up to five stretches of time in which the evidence is densest.
+fn when(time: &[f64], density: &[f64]) -> Vec<[f64; 2]> {
+    let total: f64 = density.iter().sum();
+    if total <= 0.0 || time.is_empty() {
+        return Vec::new();
+    }
+    let mean = total / density.len() as f64;
+    let width = (density.len() / 240).max(4);
+    let mut sums: Vec<f64> = density.chunks(width).map(|c| c.iter().map(|d| d - 1.5 * mean).sum()).collect();
+    let mut stretches = Vec::new();
+    while stretches.len() < 5 {
+        let best = maximal_sum(&sums);
+        let gain: f64 = sums[best.clone()].iter().sum();
+        if gain < 0.05 * total {
+            break;
+        }
+        let end = (best.end * width).min(time.len()) - 1;
+        stretches.push([time[best.start * width], time[end]]);
+        sums[best].fill(f64::NEG_INFINITY);
+    }
+    stretches.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::answer::region::Side;
+
+    #[test]
+    fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
+        let region = |channel, share_of_excess| {
+            let side = Side { channel, from: 0.0, to: 1.0 };
+            Region { side, and: None, share_of_excess, share_of_samples: 0.1 }
+        };
+        let first = |effect: EffectId, of_velocity: f64| {
+            let regions = vec![region("time", 0.8), region("velocity", of_velocity), region("load", 0.6)];
+            let mut location = Location { regions, when_s: Vec::new() };
+            location.name_first(effect);
+            location.regions[0].side.channel
+        };
+        assert_eq!(first(EffectId::SlowDrift, 0.7), "time");
+        assert_eq!(first(EffectId::Presliding, 0.7), "velocity");
+        assert_eq!(first(EffectId::Presliding, 0.2), "load", "a region that tells nothing is passed over");
+    }
+}

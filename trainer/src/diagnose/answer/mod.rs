@@ -1,0 +1,10 @@
+//! What a diagnosis says, as typed values. Makes no sentence.
+
+pub(crate) mod finding;
+pub(crate) mod formula;
+pub(crate) mod location;
+pub(crate) mod nearest_named;
+pub(crate) mod outcome;
+pub(crate) mod region;
+pub(crate) mod stated_probability;
+pub(crate) mod traces;

@@ -1,0 +1,7 @@
+//! What a recording is compared with: a static model of itself, a fitted image or the law of a simulation. Knows no candidate's evidence.
+
+pub(crate) mod base;
+pub mod from_model;
+pub(crate) mod reference;
+pub(crate) mod sign_width;
+pub mod simulation;

@@ -1,0 +1,96 @@
+//! Effects of the catalogue that a simulator computes itself: they are its law as much as its static friction, and nothing that
+//! the real joint has beyond it.
+
+use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::comparison::simulation::InverseLaw;
+use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::gravity::give_body;
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::run::{Options, diagnose};
+use crate::numerics::least_squares::weighted;
+use crate::numerics::random::normal;
+use crate::numerics::statistics::root_mean_square;
+use crate::physics::{EffectId, JointState, Shape, catalogue};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// An effect of a law, at unit coefficients.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    pub effect: EffectId,
+    pub shape: Shape,
+    /// Number of its columns.
+    pub width: usize,
+}
+
+/// Effects of a simulation, as their columns are worked out: beside the static law alone.
+#[derive(Clone, Debug)]
+pub(crate) struct HeldEffects {
+    pub effects: Vec<Held>,
+    pub beside: Box<InverseLaw>,
+}
+
+/// Noise that the simulation is given, over that of the recording: what the recording shows is found in the simulation first.
+const NOISE_SHARE: f64 = 1.0 / 3.0;
+
+/// Whether an effect is a function of the state, which another recording has as well, and not of the clock.
+fn belongs_to_the_state(effect: EffectId) -> bool {
+    !matches!(effect, EffectId::SlowDrift | EffectId::TransientEvent | EffectId::TimeMisalignment)
+}
+
+/// What a diagnosis of the simulation names beside its static law. `None` where that is nothing.
+///
+/// The simulation is given a share of the `noise` of the real recording: below that the formulas of simulator and catalogue
+/// differ, and the recording could not show it.
+pub(crate) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Option<HeldEffects> {
+    let mut signals = simulation.clone();
+    add_noise(&mut signals, NOISE_SHARE * noise);
+    let state = signals.states();
+    let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
+    signals.compare_with(Reference { jacobian, doubt: Vec::new(), ..law.at(&state) });
+    let options = Options { base: BaseKind::Reference, ..Options::default() };
+    let diagnosis = diagnose(&signals, "", &options).ok()?;
+    let held = diagnosis.findings.iter().filter_map(|finding| match finding.fitted.label {
+        Label::Named(effect) if belongs_to_the_state(effect) => {
+            let width = finding.fitted.coefficients.len();
+            (width > 0).then(|| Held { effect, shape: finding.fitted.shape.clone(), width })
+        }
+        _ => None,
+    });
+    let effects: Vec<Held> = held.collect();
+    (!effects.is_empty()).then(|| HeldEffects { effects, beside: Box::new(law.clone()) })
+}
+
+/// Adds white noise of a deviation behind the filter to the torque.
+fn add_noise(signals: &mut Signals, deviation: f64) {
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let white: Vec<f64> = signals.torque.iter().map(|_| normal(&mut random)).collect();
+    let behind = root_mean_square(&Prepared::new(signals, Lock::Nothing).filtered(&white));
+    let scale = deviation / behind.max(f64::MIN_POSITIVE);
+    signals.torque.iter_mut().zip(&white).for_each(|(torque, noise)| *torque += scale * noise);
+}
+
+impl HeldEffects {
+    /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
+    pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
+        let beside = self.beside.columns(state);
+        let predicted = weighted(&beside, &self.beside.coefficients);
+        let base_friction = self.beside.friction_curve();
+        let mut state = JointState { predicted, base_friction, ..state.clone() };
+        if state.rigid_body.is_none() {
+            // As the simulation stood when the effects were found in it.
+            give_body(&mut state, self.beside.rigid_body_of(&beside));
+        }
+        let hypotheses = catalogue();
+        let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);
+        let columns = self.effects.iter().flat_map(|held| {
+            let mut columns = hypothesis(held.effect).map(|h| h.columns(&state, &held.shape)).unwrap_or_default();
+            columns.resize_with(held.width, || vec![0.0; state.len()]);
+            columns
+        });
+        columns.collect()
+    }
+}

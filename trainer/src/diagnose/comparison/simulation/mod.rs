@@ -1,0 +1,320 @@
+//! What a simulator computes: its inverse law, learned from its recording as a function of the state, so that neither clock
+//! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
+
+mod curvature_prior;
+mod held;
+mod replay;
+mod residual_noise;
+
+use crate::diagnose::comparison::base::{nuisances, speed_hats};
+use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::noise::autoregression::{Noise, noise_features};
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::rows::Lock;
+use crate::numerics::covariance::of_whitened;
+use crate::numerics::least_squares::{least_squares, residual, weighted};
+use crate::numerics::statistics::root_mean_square;
+use crate::physics::{EffectId, JointState};
+use curvature_prior::Bends;
+use held::{HeldEffects, held_by};
+use replay::Left;
+use residual_noise::{Rest, rest_of};
+
+/// Least rows of motion from which a law is learned.
+const LEAST_ROWS: usize = 100;
+/// Least travel in rad over which gravity can be told from an offset.
+const GRAVITY_TRAVEL_RAD: f64 = 0.2;
+/// Knots over speed that are tried: a simulation without noise bears many, a short or noisy one few.
+const KNOTS: [usize; 4] = [5, 9, 17, 33];
+
+/// Noise of a simulation over that of the recording below which what a law leaves of it is the error of the law's formulas.
+const QUIET: f64 = 0.5;
+
+/// Why no law can be learned from a simulation.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unlearnable {
+    /// The simulated joint rests, or nearly always does.
+    #[error("the simulation holds only {rows} rows of motion behind the filter; its law cannot be learned from rest")]
+    Rest {
+        /// Rows of motion.
+        rows: usize,
+    },
+    /// The simulated motion does not determine the law.
+    #[error("the simulated motion does not determine a law: one velocity, or no change of direction")]
+    Undetermined,
+}
+
+/// The learned law: rigid body, friction over velocity and what of the catalogue the simulator holds, linear in its coefficients.
+#[derive(Clone, Debug)]
+pub struct InverseLaw {
+    sign_velocity: f64,
+    top_speed: f64,
+    gravity: bool,
+    given: bool,
+    /// Hats over speed.
+    knots: usize,
+    held: Option<HeldEffects>,
+    /// Weights of the friction columns, then of the rigid body's, then of the effects'.
+    coefficients: Vec<f64>,
+    /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
+    doubt: Vec<Vec<f64>>,
+    /// What the law leaves of a simulation that is quiet.
+    left: Option<Left>,
+    /// Root mean square of that beside the simulation's noise; zero of one that is not quiet.
+    formula_error: f64,
+    /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
+    pub rmse: f64,
+}
+
+/// Learns the law of a simulation: what the real recording could show of it.
+///
+/// # Errors
+/// [`Unlearnable`] for a simulation of rest or of one velocity.
+pub fn learn(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
+    let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
+    let prepared = Prepared::new(simulation, Lock::Nothing);
+    let law = learn_with(None, &prepared, given)?;
+    let Some(Rest { noise, .. }) = rest_of(real, &law) else { return Ok(law) };
+    let held = held_by(simulation, &law, noise);
+    let mut law = if held.is_none() { law } else { learn_with(held, &prepared, given).unwrap_or(law) };
+    if let Some(rest) = rest_of(simulation, &law).filter(|rest| rest.noise < QUIET * noise) {
+        law.left = Some(Left::of(simulation, &law.torque(&prepared.state)));
+        law.formula_error = rest.formula_error;
+    }
+    Ok(law)
+}
+
+/// The law with given effects in it.
+fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Result<InverseLaw, Unlearnable> {
+    let state = &prepared.state;
+    let rows = prepared.rows.len();
+    if rows < LEAST_ROWS {
+        return Err(Unlearnable::Rest { rows });
+    }
+    let gravity = state.rotary && state.span() > GRAVITY_TRAVEL_RAD;
+    let laws: Vec<(InverseLaw, Vec<f64>)> = KNOTS
+        .into_iter()
+        .filter_map(|knots| {
+            let law = InverseLaw {
+                sign_velocity: state.sign_velocity,
+                top_speed: state.top_speed(),
+                knots,
+                gravity,
+                given,
+                held: held.clone(),
+                coefficients: Vec::new(),
+                doubt: Vec::new(),
+                left: None,
+                formula_error: 0.0,
+                rmse: 0.0,
+            };
+            law.fitted(prepared)
+        })
+        .collect();
+    // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
+    let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
+    let runs = prepared.open_runs();
+    let noise = Noise::fit(finest, &runs, &noise_features(prepared));
+    let criterion = |(law, rest): &(InverseLaw, Vec<f64>)| {
+        let white = noise.whitened(rest, &runs);
+        let rows = rows as f64;
+        2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
+    };
+    let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
+    let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
+    law.doubt = law.doubts(prepared, &rest, &noise);
+    Ok(law)
+}
+
+fn filtered_with_nuisances(prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    prepared.filtered_all(raw).into_iter().chain(nuisances(prepared)).collect()
+}
+
+impl InverseLaw {
+    /// The law with its coefficients, and what it leaves. Differentiation bias and the sampling's delay are fitted beside it and
+    /// left out.
+    fn fitted(mut self, prepared: &Prepared) -> Option<(Self, Vec<f64>)> {
+        let state = &prepared.state;
+        let raw = self.columns(state);
+        let target = prepared.filtered(&prepared.torque);
+        let mut columns = filtered_with_nuisances(prepared, &raw);
+        let roughly = least_squares(&columns, &target, &prepared.open_runs())?;
+        let noise = root_mean_square(&residual(&columns, &target, &roughly));
+        let bends = Bends::of(&roughly[..self.knots]);
+        let fit = |columns: &[Vec<f64>]| {
+            let (mut columns, mut target, mut runs) = (columns.to_vec(), target.clone(), prepared.open_runs());
+            runs.push(bends.put_behind(&mut columns, &mut target, noise));
+            least_squares(&columns, &target, &runs)
+        };
+        let mut coefficients = fit(&columns)?;
+        let late = state.rate_of(&weighted(&raw, &coefficients[..raw.len()]));
+        columns.push(prepared.filtered(&late));
+        coefficients = fit(&columns)?;
+        let rest = residual(&columns, &target, &coefficients);
+        self.rmse = root_mean_square(&rest);
+        coefficients.truncate(raw.len());
+        self.coefficients = coefficients;
+        Some((self, rest))
+    }
+
+    /// Weights of each direction in which the law is not sure of itself, at one standard deviation: the axes of their
+    /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
+    fn doubts(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
+        let mut runs = prepared.open_runs();
+        let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
+        let mut columns: Vec<Vec<f64>> = columns.iter().map(|column| noise.whitened(column, &runs)).collect();
+        let mut rest = noise.whitened(rest, &runs);
+        runs.push(Bends::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
+        let Some(all) = of_whitened(&columns, &rest, &[], &runs) else { return Vec::new() };
+        let width = self.coefficients.len();
+        let axes = all.view((0, 0), (width, width)).clone_owned().symmetric_eigen();
+        let deviations = axes.eigenvalues.iter().map(|variance| variance.max(0.0).sqrt());
+        let directions = axes.eigenvectors.column_iter().zip(deviations);
+        directions.map(|(axis, deviation)| axis.iter().map(|weight| weight * deviation).collect()).collect()
+    }
+
+    /// Friction columns at one velocity with its smoothed sign: odd hats over speed, dense at low speed where friction
+    /// bends, and Coulomb and viscous friction that differ between the directions.
+    fn friction_columns(&self, velocity: f64, sign: f64) -> impl Iterator<Item = f64> {
+        let hats = speed_hats(velocity.abs() / self.top_speed.max(f64::MIN_POSITIVE), self.knots);
+        hats.map(move |hat| hat * sign).chain([sign.abs(), velocity.abs()])
+    }
+
+    /// Number of friction columns; the rigid body follows.
+    fn friction_width(&self) -> usize {
+        self.knots + 2
+    }
+
+    /// Number of columns of the rigid body; the effects follow.
+    fn rigid_body_width(&self) -> usize {
+        2 + 2 * usize::from(self.gravity) + usize::from(self.given)
+    }
+
+    fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
+        let sign = state.averaged_sign(&state.velocity, self.sign_velocity);
+        let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
+        for (velocity, sign) in state.velocity.iter().zip(&sign) {
+            for (column, value) in columns.iter_mut().zip(self.friction_columns(*velocity, *sign)) {
+                column.push(value);
+            }
+        }
+        columns.push(state.acceleration.clone());
+        columns.push(vec![1.0; state.len()]);
+        if self.gravity {
+            columns.push(state.map(|i| state.position[i].sin()));
+            columns.push(state.map(|i| state.position[i].cos()));
+        }
+        if self.given {
+            columns.extend(state.rigid_body.clone());
+        }
+        columns.extend(self.held.iter().flat_map(|held| held.columns(state)));
+        columns
+    }
+
+    /// Friction at a velocity.
+    #[must_use]
+    pub fn friction(&self, velocity: f64) -> f64 {
+        let columns = self.friction_columns(velocity, (velocity / self.sign_velocity).tanh());
+        columns.zip(&self.coefficients).map(|(column, coefficient)| column * coefficient).sum()
+    }
+
+    /// Inertia, constant torque, gravity with sine and cosine, and factor of a given rigid-body torque.
+    #[must_use]
+    pub fn rigid_body(&self) -> [f64; 5] {
+        let mut rest = self.coefficients[self.friction_width()..].iter().copied();
+        let mut next = |present: bool| if present { rest.next().unwrap_or(0.0) } else { 0.0 };
+        [next(true), next(true), next(self.gravity), next(self.gravity), next(self.given)]
+    }
+
+    /// Effects of the catalogue that the simulator holds, with shape and coefficients.
+    pub fn effects(&self) -> impl Iterator<Item = (EffectId, &[f64], &[f64])> {
+        let mut begin = self.friction_width() + self.rigid_body_width();
+        self.held.iter().flat_map(|held| &held.effects).map(move |held| {
+            let place = begin..begin + held.width;
+            begin = place.end;
+            (held.effect, &held.shape[..], &self.coefficients[place])
+        })
+    }
+
+    /// Whole torque of the law at the states of a recording.
+    fn torque(&self, state: &JointState) -> Vec<f64> {
+        weighted(&self.columns(state), &self.coefficients)
+    }
+
+    /// The part of the torque that goes with acceleration, position and a given rigid body, constant torque included, from the columns
+    /// of the law.
+    fn rigid_body_of(&self, columns: &[Vec<f64>]) -> Vec<f64> {
+        let begin = self.friction_width();
+        let rigid_body = begin..begin + self.rigid_body_width();
+        weighted(&columns[rigid_body.clone()], &self.coefficients[rigid_body])
+    }
+
+    /// Friction as pairs (velocity, torque) in ascending velocity.
+    fn friction_curve(&self) -> Vec<(f64, f64)> {
+        tabulated_velocities(1.2 * self.top_speed).map(|v| (v, self.friction(v))).collect()
+    }
+
+    /// The law at the states of the real recording. Coulomb and viscous friction may move.
+    #[must_use]
+    pub fn at(&self, state: &JointState) -> Reference {
+        let columns = self.columns(state);
+        let met = self.left.as_ref().and_then(|left| left.at(state));
+        let unmet = met.as_ref().map_or(1.0, |met| 1.0 - met.share);
+        let formula_error = self.formula_error * unmet.sqrt();
+        Reference {
+            torque: weighted(&columns, &self.coefficients),
+            rigid_body: self.rigid_body_of(&columns),
+            jacobian: coulomb_and_viscous(state),
+            effects: self.effects().map(|(effect, ..)| effect).collect(),
+            left: met.map(|met| met.torque),
+            formula_error,
+            doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
+            outside: Outside::default(),
+            friction: self.friction_curve(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moving(seconds: f64, rate: f64, phase: f64) -> Signals {
+        let period = 1.0 / rate;
+        let time: Vec<f64> = (0..(seconds * rate) as usize).map(|i| i as f64 * period).collect();
+        let swing = |t: f64| [(1.0, 0.8), (0.6, 2.1), (0.3, 5.3)].map(|(a, w): (f64, f64)| (a, w, w * t + phase));
+        let sum = |f: fn((f64, f64, f64)) -> f64| -> Vec<f64> {
+            time.iter().map(|t| swing(*t).into_iter().map(f).sum()).collect()
+        };
+        let position = sum(|(a, _, x)| a * x.sin());
+        let velocity = sum(|(a, w, x)| a * w * x.cos());
+        let acceleration = sum(|(a, w, x)| -a * w * w * x.sin());
+        let torque = (0..time.len())
+            .map(|i| {
+                0.4 * acceleration[i] + 3.0 * position[i].sin() + 2.0 * (velocity[i] / 0.002).tanh() + 0.5 * velocity[i]
+            })
+            .collect();
+        Signals::without_gap(period, time, position, torque)
+    }
+
+    #[test]
+    fn a_law_learned_elsewhere_holds_at_other_states() {
+        // Shorter, shifted in time and sampled differently.
+        let real = moving(31.0, 500.0, 0.0);
+        let law = learn(&moving(20.0, 400.0, 1.3), &real).unwrap();
+        let reference = law.at(&real.states());
+        let error: f64 =
+            reference.torque.iter().zip(&real.torque).skip(500).take(14000).map(|(a, b)| (a - b).powi(2)).sum();
+        assert!((error / 14000.0).sqrt() < 0.15, "{}", (error / 14000.0).sqrt());
+        let [inertia, _, sine, _, _] = law.rigid_body();
+        assert!((inertia - 0.4).abs() < 0.02 && (sine - 3.0).abs() < 0.1, "{inertia} {sine}");
+    }
+
+    #[test]
+    fn rest_teaches_nothing() {
+        let mut still = moving(5.0, 400.0, 0.0);
+        still.position.fill(0.3);
+        assert!(learn(&still, &moving(5.0, 400.0, 0.0)).is_err());
+    }
+}

@@ -1,0 +1,51 @@
+//! What of a candidate's evidence may be an error of the law that the recording is compared with: a law that was learned from a
+//! noisy simulation is not sure of itself.
+
+use crate::numerics::least_squares::{dot, orthonormal, project_out};
+use std::ops::Range;
+
+/// The doubts of a reference beside a base, whitened.
+pub(crate) struct Doubt {
+    /// Torque of each uncertain direction at one standard deviation.
+    torque: Vec<Vec<f64>>,
+    /// Orthonormal directions that the base takes up.
+    base: Vec<Vec<f64>>,
+    runs: Vec<Range<usize>>,
+}
+
+impl Doubt {
+    /// Doubts given as whitened torque beside whitened base columns.
+    pub fn beside(base: &[Vec<f64>], torque: Vec<Vec<f64>>, runs: Vec<Range<usize>>) -> Self {
+        let base = if torque.is_empty() { Vec::new() } else { orthonormal(base, &runs) };
+        Self { torque, base, runs }
+    }
+
+    /// Variance that noise alone gives the evidence of whitened columns over that beside noise and doubt, above 0 and at most 1.
+    pub fn trust(&self, columns: &[Vec<f64>]) -> f64 {
+        if self.torque.is_empty() {
+            return 1.0;
+        }
+        let mut free = columns.to_vec();
+        free.iter_mut().for_each(|column| project_out(column, &self.base, &self.runs));
+        let directions = orthonormal(&free, &self.runs);
+        let shares = directions.iter().flat_map(|d| self.torque.iter().map(|doubt| dot(d, doubt, &self.runs).powi(2)));
+        1.0 / (1.0 + shares.sum::<f64>() / directions.len().max(1) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evidence_along_a_doubt_counts_less_and_across_it_as_much() {
+        let axis =
+            |place: usize, length: f64| (0..4).map(|i| if i == place { length } else { 0.0 }).collect::<Vec<f64>>();
+        let all = std::iter::once(0..4).collect::<Vec<_>>();
+        let doubt = Doubt::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
+        assert!((doubt.trust(&[axis(1, 0.5)]) - 0.1).abs() < 1e-12);
+        assert_eq!(doubt.trust(&[axis(2, 0.5)]), 1.0);
+        assert!((doubt.trust(&[axis(1, 1.0), axis(2, 1.0)]) - 1.0 / 5.5).abs() < 1e-12);
+        assert_eq!(Doubt::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&[axis(1, 0.5)]), 1.0);
+    }
+}

@@ -1,0 +1,98 @@
+//! What grain and noise of the measurement give a candidate by themselves: those of the position enter the candidate through the
+//! motion and the torque through the inertia, those of the torque enter what is worked out from it (errors in variables; Janot,
+//! Vandanjon & Gautier 2014).
+
+use crate::diagnose::evidence::score::Bench;
+use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::noise::autoregression::Noise;
+use crate::diagnose::preparation::prepare::{DEVIATION_PER_MEDIAN, Prepared, identified_inertia};
+use crate::diagnose::search::forward_backward::Search;
+use crate::numerics::least_squares::{dot, gram, orthonormal, project_out, solve_symmetric};
+use crate::numerics::random::{normal, uniform};
+use crate::numerics::statistics::quantile;
+use crate::physics::JointState;
+use nalgebra::DVector;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use std::ops::Range;
+
+/// Seeds of what is added: one for all recordings.
+const SEED: u64 = 0x0067_7261_696e;
+const SEED_OF_INSTANTS: u64 = 0x696e_7374_616e;
+
+/// A second helping of the encoder's grain and of the torque's noise.
+#[derive(Clone, Debug)]
+pub(crate) struct Grain {
+    /// States with it.
+    state: JointState,
+    /// Filtered change of what the base leaves.
+    left: Vec<f64>,
+}
+
+impl Grain {
+    /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a
+    /// fitted base leaves in half of the rows. `None` where the recording shows no inertia.
+    pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
+        let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
+        let inertia = if body_is_recorded && signals.reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
+        let [mut random, mut instants] = [SEED, SEED_OF_INSTANTS].map(ChaCha8Rng::seed_from_u64);
+        let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
+        let late = prepared.state.velocity.iter().map(|v| prepared.sampling_jitter * v * normal(&mut instants));
+        let position: Vec<f64> = steps.zip(late).map(|(q, late)| q + late).collect();
+        let filtered = DEVIATION_PER_MEDIAN * quantile(left_by_base.iter().map(|left| left.abs()), 0.5);
+        let deviation = filtered / prepared.filter.gain();
+        let noise: Vec<f64> = signals.torque.iter().map(|_| deviation * normal(&mut random)).collect();
+        let torque: Vec<f64> = signals.torque.iter().zip(&noise).map(|(torque, noise)| torque + noise).collect();
+        let mut state = prepared.state_at(&position, &torque);
+        let inertial = state.map(|i| inertia * (state.acceleration[i] - prepared.state.acceleration[i]));
+        state.predicted.iter_mut().zip(&inertial).for_each(|(predicted, change)| *predicted += change);
+        let left: Vec<f64> = noise.iter().zip(&inertial).map(|(noise, inertial)| noise - inertial).collect();
+        Some(Self { state, left: prepared.filtered(&left) })
+    }
+
+    /// What it does beside a bench.
+    pub fn beside<'g>(&'g self, search: &'g Search<'g>, bench: &'g Bench, noise: &'g Noise) -> GrainBeside<'g> {
+        let runs = bench.runs();
+        let base = orthonormal(&bench.base, &runs);
+        let left = search.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
+        GrainBeside { state: &self.state, search, bench, noise, base, left, runs }
+    }
+}
+
+/// A second helping of grain and noise beside a bench.
+pub(crate) struct GrainBeside<'g> {
+    state: &'g JointState,
+    search: &'g Search<'g>,
+    bench: &'g Bench,
+    noise: &'g Noise,
+    /// Orthonormal directions that the base takes up.
+    base: Vec<Vec<f64>>,
+    /// Whitened change of what the base leaves.
+    left: Vec<f64>,
+    runs: Vec<Range<usize>>,
+}
+
+impl GrainBeside<'_> {
+    /// Share of a candidate's evidence that the grain does not give it by itself, from 0 to 1.
+    pub fn trust(&self, label: &Label, shape: &[f64]) -> f64 {
+        let Self { state, search, bench, noise, base, left, runs } = self;
+        let free = |columns: &[Vec<f64>]| {
+            let mut white = search.whitened(columns, noise);
+            white.iter_mut().for_each(|column| project_out(column, base, runs));
+            white
+        };
+        let columns = search.filtered_columns(label, shape);
+        let with_more = search.filtered_columns_at(state, label, shape);
+        let change = |(more, column): (&Vec<f64>, &Vec<f64>)| more.iter().zip(column).map(|(m, c)| m - c).collect();
+        let changes: Vec<Vec<f64>> = with_more.iter().zip(&columns).map(change).collect();
+        let (columns, changes) = (free(&columns), free(&changes));
+        let along = |columns: &[Vec<f64>], target: &[f64]| {
+            DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, runs)))
+        };
+        let (asked_for, by_grain) = (along(&columns, &bench.target), along(&changes, left));
+        let Some(coefficients) = solve_symmetric(&gram(&columns, runs), &asked_for) else { return 1.0 };
+        let share = coefficients.dot(&by_grain) / coefficients.dot(&asked_for).max(f64::MIN_POSITIVE);
+        (1.0 - share).clamp(0.0, 1.0).powi(2)
+    }
+}

@@ -1,0 +1,215 @@
+//! What the diagnosis works on: one joint's signals on an even clock, before any filter.
+
+use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::measurement::other_joints::other_positions;
+use crate::diagnose::preparation::filter::second_derivative;
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::recording::{Axis, Quantity, Recording};
+use crate::samples::EvenClock;
+use crate::samples::spikes::{Spikes, without_spikes};
+use std::ops::Range;
+
+/// Signals of one joint on an even clock; all series of one length; SI, joint side.
+#[derive(Clone, Debug, Default)]
+pub struct Signals {
+    /// Sample period in s.
+    pub period: f64,
+    /// Time in s.
+    pub time: Vec<f64>,
+    /// Position in rad or m.
+    pub position: Vec<f64>,
+    /// Velocity as it was recorded: the diagnosis differentiates the position, and only compares both.
+    pub velocity: Option<Vec<f64>>,
+    /// Actuator torque (N m, N or A).
+    pub torque: Vec<f64>,
+    /// Torque of the nominal rigid body in the unit of the actuator, where one is given.
+    pub rigid_body: Option<Vec<f64>>,
+    /// Whether that was worked out from the recorded position.
+    pub body_follows_position: bool,
+    /// Transmitted load torque in N m.
+    pub load: Option<Vec<f64>>,
+    /// Temperature in degrees Celsius.
+    pub temperature: Option<Vec<f64>>,
+    /// Link-side position in rad or m.
+    pub link_position: Option<Vec<f64>>,
+    /// Positions of other joints on the same clock, in rad or m.
+    pub other_positions: Vec<Vec<f64>>,
+    /// The fitted model or simulation that it is compared with, at the recorded states.
+    pub reference: Option<Reference>,
+    /// Stretches of uninterrupted motion (trajectories, or pieces between gaps).
+    pub segments: Vec<Range<usize>>,
+    /// Motor turns per joint turn, where known.
+    pub gear_ratio: Option<f64>,
+    /// Whether the axis turns (else it slides).
+    pub rotary: bool,
+    /// Smallest step of the position in its unit; 0 when unknown.
+    pub position_resolution: f64,
+    /// Whether samples lie between recorded rows, whose clock jitters.
+    pub resampled: bool,
+    /// Largest torque of the drive in N m, where it is stated and the torque is recorded in N m.
+    pub torque_limit: Option<f64>,
+    /// Glitches of the recording that were replaced.
+    pub spikes: Vec<Spikes>,
+}
+
+impl Signals {
+    /// The torque that needs no identification: the reference's, or the rigid body's.
+    pub(crate) fn known_torque(&self) -> Option<&Vec<f64>> {
+        self.reference.as_ref().map(|reference| &reference.torque).or(self.rigid_body.as_ref())
+    }
+
+    /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque
+    /// where the recording carries none; friction that was separated before holds none any more.
+    ///
+    /// # Errors
+    /// `FRK-D009` when clock, motion or actuator is missing, `FRK-D010` when its unit is not understood, `FRK-D014` for a rigid body
+    /// given in N m beside a current without a torque constant.
+    pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
+        let (recording, spikes) = &without_spikes(recording);
+        let even = EvenClock::of(recording)?;
+        let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
+        let actuator = recording.actuator();
+        let channel = actuator.or_else(|| recording.separated_friction());
+        let torque = match channel.and_then(|channel| even.named(&channel.name)).map(<[f64]>::to_vec) {
+            Some(torque) => torque,
+            None => {
+                recording.require(&[Quantity::Torque, Quantity::Force, Quantity::Current], "a diagnosis")?;
+                Vec::new()
+            }
+        };
+        let position = match owned(Quantity::Position) {
+            Some(position) => position,
+            None => {
+                recording.require(&[Quantity::Position], "a diagnosis")?;
+                Vec::new()
+            }
+        };
+        let rotary = recording.axis == Axis::Rotary;
+        let body = &joint.rigid_body;
+        let mut signals = Self {
+            period: even.period_s,
+            time: even.time.clone(),
+            velocity: owned(Quantity::Velocity),
+            rigid_body: owned(Quantity::RigidBodyTorque).filter(|_| actuator.is_some()),
+            load: owned(Quantity::LoadTorque),
+            temperature: owned(Quantity::Temperature),
+            link_position: owned(Quantity::LinkPosition),
+            other_positions: other_positions(recording, &even),
+            segments: even.segments.clone(),
+            gear_ratio: joint.drive.gear_ratio,
+            rotary,
+            position_resolution: recording.health.position_resolution.unwrap_or(0.0),
+            resampled: even.resampled,
+            torque_limit: joint.drive.torque_limit_nm.filter(|_| recording.values(Quantity::Torque).is_some()),
+            spikes: spikes.clone(),
+            torque,
+            position,
+            ..Self::default()
+        };
+        let is_given = body.inertia_kgm2.is_some() || body.gravity_torque_nm.is_some();
+        if let Some(actuator) = actuator.filter(|_| is_given && signals.rigid_body.is_none()) {
+            let per_torque = joint.actuator_per_torque(actuator.unit)?;
+            let phase = body.gravity_phase_rad.unwrap_or(0.0);
+            // Beside a given inertia, a recorded load torque stands for the gravity that is not given.
+            let gravity: Option<Vec<f64>> = match (body.gravity_torque_nm, &signals.load) {
+                (Some(gravity), _) => {
+                    Some(signals.position.iter().map(|q| per_torque * gravity * (q + phase).sin()).collect())
+                }
+                (None, Some(load)) => Some(load.iter().map(|load| per_torque * load).collect()),
+                (None, None) => None,
+            };
+            signals.give_rigid_body(per_torque * body.inertia_kgm2.unwrap_or(0.0), gravity.as_deref());
+        }
+        Ok(signals)
+    }
+
+    /// Signals of a rotary joint that was recorded without a gap.
+    #[cfg(test)]
+    pub(crate) fn without_gap(period: f64, time: Vec<f64>, position: Vec<f64>, torque: Vec<f64>) -> Self {
+        let segments = std::iter::once(0..time.len()).collect();
+        Self { period, segments, time, position, torque, rotary: true, ..Self::default() }
+    }
+
+    /// The same signals with the torque, recorded late by `delay` (s; negative where early), put back to its time; what has no torque
+    /// then is cut off the segments.
+    pub fn realigned(&self, delay: f64) -> Self {
+        let mut aligned = self.clone();
+        let shift = delay / self.period;
+        let lost = shift.abs().ceil() as usize;
+        for (segment, kept) in self.segments.iter().zip(&mut aligned.segments) {
+            let recorded = &self.torque[segment.clone()];
+            for i in segment.clone() {
+                aligned.torque[i] = between_samples(recorded, (i - segment.start) as f64 + shift);
+            }
+            *kept = if shift > 0.0 {
+                kept.start..kept.end.saturating_sub(lost).max(kept.start)
+            } else {
+                (kept.start + lost).min(kept.end)..kept.end
+            };
+        }
+        aligned.segments.retain(|segment| segment.len() > 1);
+        aligned
+    }
+
+    /// Gives the nominal rigid body as an inertia and a gravity torque a sample, in the unit of the actuator (kg m2, or kg on a linear
+    /// axis).
+    pub fn give_rigid_body(&mut self, inertia: f64, gravity: Option<&[f64]>) {
+        let acceleration = second_derivative(&self.position, &self.segments, self.period);
+        self.body_follows_position = true;
+        self.rigid_body =
+            Some(acceleration.iter().enumerate().map(|(i, a)| inertia * a + gravity.map_or(0.0, |g| g[i])).collect());
+    }
+}
+
+/// A series between its samples, by the cubic through the two on either side: a straight line would take a tenth of what swings with a
+/// seventh of the sampling rate, as an inertia does. Within a sample of an end it is that line, beyond it the last sample.
+fn between_samples(series: &[f64], place: f64) -> f64 {
+    let last = series.len() - 1;
+    let before = (place.max(0.0) as usize).min(last);
+    let share = (place - before as f64).clamp(0.0, 1.0);
+    if before == 0 || before + 2 > last {
+        return series[before] + share * (series[(before + 1).min(last)] - series[before]);
+    }
+    // Lagrange's polynomial on four equal steps.
+    let (since, until) = (share + 1.0, share - 2.0);
+    let weights = [
+        -share * (share - 1.0) * until / 6.0,
+        since * (share - 1.0) * until / 2.0,
+        -since * share * until / 2.0,
+        since * share * (share - 1.0) / 6.0,
+    ];
+    weights.iter().zip(&series[before - 1..]).map(|(weight, value)| weight * value).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_torque_is_put_back_without_a_loss_of_what_swings_fast() {
+        let (period, delay, order) = (0.01, 0.005, 2.0 * std::f64::consts::PI * 9.0);
+        let time: Vec<f64> = (0..400).map(|i| period * f64::from(i)).collect();
+        let torque = time.iter().map(|time| (order * (time - delay)).sin()).collect();
+        let late = Signals { period, torque, segments: vec![0..200, 200..400], time, ..Signals::default() };
+        let aligned = late.realigned(delay);
+        assert_eq!(aligned.segments, [0..199, 200..399]);
+        let error = |i: usize| (aligned.torque[i] - (order * late.time[i]).sin()).abs();
+        assert!((2..197).chain(202..397).all(|i| error(i) < 0.004));
+        assert!((0..199).chain(200..399).all(|i| error(i) < 0.3), "the ends of a segment");
+    }
+
+    #[test]
+    fn between_samples_a_cubic_is_met_and_beyond_them_the_last_holds() {
+        let cubic = |x: f64| 1.0 - 2.0 * x + 0.5 * x * x + 0.25 * x * x * x;
+        let series: Vec<f64> = (0..6).map(|i| cubic(f64::from(i))).collect();
+        for place in [1.0, 1.3, 2.5, 3.9] {
+            assert!((between_samples(&series, place) - cubic(place)).abs() < 1e-12, "{place}");
+        }
+        assert_eq!(
+            [-3.0, 0.0, 5.0, 9.5].map(|place| between_samples(&series, place)),
+            [series[0], series[0], series[5], series[5]]
+        );
+        assert_eq!(between_samples(&series[..1], 0.4), series[0]);
+    }
+}

@@ -1,0 +1,253 @@
+//! The noise model: autoregressive colour and a variance that depends on the state.
+//!
+//! e = A(L)^-1 sigma(x) w with the order of A by Akaike's information criterion and log sigma^2 linear in the state.
+
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::numerics::least_squares::rows_in;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Largest order of the autoregression.
+const LARGEST_ORDER: usize = 24;
+/// Rows for each of its coefficients at least.
+const ROWS_PER_COEFFICIENT: usize = 10;
+/// Mean of the logarithm of a squared standard normal variable.
+const LOG_CHI_SQUARE_MEAN: f64 = -1.270_362_8;
+
+/// A fitted noise model.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    /// Predictors of one row by those before it.
+    colour: Colour,
+    /// Standard deviation of the innovation at each row.
+    pub deviation: Vec<f64>,
+    /// Root mean square of the coloured residual from which it was fitted.
+    pub rms: f64,
+}
+
+/// The autoregression with the predictors of every lower order: near the start of a run there are fewer rows to predict from.
+#[derive(Clone, Debug)]
+struct Colour {
+    /// Coefficients a_1.. of A(L) = 1 - a_1 L - a_2 L^2 ... by order.
+    predictors: Vec<Vec<f64>>,
+    /// Error of each predictor over that of the last: ratio of standard deviations.
+    excess: Vec<f64>,
+}
+
+impl Noise {
+    /// White noise of unit variance over `rows`: what is assumed before anything is known.
+    pub fn white(rows: usize) -> Self {
+        Self {
+            colour: Colour { predictors: vec![Vec::new()], excess: vec![1.0] },
+            deviation: vec![1.0; rows],
+            rms: 1.0,
+        }
+    }
+
+    /// Fits colour and variance to a residual. `runs` are the stretches of consecutive rows; `features` are columns on
+    /// which log sigma^2 depends linearly (a constant is added).
+    pub fn fit(residual: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Self {
+        let colour = Colour::fit(residual, runs);
+        let mut innovation = residual.to_vec();
+        colour.remove(&mut innovation, runs);
+        let deviation = deviation(&innovation, runs, features);
+        let count = rows_in(runs);
+        let energy: f64 = runs.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
+        Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt() }
+    }
+
+    /// A column behind `sigma^-1 A(L)`, on the rows of the runs.
+    pub fn whitened(&self, column: &[f64], runs: &[Range<usize>]) -> Vec<f64> {
+        let mut white = column.to_vec();
+        self.whiten(&mut white, runs);
+        white
+    }
+
+    /// The same in place.
+    fn whiten(&self, column: &mut [f64], runs: &[Range<usize>]) {
+        self.colour.remove(column, runs);
+        for i in runs.iter().flat_map(Range::clone) {
+            column[i] /= self.deviation[i];
+        }
+    }
+}
+
+impl Colour {
+    /// Burg's method over all runs (Burg 1975): always stable, and not blurred where the runs are short, as the autocovariance is.
+    fn fit(residual: &[f64], runs: &[Range<usize>]) -> Self {
+        let count = rows_in(runs);
+        let (mut forward, mut backward) = (residual.to_vec(), residual.to_vec());
+        let mut predictors = vec![Vec::new()];
+        let mut errors = vec![1.0];
+        let (mut best, mut best_criterion) = (0, 0.0);
+        for order in 1..=LARGEST_ORDER.min(count / ROWS_PER_COEFFICIENT) {
+            let rows = || runs.iter().flat_map(|run| run.start + order..run.end);
+            let (product, power) = rows().fold((0.0, 0.0), |(product, power), i| {
+                let (f, b) = (forward[i], backward[i - 1]);
+                (product + f * b, power + f * f + b * b)
+            });
+            let reflection: f64 = if power > 0.0 { 2.0 * product / power } else { break };
+            for run in runs {
+                for i in (run.start + order..run.end).rev() {
+                    let (f, b) = (forward[i], backward[i - 1]);
+                    (forward[i], backward[i]) = (f - reflection * b, b - reflection * f);
+                }
+            }
+            let shorter = &predictors[order - 1];
+            let mut longer: Vec<f64> =
+                (0..order - 1).map(|k| shorter[k] - reflection * shorter[order - 2 - k]).collect();
+            longer.push(reflection);
+            predictors.push(longer);
+            let error: f64 = errors[order - 1] * (1.0 - reflection * reflection);
+            if error <= 1e-12 {
+                break;
+            }
+            errors.push(error);
+            // Colour that is left counts as evidence, a coefficient too many costs little.
+            let criterion = count as f64 * error.ln() + 2.0 * order as f64;
+            if criterion < best_criterion {
+                (best, best_criterion) = (order, criterion);
+            }
+        }
+        predictors.truncate(best + 1);
+        let excess = errors[..=best].iter().map(|error| (error / errors[best]).sqrt()).collect();
+        Self { predictors, excess }
+    }
+
+    /// Subtracts from each row what those before it in its run predict, in place; at the start of a run scaled to the error of
+    /// the last predictor.
+    fn remove(&self, column: &mut [f64], runs: &[Range<usize>]) {
+        let largest = self.predictors.len() - 1;
+        for run in runs {
+            for i in run.clone().rev() {
+                let order = (i - run.start).min(largest);
+                let predicted: f64 =
+                    self.predictors[order].iter().enumerate().map(|(k, a)| a * column[i - k - 1]).sum();
+                column[i] = (column[i] - predicted) / self.excess[order];
+            }
+        }
+    }
+}
+
+/// Standard deviation of the innovation, log-linear in the features; rescaled so that the whitened variance is one.
+fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Vec<f64> {
+    let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
+    let energy: f64 = rows.iter().map(|&i| innovation[i] * innovation[i]).sum();
+    let mean = (energy / rows.len().max(1) as f64).max(f64::MIN_POSITIVE);
+    let flat = vec![mean.sqrt(); innovation.len()];
+    let width = features.len() + 1;
+    if rows.len() < 50 * width {
+        return flat;
+    }
+    let mut normal = DMatrix::<f64>::zeros(width, width);
+    let mut right = DVector::<f64>::zeros(width);
+    let row_of = |i: usize| -> Vec<f64> { std::iter::once(1.0).chain(features.iter().map(|f| f[i])).collect() };
+    for &i in &rows {
+        let x = row_of(i);
+        // The floor keeps one lucky zero from pulling the logarithm down.
+        let log_square = (innovation[i] * innovation[i]).max(1e-6 * mean).ln() - LOG_CHI_SQUARE_MEAN;
+        for a in 0..width {
+            right[a] += x[a] * log_square;
+            for b in 0..width {
+                normal[(a, b)] += x[a] * x[b];
+            }
+        }
+    }
+    let ridge = 1e-6 * normal.trace();
+    for a in 0..width {
+        normal[(a, a)] += ridge;
+    }
+    let Some(factor) = normal.cholesky() else { return flat };
+    let weights = factor.solve(&right);
+    let log_mean = mean.ln();
+    let mut deviation: Vec<f64> = (0..innovation.len())
+        .map(|i| {
+            let log_square: f64 = row_of(i).iter().zip(weights.iter()).map(|(x, w)| x * w).sum();
+            (0.5 * log_square.clamp(log_mean - 4.0, log_mean + 4.0)).exp()
+        })
+        .collect();
+    let scale = (rows.iter().map(|&i| (innovation[i] / deviation[i]).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+    deviation.iter_mut().for_each(|d| *d *= scale);
+    deviation
+}
+
+/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a glitch more.
+const LARGEST_FEATURE: f64 = 20.0;
+
+/// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.
+pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    let scaled = |series: Vec<f64>| {
+        let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
+        series.iter().map(|v| (v / mean.max(f64::MIN_POSITIVE)).min(LARGEST_FEATURE)).collect::<Vec<f64>>()
+    };
+    let slow = (0.05 * state.top_speed()).max(3.0 * state.sign_velocity);
+    vec![
+        scaled(prepared.rows.iter().map(|&i| state.velocity[i].abs()).collect()),
+        scaled(prepared.rows.iter().map(|&i| state.acceleration[i].abs()).collect()),
+        prepared.rows.iter().map(|&i| (-(state.velocity[i] / slow).powi(2)).exp()).collect(),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    #[test]
+    fn coloured_state_dependent_noise_becomes_white_with_unit_variance() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let count = 20_000;
+        let feature: Vec<f64> = (0..count).map(|i| (i as f64 * 0.01).sin().abs()).collect();
+        let mut series = vec![0.0; count];
+        let mut before = [0.0; 2];
+        for i in 0..count {
+            let e = 0.3 * (0.5 * 1.5 * feature[i]).exp() * crate::numerics::random::normal(&mut random);
+            let value = 1.2 * before[0] - 0.4 * before[1] + e;
+            before = [value, before[0]];
+            series[i] = value;
+        }
+        let runs = vec![0..count];
+        let noise = Noise::fit(&series, &runs, std::slice::from_ref(&feature));
+        assert!((noise.colour.predictors[2][0] - 1.2).abs() < 0.05, "{:?}", noise.colour);
+        noise.whiten(&mut series, &runs);
+        let split = |low: bool| -> f64 {
+            let part: Vec<f64> =
+                (20..count).filter(|&i| (feature[i] < 0.5) == low).map(|i| series[i] * series[i]).collect();
+            part.iter().sum::<f64>() / part.len() as f64
+        };
+        assert!((split(true) - 1.0).abs() < 0.05 && (split(false) - 1.0).abs() < 0.05);
+        let lagged: f64 = series.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / count as f64;
+        assert!(lagged.abs() < 0.03);
+    }
+
+    #[test]
+    fn short_runs_tell_the_colour_and_keep_their_first_rows() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let (length, count) = (25, 400);
+        let runs: Vec<Range<usize>> = (0..count).map(|run| run * length..(run + 1) * length).collect();
+        let mut series = Vec::new();
+        for _ in &runs {
+            let mut before = [0.0; 2];
+            for row in 0..200 + length {
+                let value = 1.5 * before[0] - 0.7 * before[1] + crate::numerics::random::normal(&mut random);
+                before = [value, before[0]];
+                if row >= 200 {
+                    series.push(value);
+                }
+            }
+        }
+        let noise = Noise::fit(&series, &runs, &[]);
+        let [first, second] = noise.colour.predictors[2][..] else { panic!("an order of two") };
+        assert!((first - 1.5).abs() < 0.03 && (second + 0.7).abs() < 0.03, "{first} {second}");
+        noise.whiten(&mut series, &runs);
+        for row in [0, 1, 2, 20] {
+            let power = runs.iter().map(|run| series[run.start + row].powi(2)).sum::<f64>() / count as f64;
+            assert!((power - 1.0).abs() < 0.25, "row {row} of a run: {power}");
+        }
+        let sums: Vec<f64> = runs.iter().map(|run| series[run.clone()].iter().sum()).collect();
+        let power = sums.iter().map(|sum| sum * sum).sum::<f64>() / (count * length) as f64;
+        assert!((power - 1.0).abs() < 0.25, "slow power {power}");
+    }
+}

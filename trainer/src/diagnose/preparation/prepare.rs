@@ -1,0 +1,301 @@
+//! From signals to states and working rows: one filter for all, rest and edges left out, blocks set aside.
+
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::filter::{ZeroPhase, first_derivative, second_derivative};
+use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
+use crate::diagnose::preparation::position_error::{encoder_noise_is_small, sampling_jitter};
+use crate::diagnose::preparation::rows::{Block, Lock, hesitation, rows_and_blocks, standstill};
+use crate::diagnose::preparation::two_encoders::told_by_twist;
+use crate::numerics::least_squares::least_squares;
+use crate::numerics::statistics::quantile;
+use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};
+use std::ops::Range;
+
+/// States at the recording's rate and the rows on which evidence is weighed.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The states.
+    pub state: JointState,
+    /// The common filter F.
+    pub filter: ZeroPhase,
+    /// The filter before the motion.
+    pub(crate) motion_filter: ZeroPhase,
+    /// Whether a wider filter was refused for the errors of the position.
+    pub grain_limited: bool,
+    /// Standard deviation of the instants at which the position was sampled, s.
+    pub(crate) sampling_jitter: f64,
+    /// Sample index of each working row.
+    pub rows: Vec<usize>,
+    /// Blocks of rows.
+    pub blocks: Vec<Block>,
+    /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
+    pub narrow_velocity: Vec<f64>,
+    /// Acceleration behind a narrower filter.
+    pub narrow_acceleration: Vec<f64>,
+    /// Recorded torque less the nominal rigid body or the reference, unfiltered: what the friction has to explain.
+    pub friction_torque: Vec<f64>,
+    /// Recorded torque, unfiltered.
+    pub torque: Vec<f64>,
+}
+
+/// Cut-off frequencies that are tried, widest first, in Hz.
+const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
+/// Width of the smoothed sign at least, as a share of the top speed.
+const SIGN_SHARE: f64 = 0.001;
+/// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
+const STATE_WIDTHS: [f64; 3] = [4.0, 2.5, 1.6];
+/// The filter before the other channels over the common one.
+const CHANNEL_WIDTH: f64 = 1.6;
+/// Widest filter, in cycles a sample.
+const WIDEST: f64 = 0.35;
+/// Standard deviation of normal noise over the median of its magnitude.
+pub(crate) const DEVIATION_PER_MEDIAN: f64 = 1.4826;
+/// Filter of the nuisance column of the velocity over that before the motion.
+const NARROW_VELOCITY: f64 = 0.4;
+/// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.
+const NARROW_ACCELERATION: f64 = 0.8;
+
+impl Prepared {
+    /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay
+    /// small against the residual.
+    pub fn new(signals: &Signals, lock: Lock) -> Self {
+        let rate = 1.0 / signals.period;
+        let mut chosen = None;
+        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
+            let mut prepared = Self::at_cut_off(signals, cut_off, lock);
+            prepared.grain_limited = chosen.is_some();
+            let fits = encoder_noise_is_small(&prepared, signals);
+            let enough_rows = prepared.rows.len() >= 200;
+            match chosen {
+                // A narrower filter that leaves too little to work on is no help.
+                Some(wider) if !enough_rows => return Self { grain_limited: true, ..wider },
+                _ if fits => return prepared,
+                _ => chosen = Some(prepared),
+            }
+        }
+        chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, lock))
+    }
+
+    /// Prepares states and rows behind a given cut-off in Hz.
+    pub(crate) fn at_cut_off(signals: &Signals, cut_off: f64, lock: Lock) -> Self {
+        let period = signals.period;
+        let segments = &signals.segments;
+        let filter = ZeroPhase::new(cut_off, period);
+        let channels = channel_filter(cut_off, period);
+        let (states, Motion { position, velocity, acceleration }) = sharpest_motion(signals, cut_off);
+        let narrow =
+            |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), &signals.position, segments, period);
+        let narrow_velocity = narrow(NARROW_VELOCITY * states.cut_off_hz).velocity;
+        let narrow_acceleration = narrow(NARROW_ACCELERATION * cut_off).acceleration;
+        let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
+        let other_motion = |series: &[f64]| {
+            let Motion { position, velocity, acceleration } = Motion::behind(&states, series, segments, period);
+            OtherJoint { position, velocity, acceleration }
+        };
+        let mut state = JointState {
+            period,
+            time: signals.time.clone(),
+            position,
+            velocity,
+            acceleration,
+            sign_velocity: 0.0,
+            sign: Vec::new(),
+            rigid_body: signals.rigid_body.as_ref().map(|series| channels.over(series, segments)),
+            load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| channels.over(series, segments)),
+            gravity: None,
+            gravity_slope: Vec::new(),
+            temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
+            link: signals.link_position.as_ref().map(|series| other_motion(series)),
+            twist: Twist::Untold,
+            other_joints: signals.other_positions.iter().map(|series| other_motion(series)).collect(),
+            torque: channels.over(&signals.torque, segments),
+            predicted: Vec::new(),
+            base_friction: Vec::new(),
+            segments: segments.clone(),
+            memory: MemoryAxes::default(),
+            gear_ratio: signals.gear_ratio,
+            rotary: signals.rotary,
+            resolution: signals.position_resolution,
+        };
+        let least_width = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed());
+        state.turn_over_within(least_width.max(f64::MIN_POSITIVE));
+        state.memory =
+            MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
+        state.gravity = match &signals.load {
+            Some(_) => state.load.clone(),
+            None => gravity_of_body(&state),
+        };
+        state.gravity_slope = slope_of_gravity(&state);
+        state.twist = told_by_twist(&state);
+        let known = signals.known_torque();
+        let friction_torque = match known {
+            Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
+            None => signals.torque.clone(),
+        };
+        let unsure = hesitation(&state.velocity, state.sign_velocity, segments);
+        let mut left_out: Vec<bool> =
+            standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
+        if let Some(reference) = &signals.reference {
+            left_out.iter_mut().zip(&reference.outside.samples).for_each(|(left_out, outside)| *left_out |= outside);
+        }
+        let (rows, blocks) = rows_and_blocks(&state, &left_out, &filter, lock);
+        Self {
+            sampling_jitter: sampling_jitter(signals, &state),
+            state,
+            filter,
+            motion_filter: states,
+            grain_limited: false,
+            rows,
+            blocks,
+            narrow_velocity,
+            narrow_acceleration,
+            friction_torque,
+            torque: signals.torque.clone(),
+        }
+    }
+
+    /// A series behind the common filter, one value a working row.
+    pub fn filtered(&self, series: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&i| self.filter.at(series, i)).collect()
+    }
+
+    /// Several series behind it.
+    pub(crate) fn filtered_all(&self, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        series.iter().map(|series| self.filtered(series)).collect()
+    }
+
+    /// A series at the working rows, unfiltered.
+    pub fn at_rows(&self, series: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&i| series[i]).collect()
+    }
+
+    /// Whether nothing of friction that turns over enters a row: the joint is faster than the noise of its velocity within half of
+    /// the filter's reach.
+    pub(crate) fn sign_is_sure(&self) -> Vec<bool> {
+        let (half, velocity) = (self.filter.reach() / 2, &self.state.velocity);
+        let is_fast = |velocity: &f64| velocity.abs() > self.state.sign_velocity;
+        self.rows.iter().map(|&i| velocity[i - half..=i + half].iter().all(is_fast)).collect()
+    }
+
+    /// The part of a stretch of time (s) that open rows show, half of the filter's reach beyond the first and the last of them.
+    pub(crate) fn shown_by_open_rows(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let reach = 0.5 * self.filter.reach() as f64 * self.state.period;
+        let times = self.open_runs().into_iter().flatten().map(|row| self.state.time[self.rows[row]]);
+        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+        for time in times.filter(|time| (from..to).contains(time)) {
+            (first, last) = (first.min(time), last.max(time));
+        }
+        if first > last { [from, to] } else { [from.max(first - reach), to.min(last + reach)] }
+    }
+
+    /// The states had `position` and `torque` been recorded, behind the same filters.
+    pub(crate) fn state_at(&self, position: &[f64], torque: &[f64]) -> JointState {
+        let JointState { period, segments, sign_velocity, .. } = &self.state;
+        let Motion { position, velocity, acceleration } =
+            Motion::behind(&self.motion_filter, position, segments, *period);
+        let sign = self.state.averaged_sign(&velocity, *sign_velocity);
+        let torque = channel_filter(self.filter.cut_off_hz, *period).over(torque, segments);
+        JointState { position, velocity, acceleration, sign, torque, ..self.state.clone() }
+    }
+
+    /// Runs of rows that take part in fitting and choosing.
+    pub fn open_runs(&self) -> Vec<Range<usize>> {
+        self.blocks.iter().filter(|block| !block.locked).flat_map(|block| block.runs.clone()).collect()
+    }
+
+    /// Runs of the locked blocks.
+    pub fn locked_runs(&self) -> Vec<Range<usize>> {
+        self.blocks.iter().filter(|block| block.locked).flat_map(|block| block.runs.clone()).collect()
+    }
+}
+
+/// The filter before all channels but the motion.
+pub(crate) fn channel_filter(cut_off: f64, period: f64) -> ZeroPhase {
+    ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period)
+}
+
+/// Position, velocity and acceleration behind one filter.
+struct Motion {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl Motion {
+    fn behind(filter: &ZeroPhase, position: &[f64], segments: &[Range<usize>], period: f64) -> Self {
+        let position = filter.over(position, segments);
+        let velocity = first_derivative(&position, segments, period);
+        let acceleration = second_derivative(&position, segments, period);
+        Self { position, velocity, acceleration }
+    }
+}
+
+/// Motion behind the widest filter behind which four deviations of the velocity's noise stay within the width of the smoothed
+/// sign. A wider filter adds noise alone at most samples, so that the median tells its deviation.
+fn sharpest_motion(signals: &Signals, cut_off: f64) -> (ZeroPhase, Motion) {
+    let behind = |width: f64| {
+        let filter = ZeroPhase::new((width * cut_off).min(WIDEST / signals.period), signals.period);
+        let motion = Motion::behind(&filter, &signals.position, &signals.segments, signals.period);
+        (filter, motion)
+    };
+    let [wider @ .., narrowest] = STATE_WIDTHS;
+    let smoothest = behind(narrowest);
+    let smooth = &smoothest.1.velocity;
+    let allowed = SIGN_SHARE * top_speed(smooth);
+    let is_quiet = |(_, motion): &(ZeroPhase, Motion)| {
+        let added = quantile(motion.velocity.iter().zip(smooth).map(|(wide, smooth)| (wide - smooth).abs()), 0.5);
+        4.0 * DEVIATION_PER_MEDIAN * added <= allowed
+    };
+    wider.into_iter().map(behind).find(is_quiet).unwrap_or(smoothest)
+}
+
+/// Deviation of the derived velocity caused by the encoder's grain.
+fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
+    // A derivative at the cut-off: white noise of res/sqrt(12) through a low-pass of bandwidth f has the share 2 f dt.
+    let bandwidth = filter.cut_off_hz;
+    resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
+}
+
+/// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand
+/// the evidence to a rival; a pause of the clock ends the line.
+fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
+    const REACH_S: f64 = 4.0;
+    let mut smooth = Vec::with_capacity(series.len());
+    for piece in time.chunk_by(|a, b| b - a < 1.5 * period) {
+        let (begin, origin) = (smooth.len(), piece[0]);
+        // Sums of 1, t, t^2, y and t y up to each sample.
+        let mut sums = vec![[0.0; 5]];
+        for (i, t) in piece.iter().enumerate() {
+            let (t, y, before) = (t - origin, series[begin + i], sums[i]);
+            let terms = [1.0, t, t * t, y, t * y];
+            sums.push(std::array::from_fn(|k| before[k] + terms[k]));
+        }
+        smooth.extend(piece.iter().map(|&now| {
+            let low = piece.partition_point(|t| *t < now - REACH_S);
+            let high = piece.partition_point(|t| *t <= now + REACH_S);
+            let [n, t, tt, y, ty]: [f64; 5] = std::array::from_fn(|k| sums[high][k] - sums[low][k]);
+            let spread = tt - t * t / n;
+            let slope = if spread > 1e-9 * tt { (ty - t * y / n) / spread } else { 0.0 };
+            y / n + slope * (now - origin - t / n)
+        }));
+    }
+    smooth
+}
+
+/// Filtered Coulomb and viscous friction, inertia and offset.
+pub(crate) fn simplest_model(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    [&state.sign, &state.velocity, &state.acceleration, &vec![1.0; state.len()]]
+        .into_iter()
+        .map(|series| prepared.filtered(series))
+        .collect()
+}
+
+/// Torque per acceleration that the recording shows beside gravity or a spring; `None` where it shows none.
+pub(crate) fn identified_inertia(prepared: &Prepared) -> Option<f64> {
+    let state = &prepared.state;
+    let mut columns = simplest_model(prepared);
+    columns.extend(prepared.filtered_all(&torques_of_position(state)));
+    let torque = prepared.filtered(&prepared.torque);
+    least_squares(&columns, &torque, &prepared.open_runs()).map(|coefficients| coefficients[2])
+}

@@ -1,0 +1,154 @@
+//! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
+
+use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::proof::locked_rows::prove_alone;
+use crate::diagnose::proof::refit::{Refit, refit};
+use crate::diagnose::search::forward_backward::{Accepted, Search};
+use crate::numerics::statistics::root_mean_square;
+use crate::physics::EffectId;
+
+/// Share of the removable error below which an effect beside others is minor, if it is also small against the torque; a structure
+/// without a name takes up more of the error of a formula.
+const MINOR_SHARE: f64 = 0.06;
+const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
+/// Root mean square over that of the torque beside a known rigid body below which it is small.
+const MINOR_TORQUE: f64 = 0.025;
+/// Times the error that a law's formulas show in the simulation it was learned from up to which it may explain what is found: the
+/// rest of the motion may suit them less.
+pub(crate) const FORMULA_ERROR: f64 = 1.5;
+
+/// Root mean square over that of the recorded torque below which an effect is too small to matter: no filter, encoder or clock is
+/// that exact, and what they leave has a shape.
+const NEGLIGIBLE_TORQUE: f64 = 7e-4;
+
+/// Torque (root mean square) that matters in a recording.
+pub(crate) fn least_torque(search: &Search) -> f64 {
+    NEGLIGIBLE_TORQUE * root_mean_square(&search.prepared.filtered(&search.prepared.torque))
+}
+
+/// Torque (root mean square) beside a known rigid body: weight and inertia can be many times what friction is.
+fn torque_beside_rigid_body(search: &Search) -> f64 {
+    let Prepared { torque, state, .. } = search.prepared;
+    match &state.rigid_body {
+        Some(body) => root_mean_square(&search.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
+        None => root_mean_square(&search.prepared.filtered(torque)),
+    }
+}
+
+/// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for it, but may make them
+/// worse.
+pub(crate) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
+    let mut withdrawn = Vec::new();
+    while let Some(all) = refit(search, accepted) {
+        let unproven = (0..accepted.len()).filter_map(|i| {
+            let proof = prove_alone(search, accepted, i, &all)?;
+            let Accepted { label, family_wise, .. } = &accepted[i];
+            let is_carried = if accepted[i].effect() == EffectId::TransientEvent {
+                !search.settings.is_worse_by_an_event(&proof)
+            } else {
+                search.settings.carried(label, *family_wise, &proof)
+            };
+            (!is_carried).then_some((i, proof.gain_nats))
+        });
+        let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        withdrawn.push(accepted.remove(weakest).effect());
+    }
+    withdrawn
+}
+
+/// Sets aside what explains no more than the formulas of the reference get wrong.
+pub(crate) fn set_aside_doubtful(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    set_aside_below(FORMULA_ERROR * search.base.formula_error, search, accepted)
+}
+
+/// Sets aside what is too small to matter.
+pub(crate) fn set_aside_negligible(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    set_aside_below(least_torque(search), search, accepted)
+}
+
+/// Sets aside what explains less than a torque (root mean square), with what it explains. Effects that repeat count together.
+fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    let mut set_aside = Vec::new();
+    if least_torque == 0.0 {
+        return set_aside;
+    }
+    while let Some(all) = energy_left(search, accepted) {
+        let explained = |effect: EffectId| {
+            let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
+            let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
+            (explained < least_torque).then_some((effect, explained))
+        };
+        let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(explained).collect();
+        let Some(taken) = take_least_in_favour(accepted, &small) else { break };
+        set_aside.push(taken);
+    }
+    set_aside
+}
+
+/// Takes one away of the effects that each explain little beside the others: two that can stand for each other both do, and of
+/// those the one stays that had more in its favour when it came, and a name before none.
+fn take_least_in_favour(accepted: &mut Vec<Accepted>, small: &[(EffectId, f64)]) -> Option<(EffectId, f64)> {
+    let in_favour = |effect: EffectId| {
+        let scores = accepted.iter().filter(|found| found.effect() == effect).map(|found| found.score);
+        (effect != EffectId::Unknown, scores.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let least = small.iter().map(|(effect, _)| in_favour(*effect)).enumerate();
+    let (index, _) = least.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+    accepted.retain(|other| other.effect() != small[index].0);
+    Some(small[index])
+}
+
+/// Mean square of what base and effects leave.
+fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
+    refit(search, accepted).map(|refit| refit.noise.rms.powi(2))
+}
+
+/// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
+/// error of the larger one's formula may pass for an effect. Effects that repeat count together.
+pub(crate) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
+    let small_energy = (MINOR_TORQUE * torque_beside_rigid_body(search)).powi(2);
+    let mut minor = Vec::new();
+    while let (Some(refitted), true) = (refit(search, accepted), accepted.len() > 1) {
+        let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);
+        let share = |effect: EffectId| {
+            // A structure without a name can take over what any effect explains: a name is weighed beside names.
+            let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
+            let with: Vec<Accepted> = accepted.iter().filter(|other| beside(other.effect())).cloned().collect();
+            let without: Vec<Accepted> = with.iter().filter(|other| other.effect() != effect).cloned().collect();
+            energy_left(search, &without)
+                .zip(energy_left(search, &with))
+                .map(|(without, with)| (effect, (without - with) / removable))
+        };
+        let is_minor = |(effect, share): &(EffectId, f64)| {
+            let is_little = |least: f64| *share < least && share * removable < small_energy;
+            match effect {
+                // A one-off event is short: its share of all says nothing of its size.
+                EffectId::TransientEvent => share_at_the_time_of_events(search, &refitted) < MINOR_SHARE,
+                EffectId::Unknown => is_little(MINOR_SHARE_WITHOUT_NAME),
+                _ => is_little(MINOR_SHARE),
+            }
+        };
+        let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(share).filter(is_minor).collect();
+        let Some(taken) = take_least_in_favour(accepted, &small) else { break };
+        minor.push(taken);
+    }
+    minor
+}
+
+/// Energy of the one-off events over that of the other effects at their time; infinite where these do nothing then.
+fn share_at_the_time_of_events(search: &Search, refitted: &Refit) -> f64 {
+    let rows = search.prepared.rows.len();
+    let torque = |is_event: bool| {
+        let of_kind =
+            refitted.effects.iter().filter(|fitted| is_event == (fitted.label.effect() == EffectId::TransientEvent));
+        of_kind.fold(vec![0.0; rows], |mut sum, fitted| {
+            sum.iter_mut().zip(search.torque_of(fitted)).for_each(|(sum, torque)| *sum += torque);
+            sum
+        })
+    };
+    let (events, others) = (torque(true), torque(false));
+    let half = 0.5 * events.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+    let during = events.iter().zip(&others).filter(|(event, _)| event.abs() > half);
+    let [event, other] = during.fold([0.0; 2], |[e, o], (event, other)| [e + event * event, o + other * other]);
+    event / other
+}

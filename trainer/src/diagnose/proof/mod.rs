@@ -1,0 +1,6 @@
+//! Refits what was accepted and asks the locked rows. Knows neither names for people nor places.
+
+pub(crate) mod discarded;
+pub(crate) mod locked_rows;
+pub(crate) mod refit;
+pub(crate) mod rollout;

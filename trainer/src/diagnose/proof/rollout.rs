@@ -1,0 +1,123 @@
+//! The open-loop rollout: the recorded torque drives the model from a recorded state; how far does its position stray?
+//!
+//! It is worked out as a deviation from the recorded motion: `J dv/dt = r - (f(v_rec + v) - f(v_rec))`, `dq/dt = v`, where
+//! `r` is the torque that the model leaves at the recorded state. `f` is the friction of the base over velocity as it was before
+//! any effect, for both models, and `J` that of a given rigid body where there is one: what the findings change of either is felt
+//! through `r` alone. Memories and gravity are taken at the recorded motion too, which holds over short horizons.
+
+use crate::diagnose::proof::locked_rows::rest;
+use crate::diagnose::proof::refit::Refit;
+use crate::diagnose::search::forward_backward::Search;
+use crate::physics::{JointState, nominal_inertia};
+use serde::Serialize;
+use std::ops::Range;
+
+/// Position error of open-loop rollouts before and after, in rad or m.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rollout {
+    /// Length of one rollout, s.
+    pub horizon_s: f64,
+    /// Number of rollouts.
+    pub starts: usize,
+    /// Root mean square position error of the base model.
+    pub baseline_rmse: f64,
+    /// The same with the effects.
+    pub improved_rmse: f64,
+}
+
+/// Length of one rollout, s.
+const HORIZON_S: f64 = 0.5;
+/// Steps of the integration between two working rows.
+const STEPS: usize = 4;
+/// Step of velocity, as a share of the width of the smoothed sign, over which the slope of friction is taken.
+const SLOPE_SHARE: f64 = 0.1;
+
+/// Rolls base and improved model out over the locked rows, or over all where none are locked. `None` without an inertia
+/// or a stretch of motion that is long enough.
+pub(crate) fn roll_out(search: &Search, baseline: &Refit, improved: &Refit) -> Option<Rollout> {
+    let prepared = search.prepared;
+    let locked = prepared.locked_runs();
+    let runs = if locked.is_empty() { prepared.open_runs() } else { locked };
+    let state = &prepared.state;
+    let inertia = |refit: &Refit| inertia(state, &search.base.names, refit).filter(|inertia| *inertia > 0.0);
+    let before = squares(state, &prepared.rows, &runs, &rest(search, baseline), inertia(baseline)?);
+    let after = squares(state, &prepared.rows, &runs, &rest(search, improved), inertia(improved)?);
+    let root_mean = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    (!before.is_empty()).then(|| Rollout {
+        horizon_s: HORIZON_S,
+        starts: before.len(),
+        baseline_rmse: root_mean(&before),
+        improved_rmse: root_mean(&after),
+    })
+}
+
+/// Inertia in the actuator's unit a unit of acceleration: that of the given rigid body, else that of the base.
+fn inertia(state: &JointState, names: &[&str], refit: &Refit) -> Option<f64> {
+    match &state.rigid_body {
+        Some(_) => nominal_inertia(state),
+        None => names.iter().position(|name| *name == "inertia").and_then(|place| refit.base.get(place)).copied(),
+    }
+}
+
+/// Mean square position error of each rollout.
+fn squares(state: &JointState, rows: &[usize], runs: &[Range<usize>], residual: &[f64], inertia: f64) -> Vec<f64> {
+    let mut squares = Vec::new();
+    for run in runs {
+        let mut begin = run.start;
+        while let Some(end) = (begin..run.end).find(|&k| state.time[rows[k]] - state.time[rows[begin]] >= HORIZON_S) {
+            squares.push(one(state, &rows[begin..=end], &residual[begin..=end], inertia));
+            begin = end;
+        }
+    }
+    squares
+}
+
+/// One rollout from the recorded state at the first row, by the linearly implicit Euler method.
+fn one(state: &JointState, rows: &[usize], residual: &[f64], inertia: f64) -> f64 {
+    let (mut stray, mut speed, mut sum) = (0.0, 0.0, 0.0);
+    let width = SLOPE_SHARE * state.sign_velocity;
+    for (pair, torque) in rows.windows(2).zip(residual.windows(2)) {
+        let step = (state.time[pair[1]] - state.time[pair[0]]) / STEPS as f64;
+        for k in 0..STEPS {
+            let share = (k as f64 + 0.5) / STEPS as f64;
+            let between = |a: f64, b: f64| a + share * (b - a);
+            let recorded = between(state.velocity[pair[0]], state.velocity[pair[1]]);
+            let friction = |v: f64| state.base_friction_at(recorded + v);
+            let force = between(torque[0], torque[1]) - (friction(speed) - friction(0.0));
+            let slope = ((friction(speed + width) - friction(speed - width)) / (2.0 * width)).max(0.0);
+            speed += step * force / (inertia + step * slope);
+            stray += step * speed;
+        }
+        sum += stray * stray;
+    }
+    sum / (rows.len() - 1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::measurement::signals::Signals;
+
+    /// A constant torque left over makes a joint without friction stray as `r t^2 / (2 J)`.
+    #[test]
+    fn a_constant_error_strays_quadratically() {
+        let count = 2000;
+        let signals = Signals {
+            period: 1e-3,
+            time: (0..count).map(|i| 1e-3 * f64::from(i)).collect(),
+            position: (0..count).map(|i| (2e-3 * f64::from(i)).sin()).collect(),
+            torque: vec![0.0; count as usize],
+            segments: vec![0..count as usize],
+            rotary: true,
+            ..Signals::default()
+        };
+        let state = signals.states();
+        let rows: Vec<usize> = (100..1900).step_by(5).collect();
+        let runs = [0..rows.len()];
+        let errors = squares(&state, &rows, &runs, &vec![0.2; rows.len()], 0.5);
+        assert_eq!(errors.len(), 3);
+        // Mean square of (a t^2 / 2) over the horizon: a^2 T^4 / 20.
+        let expected = (0.4f64.powi(2) * HORIZON_S.powi(4) / 20.0).sqrt();
+        assert!((errors[0].sqrt() / expected - 1.0).abs() < 0.03, "{} {expected}", errors[0].sqrt());
+    }
+}

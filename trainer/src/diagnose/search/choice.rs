@@ -1,0 +1,201 @@
+//! The end of a round: the best passing hypothesis with those that cannot be told apart from it, or nothing.
+
+use crate::diagnose::hypotheses::channel::Channel;
+use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::search::forward_backward::Accepted;
+use crate::diagnose::search::round::{Round, Scored};
+use crate::numerics::least_squares::{dot, orthonormal, project_out};
+use crate::physics::EffectId;
+
+/// Shares of what a free function explains at which a name is good enough: of the energy, and of the whitened energy, in which the
+/// slow errors of a formula count for less.
+const NEARLY_AS_MUCH: f64 = 0.88;
+const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
+
+/// Score in nats from which the errors of a formula show. Of what is weaker a name needs this share of a free function's score
+/// too: much of the energy that it explains may be chance.
+const STRONG_NATS: f64 = 60.0;
+const NEARLY_AS_GOOD: f64 = 0.8;
+
+/// Shares of energy outside of a wider hypothesis at which a narrower one is of its kind, the same but for its formula, and a part
+/// of it.
+const OF_ITS_KIND: f64 = 0.1;
+const NEARLY_ALL: f64 = 0.01;
+const ALL: f64 = 1e-6;
+
+/// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
+/// chance what the name's formula misses.
+const UNKNOWN_LEAD_NATS: f64 = 12.0;
+
+/// Lead in nats up to which an effect and the one that it yields to do not rule each other out: the further shape of the one may fit
+/// what the other's formula misses, and a recorded channel what an inferred one cannot.
+const YIELDING_LEAD_NATS: f64 = 8.0;
+
+impl Round<'_, '_> {
+    /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing; nothing too where that set holds nearly
+    /// everything.
+    pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
+        let settings = &self.search.settings;
+        // Locked rows have nothing to say of a one-off event.
+        let any_locked = self.search.prepared.blocks.iter().any(|block| block.locked);
+        let passes = |s: &&Scored| {
+            let (level, score) = settings.on_open_rows(any_locked && s.label != Label::Named(EffectId::TransientEvent));
+            s.family_wise < level && s.score > score
+        };
+        let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
+        let passing_names = || table.iter().filter(is_named).filter(passes);
+        let named = passing_names().next();
+        let generic = table.iter().filter(|s| !is_named(s)).find(passes);
+        let held_out = table.iter().filter(is_named).map(|s| s.evidence.held_out).fold(f64::NEG_INFINITY, f64::max);
+        let best = match (named, generic) {
+            (Some(named), Some(generic))
+                if generic.score > named.score + settings.ambiguity_margin && generic.evidence.held_out > held_out =>
+            {
+                passing_names().find(|name| self.stands_beside(name, generic, table)).unwrap_or(generic)
+            }
+            (Some(named), _) if named.label == Label::Named(EffectId::TransientEvent) => {
+                // No other block can confirm an event, so any cause that may come back goes before it on equal terms.
+                let lasting = |s: &&Scored| {
+                    s.label != named.label && s.evidence.criterion > named.score - settings.ambiguity_margin
+                };
+                passing_names().find(lasting).unwrap_or(named)
+            }
+            (Some(named), _) => named,
+            (None, Some(generic)) => generic,
+            (None, None) => return None,
+        };
+        let best = self.plainest(self.surest(best, passing_names()), passing_names());
+        let mut rivals = Vec::new();
+        let mut standings = Vec::new();
+        let mut margin = f64::INFINITY;
+        for rival in table.iter().filter(|s| s.label != best.label) {
+            let Label::Named(effect) = rival.label else { continue };
+            let distance = best.score - rival.score;
+            standings.push((effect, distance));
+            let is_ruled_out = match best.label {
+                Label::Named(_) if self.yields(best, rival).is_some() || self.yields(rival, best).is_some() => {
+                    distance >= YIELDING_LEAD_NATS
+                }
+                Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
+                Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
+            };
+            if is_ruled_out {
+                margin = margin.min(distance);
+            } else if distance < 0.0 || !self.contains(rival, best, NEARLY_ALL) {
+                rivals.push((effect, distance));
+            }
+        }
+        if rivals.len() > settings.most_rivals && !self.is_significant(best) {
+            return None;
+        }
+        Some(Accepted {
+            label: best.label.clone(),
+            shape: best.shape.clone(),
+            score: best.score,
+            family_wise: best.family_wise,
+            fold_gain: best.evidence.fold_gain.clone(),
+            margin,
+            rivals,
+            standings,
+            channels: channels(best, table.iter().filter(passes), settings.ambiguity_margin),
+        })
+    }
+
+    /// Whether a name is kept beside a free function that leads it. A free function holds more than any name does, and every formula
+    /// is a little wrong: what explains nearly as much, whitened or not, is good enough, unless the function leads what holds the
+    /// name among those of its channel as well. Then it is no error of the formula that the name lacks.
+    fn stands_beside(&self, name: &Scored, generic: &Scored, table: &[Scored]) -> bool {
+        let is_strong = generic.score >= STRONG_NATS;
+        let explains_as_much = name.explained >= NEARLY_AS_MUCH * generic.explained
+            && (is_strong || name.score >= NEARLY_AS_GOOD * generic.score)
+            || name.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise();
+        let errs_by_its_formula = || {
+            let mut of_the_channel = table.iter().filter(|s| s.label.channel() == generic.label.channel());
+            let own = of_the_channel.find(|own| self.contains(own, name, OF_ITS_KIND));
+            own.is_none_or(|own| own.score > generic.score - self.search.settings.ambiguity_margin)
+        };
+        explains_as_much && errs_by_its_formula()
+    }
+
+    /// Whether the open rows prove a hypothesis by themselves.
+    fn is_significant(&self, scored: &Scored) -> bool {
+        scored.family_wise < self.search.settings.family_wise_level
+    }
+
+    /// The best hypothesis, or one within the margin that the open rows prove by themselves where they do not prove the best one:
+    /// that was sought among more shapes, of which one fits by chance.
+    fn surest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+        if self.is_significant(best) || !matches!(best.label, Label::Named(_)) {
+            return best;
+        }
+        let margin = self.search.settings.ambiguity_margin;
+        passing.find(|rival| best.score - rival.score < margin && self.is_significant(rival)).unwrap_or(best)
+    }
+
+    /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
+    /// effect that the best one yields to.
+    fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+        if !matches!(best.label, Label::Named(_)) {
+            return best;
+        }
+        let plainer = |rival: &&Scored| {
+            let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
+            let is_as_sure = self.is_significant(rival) || !self.is_significant(best);
+            let is_a_part =
+                || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL);
+            is_as_sure && (self.yields(best, rival).is_some_and(as_good) || is_a_part())
+        };
+        passing.find(plainer).unwrap_or(best)
+    }
+
+    /// Lead in nats up to which a hypothesis yields to another; `None` if it does not.
+    fn yields(&self, one: &Scored, other: &Scored) -> Option<f64> {
+        let Label::Named(effect) = one.label else { return None };
+        let (first, no_better_by) = self.search.hypothesis(effect)?.yields_to()?;
+        (other.label == Label::Named(first)).then_some(no_better_by)
+    }
+
+    /// Whether a hypothesis is another one with more coefficients, but for a share of the other's energy.
+    fn contains(&self, wider: &Scored, narrower: &Scored, but_for: f64) -> bool {
+        if wider.evidence.degrees <= narrower.evidence.degrees {
+            return false;
+        }
+        let runs = self.bench.runs();
+        let white = |scored: &Scored| {
+            self.search.whitened(&self.search.filtered_columns(&scored.label, &scored.shape), &self.noise)
+        };
+        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
+        let base = orthonormal(&self.bench.base, &runs);
+        white(narrower).iter().all(|column| {
+            let outside = |basis: &[Vec<f64>]| {
+                let mut rest = column.clone();
+                project_out(&mut rest, basis, &runs);
+                dot(&rest, &rest, &runs)
+            };
+            outside(&span) < but_for * outside(&base)
+        })
+    }
+}
+
+/// The channel of a structure without a name, then those of the passing structures within reach, likeliest first.
+fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach: f64) -> Vec<Channel> {
+    let Some(own) = best.label.channel() else { return Vec::new() };
+    let mut channels = vec![own];
+    for rival in passing.filter(|rival| within_reach(best, rival, reach)) {
+        channels.extend(rival.label.channel().filter(|channel| !channels.contains(channel)));
+    }
+    channels
+}
+
+/// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from
+/// block to block (Hansen, Lunde and Nason 2011).
+fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
+    const CLOSE_NATS: f64 = 5.0;
+    const LEAST_T: f64 = 1.65;
+    let distance = best.score - rival.score;
+    let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
+    let count = leads.len() as f64;
+    let mean = leads.iter().sum::<f64>() / count;
+    let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    distance < reach || distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
+}

@@ -1,0 +1,293 @@
+//! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
+
+use crate::diagnose::evidence::law_uncertainty::Doubt;
+use crate::diagnose::evidence::score::{Bench, GroupEvidence, VariantEvidence};
+use crate::diagnose::hypotheses::design::{Group, Label, Variant, ridge_of};
+use crate::diagnose::hypotheses::refine::refine;
+use crate::diagnose::noise::autoregression::Noise;
+use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_square_surprise};
+use crate::diagnose::search::forward_backward::{Accepted, Search};
+use crate::diagnose::search::thresholds::Settings;
+use crate::numerics::least_squares::{orthonormal, project_out};
+use crate::physics::{EffectId, Shape};
+use rayon::prelude::*;
+
+/// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
+const PLACES_LOOKED_AT: f64 = 10.0;
+
+/// Criterion from which a candidate does not belong to the noise that the null draws are made of. With what is less they keep
+/// the chance directions that look best: without those, the noise of slow hypotheses would seem too small.
+const CLEAR_NATS: f64 = 10.0;
+
+/// A hypothesis with its score in one round.
+#[derive(Clone, Debug)]
+pub struct Scored {
+    /// What it stands for.
+    pub label: Label,
+    /// Shape after refinement.
+    pub shape: Shape,
+    /// Score in nats.
+    pub score: f64,
+    /// Family-wise probability under the null; 1 in a round in which nothing reached the least score.
+    pub family_wise: f64,
+    /// Evidence behind the score.
+    pub evidence: GroupEvidence,
+    /// Place of the group in the design.
+    pub(crate) group: usize,
+    /// -log p of its best variant by chi-square.
+    pub(crate) surprise: f64,
+    /// Energy that its best variant explains before whitening.
+    pub(crate) explained: f64,
+}
+
+/// Score: the mean of held-out gain and Bayesian criterion; the criterion with a scan penalty for a one-off event, which no other
+/// block can confirm. One beyond doubt is weighed as its rivals are: what explains a part of it gains as much where it is held out.
+pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
+    let both = 0.5 * (evidence.held_out + evidence.criterion);
+    match label {
+        Label::Named(EffectId::TransientEvent) => {
+            let alone = evidence.criterion - 0.5 * grid_size.ln();
+            if alone > BEYOND_DOUBT_NATS { alone.max(both) } else { alone }
+        }
+        _ => both,
+    }
+}
+
+/// Criterion of a one-off event that is beyond doubt.
+const BEYOND_DOUBT_NATS: f64 = 50.0;
+
+/// Evidence of every variant of every group; `None` where a variant depends on the base.
+type Tested = Vec<Vec<Option<VariantEvidence>>>;
+
+pub(crate) struct Round<'s, 'a> {
+    pub(crate) search: &'s Search<'a>,
+    pub(crate) noise: Noise,
+    pub(crate) bench: Bench,
+    alone: Option<VariantEvidence>,
+    doubt: Doubt,
+    variants: Tested,
+    white: Vec<Vec<f64>>,
+    /// Largest energy that each group explains before whitening.
+    explained: Vec<f64>,
+}
+
+impl<'s, 'a> Round<'s, 'a> {
+    pub(crate) fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
+        // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
+        // effect for colour. So the first candidates are chosen as if the noise were white.
+        let mut noise = Noise::white(search.prepared.rows.len());
+        let mut explained = Vec::new();
+        for _ in 0..2 {
+            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            if explained.is_empty() {
+                let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
+                    let possible =
+                        tested.iter().flatten().filter(|v| search.is_possible(&group.label, &v.coefficients));
+                    possible.map(|v| v.statistic).fold(0.0, f64::max)
+                };
+                explained = search.design.groups.iter().zip(&variants).map(largest).collect();
+            }
+            let mut generous = base.clone();
+            generous.extend(best_two(search, &variants, bench.rows(), f64::NEG_INFINITY));
+            noise = search.noise_after(&generous);
+        }
+        let (white, bench, variants) = weigh_all(search, base, &noise, true);
+        let alone = bench.alone();
+        let doubt = search.doubt(&bench, &noise);
+        Self { search, noise, bench, alone, doubt, variants, white, explained }
+    }
+
+    pub(crate) fn draw_null(&self) -> NullDraws {
+        let best = best_two(self.search, &self.variants, self.bench.rows(), CLEAR_NATS);
+        let runs = self.bench.runs();
+        let base_directions = orthonormal(&self.bench.base, &runs);
+        let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
+            let weighed =
+                group.variants.iter().zip(evidence).filter(|(variant, evidence)| {
+                    evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty()
+                });
+            let directions = |variant: &Variant| {
+                let mut columns = self.white[variant.columns.clone()].to_vec();
+                columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
+                orthonormal(&columns, &runs)
+            };
+            NullGroup {
+                family: match group.label {
+                    Label::Named(_) => Family::Named,
+                    Label::Generic(_) => Family::Generic,
+                },
+                only_positive: self.search.only_positive(&group.label),
+                variants: weighed.map(|(variant, _)| directions(variant)).collect(),
+            }
+        };
+        let groups: Vec<NullGroup> =
+            self.search.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
+        let mut rest = self.bench.target.clone();
+        project_out(&mut rest, &base_directions, &runs);
+        let mut extended = base_directions.clone();
+        extended.extend(self.search.whitened(&best, &self.noise));
+        project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
+        let Settings { null_draws, seed, .. } = self.search.settings;
+        NullDraws::draw(&groups, &rest, &runs, null_draws, seed)
+    }
+
+    pub(crate) fn score_table(&self, accepted: &[Accepted]) -> Vec<Scored> {
+        let Some(alone) = &self.alone else { return Vec::new() };
+        let rows = self.bench.rows();
+        let mut table: Vec<Scored> = self
+            .search
+            .design
+            .groups
+            .iter()
+            .enumerate()
+            .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
+            .filter_map(|(index, group)| {
+                let grid = self.search.grid_size(index);
+                let admissible = self.admissible(index);
+                let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
+                let scanned = self.search.scanned_beyond(index);
+                let trust = |variant: &Variant| self.doubt.trust(&self.white[variant.columns.clone()]);
+                // A prior adds no direction: what it weighs is calibrated by the free series.
+                let free = group.variants.iter().zip(&admissible);
+                let surprise = free
+                    .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
+                    .filter_map(|(variant, evidence)| evidence.as_ref().map(|v| (variant, v)))
+                    .map(|(variant, v)| chi_square_surprise(trust(variant) * v.statistic, v.degrees) - scanned)
+                    .fold(0.0, f64::max);
+                Some(Scored {
+                    label: group.label.clone(),
+                    shape: group.variants[evidence.best].shape.clone(),
+                    score: trust(&group.variants[evidence.best]) * score_of(&group.label, &evidence, grid),
+                    family_wise: 1.0,
+                    evidence,
+                    group: index,
+                    surprise,
+                    explained: self.explained[index],
+                })
+            })
+            .collect();
+        self.refine_leaders(&mut table, alone, rows);
+        self.discount_grain(&mut table);
+        table.sort_by(|a, b| b.score.total_cmp(&a.score));
+        table
+    }
+
+    /// Takes from every candidate what the encoder's grain gives it by itself.
+    fn discount_grain(&self, table: &mut [Scored]) {
+        let Some(grain) = &self.search.base.grain else { return };
+        let least = self.search.settings.candidate_score;
+        if table.iter().all(|scored| scored.score <= least) {
+            return;
+        }
+        let grain = grain.beside(self.search, &self.bench, &self.noise);
+        table.par_iter_mut().filter(|scored| scored.score > least).for_each(|scored| {
+            let trust = grain.trust(&scored.label, &scored.shape);
+            scored.score *= trust;
+            scored.surprise *= trust;
+        });
+    }
+
+    /// The variants of a group whose coefficients have a possible sign.
+    fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
+        let label = &self.search.design.groups[group].label;
+        let possible = |e: &VariantEvidence| self.search.is_possible(label, &e.coefficients);
+        self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
+    }
+
+    /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
+    fn refine_leaders(&self, table: &mut [Scored], alone: &VariantEvidence, rows: f64) {
+        const REFINED_WITHIN_NATS: f64 = 15.0;
+        let named = table.iter().filter(|s| matches!(s.label, Label::Named(_)));
+        let lead = named.map(|s| s.score).fold(f64::NEG_INFINITY, f64::max);
+        let threshold = (lead - REFINED_WITHIN_NATS).max(0.0);
+        table.par_iter_mut().for_each(|scored| {
+            let Label::Named(effect) = scored.label else { return };
+            let Some(hypothesis) = self.search.hypothesis(effect) else { return };
+            if scored.score < threshold {
+                return;
+            }
+            let state = &self.search.prepared.state;
+            let white =
+                |shape: &[f64]| self.search.whitened(&self.search.filtered_columns(&scored.label, shape), &self.noise);
+            let weigh = |shape: &[f64]| {
+                let evidence = self.bench.evidence(&white(shape))?;
+                self.search.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
+            };
+            let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
+            let grid = self.search.grid_size(scored.group);
+            if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
+                let trust = self.doubt.trust(&white(&shape));
+                let score = trust * score_of(&scored.label, &evidence, grid);
+                if score > scored.score {
+                    let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
+                    let looked_at = PLACES_LOOKED_AT.ln() * free as f64 + self.search.scanned_beyond(scored.group);
+                    let refined = chi_square_surprise(trust * evidence.statistic, evidence.degrees) - looked_at;
+                    scored.surprise = scored.surprise.max(refined);
+                    scored.shape = shape;
+                    scored.score = score;
+                    scored.evidence = evidence;
+                }
+            }
+        });
+    }
+}
+
+/// Whitens the design and weighs every variant, held-out folds only where asked for.
+fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
+    let bench = search.bench(base, noise);
+    let white = search.whitened(&search.design.columns, noise);
+    let variants = search
+        .design
+        .groups
+        .par_iter()
+        .map(|group| {
+            group
+                .variants
+                .iter()
+                .map(|variant| {
+                    let ridge = ridge_of(&group.label, &variant.shape);
+                    bench.weigh(&white[variant.columns.clone()], &ridge, folds)
+                })
+                .collect()
+        })
+        .collect();
+    (white, bench, variants)
+}
+
+/// Nats for each row from which a candidate explains a fifth of all that the base leaves. Slow functions that take up parts of a
+/// one-off event of that size would else leave its edges to the noise.
+const DOMINANT_NATS_A_ROW: f64 = 0.1;
+
+/// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
+/// whatever is slow seems more than that, unless they are dominant.
+const ROWS_PER_COEFFICIENT_BESIDE_NOISE: f64 = 150.0;
+
+/// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
+/// dominant event.
+fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
+    let is_dominant = |gain: f64| gain > DOMINANT_NATS_A_ROW * rows;
+    let mut gains: Vec<(f64, usize, usize)> = Vec::new();
+    for (group, tested) in variants.iter().enumerate() {
+        let criterion = |(i, v): (usize, &Option<VariantEvidence>)| {
+            let v = v.as_ref()?;
+            let gain = v.criterion(rows);
+            (is_dominant(gain) || v.degrees as f64 * ROWS_PER_COEFFICIENT_BESIDE_NOISE <= rows).then_some((gain, i))
+        };
+        let criteria = tested.iter().enumerate().filter_map(criterion);
+        let best = criteria.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > least);
+        gains.extend(best.map(|(gain, variant)| (gain, group, variant)));
+    }
+    gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let is_dominant_event = |(gain, group, _): &&(f64, usize, usize)| {
+        let event = Label::Named(EffectId::TransientEvent);
+        is_dominant(*gain) && search.design.groups[*group].label == event
+    };
+    gains
+        .iter()
+        .take(2)
+        .chain(gains.iter().skip(2).filter(is_dominant_event))
+        .flat_map(|(_, group, variant)| {
+            search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
+        })
+        .collect()
+}

@@ -1,0 +1,6 @@
+//! Numerics that every room uses: least squares over runs of rows, covariances, statistics, random draws. Knows no physics.
+
+pub(crate) mod covariance;
+pub(crate) mod least_squares;
+pub(crate) mod random;
+pub(crate) mod statistics;

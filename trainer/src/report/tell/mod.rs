@@ -1,0 +1,320 @@
+//! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
+
+mod certainty;
+#[cfg(test)]
+mod tests;
+
+use crate::diagnose::answer::outcome::{Diagnosis, Finding, Verdict};
+use crate::diagnose::answer::region::{Region, Side};
+use crate::figures::{digits, pair, quantity};
+use crate::parameter::Parameter;
+use crate::physics::names::{capital, plain_name};
+use crate::physics::units::Units;
+use crate::physics::{Action, EffectId};
+use crate::report::tell::certainty::certainty;
+
+/// Quantile of the effect's torque that "up to" stands for.
+const UP_TO: f64 = 0.98;
+/// Share of the torque that has to point one way before a sentence says "more" or "less".
+const ONE_WAY: f64 = 0.5;
+
+/// Error of a given model over that after a refit of its parameters from which the change is told.
+const TELLING_CHANGE: f64 = 1.05;
+
+/// Everything there is to say, in the order in which it should be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Story {
+    /// The answer in one sentence.
+    pub headline: String,
+    /// The simulation or model as it was given: what it holds itself, and what its own parameters have to change by.
+    pub given: Vec<String>,
+    /// What is wrong with the measurement.
+    pub health: Vec<String>,
+    /// One sentence a finding.
+    pub findings: Vec<String>,
+    /// Error before and after on locked data.
+    pub proof: Option<String>,
+    /// What was found beside the findings and accounts for little.
+    pub minor: Option<String>,
+    /// What was found and may be an error of the law that the recording is compared with.
+    pub doubtful: Option<String>,
+    /// What was found and is too small to matter.
+    pub negligible: Option<String>,
+    /// What was found at first and then withdrawn.
+    pub withdrawn: Option<String>,
+    /// What would have been seen.
+    pub limits: Option<String>,
+}
+
+impl Story {
+    /// What follows the findings.
+    pub fn rest(&self) -> impl Iterator<Item = &String> {
+        [&self.proof, &self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.limits]
+            .into_iter()
+            .flatten()
+    }
+}
+
+/// Tells a diagnosis.
+#[must_use]
+pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
+    Story {
+        headline: headline(diagnosis, units),
+        given: given(diagnosis, units),
+        health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
+        findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
+        proof: proof(diagnosis, units),
+        minor: minor(diagnosis),
+        doubtful: doubtful(diagnosis, units),
+        negligible: negligible(diagnosis, units),
+        withdrawn: withdrawn(diagnosis),
+        limits: limits(diagnosis, units),
+    }
+}
+
+fn headline(diagnosis: &Diagnosis, units: Units) -> String {
+    let noise = quantity(diagnosis.noise_rmse, units.actuator);
+    match diagnosis.verdict {
+        Verdict::Consistent => {
+            let beside = if diagnosis.doubtful.is_empty() { "" } else { " or the error of its law" };
+            format!(
+                "Nothing is missing that this recording could show: what the model leaves, {noise}, is noise{beside}."
+            )
+        }
+        Verdict::MissingPhysics => {
+            let count = diagnosis.findings.len();
+            let effects = if count == 1 { "One effect is".to_string() } else { format!("{count} effects are") };
+            format!(
+                "{effects} missing from the model: its error is {} (root mean square), and noise alone would leave {noise}.",
+                quantity(diagnosis.baseline.rmse, units.actuator)
+            )
+        }
+        Verdict::Unexplained => format!(
+            "Something structured is missing that the catalogue does not hold: the model's error is {} (root mean square), and \
+             noise alone would leave {noise}.",
+            quantity(diagnosis.baseline.rmse, units.actuator)
+        ),
+        Verdict::BadData if diagnosis.is_blocked() => {
+            "The measurement has to be put right before anything can be said of the physics.".into()
+        }
+        Verdict::BadData => {
+            "The measurement is at fault; beside that nothing is missing that this recording could show.".into()
+        }
+    }
+}
+
+/// What a simulation or a model holds itself, and how far it is wrong before its own parameters move.
+fn given(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
+    let Some(given) = &diagnosis.given else { return Vec::new() };
+    let mut sentences = Vec::new();
+    if !given.holds.is_empty() {
+        // An effect that repeats, a ripple of several orders, is said once.
+        let is_first = |(index, effect): &(usize, &EffectId)| !given.holds[..*index].contains(effect);
+        let once = given.holds.iter().enumerate().filter(is_first);
+        let names: Vec<&str> = once.map(|(_, effect)| plain_name(*effect)).collect();
+        sentences.push(format!("Found in the simulation itself, and so not missing from it: {}.", names.join(", ")));
+    }
+    let (as_given, refitted) = (given.score.rmse, diagnosis.baseline.rmse);
+    if as_given > TELLING_CHANGE * refitted {
+        let [as_given, refitted] = [as_given, refitted].map(|rmse| quantity(rmse, units.actuator));
+        let changes: Vec<String> = diagnosis.base_parameters.iter().filter_map(change).collect();
+        let changes = if changes.is_empty() { String::new() } else { format!(": {}", changes.join(", ")) };
+        sentences.push(format!(
+            "As it was given, the model is wrong by {as_given}; refitting its own parameters leaves {refitted}{changes}."
+        ));
+    }
+    sentences
+}
+
+/// How far a parameter of the given model is off, where that is certain.
+fn change(parameter: &Parameter) -> Option<String> {
+    let name = parameter.name.strip_suffix("_change")?.replace('_', " ");
+    let is_certain = parameter.ci95[0] * parameter.ci95[1] > 0.0;
+    let direction = if parameter.value > 0.0 { "too low" } else { "too high" };
+    let [size, half] = [parameter.value.abs(), 0.5 * (parameter.ci95[1] - parameter.ci95[0])];
+    let [size, half] = [size, half].map(|figure| quantity(figure, &parameter.unit));
+    is_certain.then(|| format!("its {name} is {size} (\u{b1} {half}) {direction}"))
+}
+
+/// The sentence of one finding.
+#[must_use]
+pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
+    let found = &diagnosis.findings[index];
+    // A fault of the measurement adds no torque of which to say where and how much.
+    let is_of_measurement = found.fitted.coefficients.is_empty() && found.effect != EffectId::Unknown;
+    if is_of_measurement || found.effect == EffectId::TimeMisalignment {
+        let name = capital(plain_name(found.effect));
+        return format!("{name}{}. {}{}", figures(found), certainty(found), action(found));
+    }
+    let telling = found.location.regions.first().filter(|region| region.is_telling());
+    let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
+    let amount = amount(diagnosis, index, telling, units);
+    let name = match found.effect {
+        EffectId::Unknown => format!("{} ({})", plain_name(found.effect), found.equation),
+        effect => plain_name(effect).to_string(),
+    };
+    let figures = figures(found);
+    let certainty = certainty(found);
+    format!("{} {amount}: {name}{figures}. {certainty}{}", capital(&place), action(found))
+}
+
+/// Where a region is, as a sentence begins, in small letters.
+fn place(region: &Region, units: Units) -> String {
+    region.sides().map(|side| place_along(side, units)).collect::<Vec<_>>().join(" and ")
+}
+
+/// Where an interval is, as a sentence begins, in small letters.
+fn place_along(side: &Side, units: Units) -> String {
+    let unit = units.of_channel(side.channel);
+    let between = pair(side.from, "and", side.to, &unit);
+    let from_zero = side.from.abs() < 0.03 * side.to.abs();
+    match side.channel {
+        "velocity" => format!("between {between}"),
+        "position" => format!("at positions between {between}"),
+        "load" => format!("under loads between {between}"),
+        "temperature" => format!("at temperatures between {between}"),
+        "acceleration" => format!("at accelerations between {between}"),
+        "time" => format!("between {between} of the recording"),
+        "dwell" if side.to <= 0.0 => "after reversals without a stop".to_string(),
+        "dwell" => format!("after stops between {between}"),
+        "distance_since_reversal" | "time_since_reversal" if from_zero => {
+            format!("within {} after each reversal", quantity(side.to, &unit))
+        }
+        "distance_since_reversal" | "time_since_reversal" => format!("between {between} after each reversal"),
+        _ => format!("while the other joint moves between {between}"),
+    }
+}
+
+/// How much torque the real joint needs, and in which direction.
+fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: Units) -> String {
+    let traces = &diagnosis.traces;
+    let Some(effect) = traces.effects.get(index) else { return "the real joint differs".to_string() };
+    let sides: Vec<(&Side, &[f64])> = region
+        .into_iter()
+        .flat_map(Region::sides)
+        .filter_map(|side| Some((side, traces.channel(side.channel)?)))
+        .collect();
+    let is_inside = |i: &usize| sides.iter().all(|(side, values)| (side.from..=side.to).contains(&values[*i]));
+    let inside: Vec<usize> = (0..effect.len()).filter(is_inside).collect();
+    let mut sizes: Vec<f64> = inside.iter().map(|&i| effect[i].abs()).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    let largest = sizes.get(((sizes.len().max(1) - 1) as f64 * UP_TO).round() as usize).copied().unwrap_or(0.0);
+    let total: f64 = sizes.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let along: f64 = inside.iter().map(|&i| effect[i] * traces.velocity[i].signum()).sum::<f64>() / total;
+    let upward: f64 = inside.iter().map(|&i| effect[i]).sum::<f64>() / total;
+    let size = quantity(largest, units.actuator);
+    if along.abs() > ONE_WAY && along.abs() >= upward.abs() {
+        format!("the real joint needs up to {size} {}", if along > 0.0 { "more" } else { "less" })
+    } else if upward.abs() > ONE_WAY {
+        let direction = if upward > 0.0 { "positive" } else { "negative" };
+        format!("the real joint needs up to {size} more in the {direction} direction")
+    } else {
+        format!("the real joint needs up to {size} more or less")
+    }
+}
+
+/// The parameters that say most, at most two.
+fn figures(found: &Finding) -> String {
+    let told: Vec<String> = telling_parameters(found).into_iter().map(figure).collect();
+    if told.is_empty() { String::new() } else { format!(", {}", told.join(", ")) }
+}
+
+/// Shapes say more than amplitudes, which the sentence has given already.
+fn telling_parameters(found: &Finding) -> Vec<&Parameter> {
+    let linear = found.fitted.coefficients.len().min(found.parameters.len());
+    let (amplitudes, shapes) = found.parameters.split_at(linear);
+    // Which joint it is says nothing of how much.
+    let shapes: Vec<&Parameter> = shapes.iter().filter(|shape| shape.name != "other_joint").take(2).collect();
+    if shapes.is_empty() && linear <= 3 { amplitudes.iter().take(2).collect() } else { shapes }
+}
+
+fn figure(parameter: &Parameter) -> String {
+    let half = 0.5 * (parameter.ci95[1] - parameter.ci95[0]);
+    let name = parameter.name.replace('_', " ");
+    let value = quantity(parameter.value, &parameter.unit);
+    if half > 0.0 && half.is_finite() {
+        format!("{name} {value} (\u{b1} {})", quantity(half, &parameter.unit))
+    } else {
+        format!("{name} {value}")
+    }
+}
+
+fn action(found: &Finding) -> &'static str {
+    match found.action {
+        Action::FeedForward => "",
+        Action::Parameter => " A parameter of the model is to be corrected.",
+        Action::Measurement => " The measurement is to be repaired, not compensated.",
+        Action::Maintenance if found.effect == EffectId::Unknown => " It is not compensated.",
+        Action::Maintenance => " Have the joint looked at; it is not compensated.",
+    }
+}
+
+fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    let proof = diagnosis.proof.as_ref()?;
+    if diagnosis.findings.is_empty() || diagnosis.verdict == Verdict::BadData {
+        return None;
+    }
+    let ratio = proof.improved_rmse / proof.baseline_rmse.max(f64::MIN_POSITIVE);
+    let interval = if proof.ratio_ci95[1].is_finite() {
+        format!(", 95 % interval {} to {}", digits(proof.ratio_ci95[0]), digits(proof.ratio_ci95[1]))
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "Held-out error {} on {} rows that took no part in fitting and could only withdraw a finding \
+         (ratio {}{interval}).",
+        pair(proof.baseline_rmse, "->", proof.improved_rmse, units.actuator),
+        proof.rows,
+        digits(ratio),
+    ))
+}
+
+fn minor(diagnosis: &Diagnosis) -> Option<String> {
+    let named = |(effect, share): &(EffectId, f64)| {
+        let percent = 100.0 * share;
+        let percent = if percent < 0.1 { "under 0.1".to_string() } else { format!("{percent:.1}") };
+        format!("{} ({percent} % of the removable error)", plain_name(*effect))
+    };
+    let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
+    (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
+}
+
+fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    (!diagnosis.doubtful.is_empty()).then(|| {
+        format!(
+            "No larger than the errors of the law that was learned from the simulation, and so not taken for physics: {}. \
+             A simulation of the whole recorded motion would tell.",
+            explaining(&diagnosis.doubtful, units)
+        )
+    })
+}
+
+fn negligible(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    (!diagnosis.negligible.is_empty())
+        .then(|| format!("Too small to matter, and not modelled: {}.", explaining(&diagnosis.negligible, units)))
+}
+
+/// Effects with the root mean square of what each explains.
+fn explaining(effects: &[(EffectId, f64)], units: Units) -> String {
+    let named = |(effect, explained): &(EffectId, f64)| {
+        format!("{} ({})", plain_name(*effect), quantity(*explained, units.actuator))
+    };
+    effects.iter().map(named).collect::<Vec<_>>().join(", ")
+}
+
+fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
+    let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
+    (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
+}
+
+/// The three effects that would have been seen soonest, of those a user asks for first.
+fn limits(diagnosis: &Diagnosis, units: Units) -> Option<String> {
+    let mut limits: Vec<_> = diagnosis.limits.iter().collect();
+    limits.sort_by(|a, b| a.torque_rms.total_cmp(&b.torque_rms));
+    let told: Vec<String> = limits
+        .iter()
+        .take(3)
+        .map(|limit| format!("{} above {}", plain_name(limit.effect), quantity(limit.torque_rms, units.actuator)))
+        .collect();
+    (!told.is_empty()).then(|| format!("Would have been seen (root mean square): {}.", told.join(", ")))
+}
