@@ -11,7 +11,7 @@ use crate::diagnose::comparison::from_model::{
     Movement, hats, is_odd, law_at, mean_measurement, moved, movement, moving_constants,
 };
 use crate::diagnose::comparison::simulation::InverseLaw;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::proof::refit::Refit;
 use crate::fit::HostModel;

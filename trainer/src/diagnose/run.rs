@@ -8,7 +8,9 @@ use crate::diagnose::checks::health::{
     AsRecorded, HealthNote, coarse_position, examine, scattered_sampling, unexplained_event,
 };
 use crate::diagnose::comparison::base::{Base, BaseKind, Delay};
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::prepare::Prepared;
 use crate::diagnose::preparation::rows::Lock;
@@ -143,8 +145,10 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     let base = Base::fit(&mut prepared, signals, options.base).ok_or(Refusal::Undetermined)?;
     let hypotheses = catalogue();
     let settings = if prepared.grain_limited { options.settings.behind_grain() } else { options.settings };
-    let search = Search::new(&prepared, &base, &hypotheses, settings);
-    let baseline = refit(&search, &[]).ok_or(Refusal::Undetermined)?;
+    let workbench = &Workbench::new(&prepared, &base, &hypotheses);
+    let measurement_noise = MeasurementNoise::of(&prepared, signals, &base.residual);
+    let search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings };
+    let baseline = refit(workbench, &[]).ok_or(Refusal::Undetermined)?;
     let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms, actuator).collect();
     health.extend(examine(signals));
     health.extend(coarse_position(signals, &prepared));
@@ -152,33 +156,33 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
-    polish(&search, &mut accepted, &noise);
-    let withdrawn = withdraw_unproven(&search, &mut accepted);
-    let doubtful = set_aside_doubtful(&search, &mut accepted);
-    let minor = set_aside_minor(&search, &mut accepted, &baseline);
-    let negligible = set_aside_negligible(&search, &mut accepted);
+    polish(workbench, &mut accepted, &noise);
+    let withdrawn = withdraw_unproven(workbench, &settings, &mut accepted);
+    let doubtful = set_aside_doubtful(workbench, &mut accepted);
+    let minor = set_aside_minor(workbench, &mut accepted, &baseline);
+    let negligible = set_aside_negligible(workbench, &mut accepted);
     if !(withdrawn.is_empty() && doubtful.is_empty() && minor.is_empty() && negligible.is_empty()) {
-        polish(&search, &mut accepted, &noise);
+        polish(workbench, &mut accepted, &noise);
     }
-    let improved = refit(&search, &accepted).ok_or(Refusal::Undetermined)?;
-    let proof = prove(&search, &baseline, &improved);
+    let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
+    let proof = prove(workbench, &baseline, &improved);
     let findings: Vec<Finding> = accepted
         .iter()
         .enumerate()
-        .map(|(index, found)| finding(&search, found, &accepted, index, &improved, actuator))
+        .map(|(index, found)| finding(workbench, found, &accepted, index, &improved, actuator))
         .collect();
     let faults = health.iter().filter(|note| note.blocking).map(measurement_finding);
     let findings = if blocked { faults.collect() } else { findings };
     let verdict = Verdict::of(&findings, blocked);
-    let given = (options.base == BaseKind::Reference).then(|| given(&search, &baseline));
-    let score = |refit: &Refit| score(&search, &rest(&search, refit));
-    let mut traces = Traces::of(&search, &baseline, &improved);
+    let given = (options.base == BaseKind::Reference).then(|| given(workbench, &baseline));
+    let score = |refit: &Refit| score(workbench, &rest(workbench, refit));
+    let mut traces = Traces::of(workbench, &baseline, &improved);
     // A fault of the measurement adds no torque.
     traces.effects.resize(findings.len(), vec![0.0; traces.time.len()]);
     Ok(Diagnosis {
         verdict,
         health,
-        limits: limits(&search, &last_round, &improved),
+        limits: limits(workbench, &last_round, &improved),
         base: options.base,
         lock: options.lock,
         given,
@@ -188,7 +192,7 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
         baseline: score(&baseline),
         improved: score(&improved),
         proof,
-        rollout: roll_out(&search, &baseline, &improved),
+        rollout: roll_out(workbench, &baseline, &improved),
         findings,
         minor,
         doubtful,
@@ -205,15 +209,15 @@ fn diagnose_locked(signals: &Signals, request: &Request) -> Result<Diagnosis, Re
 }
 
 /// The reference before its parameters moved; differentiation bias and the sampling's delay are none of its errors.
-fn given(search: &Search, baseline: &Refit) -> Given {
-    let moved = search.base.names.len();
-    let change = weighted(&search.base.columns[..moved], &baseline.base[..moved]);
-    let unmoved: Vec<f64> = rest(search, baseline).iter().zip(change).map(|(rest, change)| rest + change).collect();
-    Given { score: score(search, &unmoved), holds: search.base.held.clone() }
+fn given(workbench: &Workbench, baseline: &Refit) -> Given {
+    let moved = workbench.base.names.len();
+    let change = weighted(&workbench.base.columns[..moved], &baseline.base[..moved]);
+    let unmoved: Vec<f64> = rest(workbench, baseline).iter().zip(change).map(|(rest, change)| rest + change).collect();
+    Given { score: score(workbench, &unmoved), holds: workbench.base.held.clone() }
 }
 
-fn score(search: &Search, rest: &[f64]) -> Score {
-    let torque = search.prepared.filtered(&search.prepared.torque);
+fn score(workbench: &Workbench, rest: &[f64]) -> Score {
+    let torque = workbench.prepared.filtered(&workbench.prepared.torque);
     let count = rest.len() as f64;
     let mean = torque.iter().sum::<f64>() / count;
     let energy: f64 = rest.iter().map(|r| r * r).sum();
@@ -222,18 +226,18 @@ fn score(search: &Search, rest: &[f64]) -> Score {
 }
 
 /// Torque of each effect that was not found at which it would have been found nine times in ten.
-fn limits(search: &Search, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
-    let bench = search.bench(search.base.columns.clone(), &refit.noise);
-    let doubt = search.doubt(&bench, &refit.noise);
-    let least = least_torque(search).max(FORMULA_ERROR * search.base.formula_error);
+fn limits(workbench: &Workbench, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
+    let bench = workbench.bench(workbench.base.columns.clone(), &refit.noise);
+    let doubt = workbench.law_uncertainty(&bench, &refit.noise);
+    let least = least_torque(workbench).max(FORMULA_ERROR * workbench.base.formula_error);
     table
         .iter()
         .filter_map(|scored| {
             let Label::Named(effect) = scored.label else { return None };
-            let columns = search.filtered_columns(&scored.label, &scored.shape);
+            let columns = workbench.filtered_columns(&scored.label, &scored.shape);
             let first = columns.first()?;
             // The statistic of the column itself as target: its non-centrality per squared amplitude.
-            let white = search.whitened(&columns[..1], &refit.noise);
+            let white = workbench.whitened(&columns[..1], &refit.noise);
             let visible = doubt.trust(&white) * bench.visible_energy(&white[0])?;
             let amplitude = (FOUND_WITH_NINETY_PERCENT / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();

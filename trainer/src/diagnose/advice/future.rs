@@ -2,7 +2,7 @@
 
 use crate::diagnose::advice::Candidate;
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::{first_derivative, second_derivative};
+use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::{least_squares, weighted};
 use crate::physics::JointState;
 use std::ops::Range;

@@ -11,11 +11,11 @@ mod outlook;
 
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::comparison::reference::Reference;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::{first_derivative, second_derivative};
 use crate::diagnose::preparation::prepare::Prepared;
-use crate::diagnose::proof::refit::Fitted;
+use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::statistics::quantile;
 use crate::physics::names::plain_name;
 use crate::physics::{EffectId, JointState};

@@ -3,12 +3,12 @@
 use crate::diagnose::advice::{Pair, Question};
 use crate::diagnose::comparison::base::{Base, BaseKind};
 use crate::diagnose::evidence::score::Bench;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::hypotheses::refine::refine;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::preparation::prepare::Prepared;
-use crate::diagnose::proof::refit::Fitted;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::physics::{EffectId, Hypothesis, Shape, catalogue};
 use std::ops::Range;

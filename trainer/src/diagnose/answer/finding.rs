@@ -10,11 +10,13 @@ use crate::diagnose::answer::stated_probability::{alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
 use crate::diagnose::checks::health::{HealthNote, unexplained_event};
 use crate::diagnose::comparison::base::Base;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::proof::locked_rows::prove_alone;
-use crate::diagnose::proof::refit::{Fitted, Refit};
-use crate::diagnose::search::forward_backward::{Accepted, Search};
+use crate::diagnose::proof::refit::Refit;
+use crate::diagnose::search::accepted::Accepted;
 use crate::parameter::Parameter;
 use crate::physics::separation::separation;
 use crate::physics::units::unit_text;
@@ -22,7 +24,7 @@ use crate::physics::{Action, Dimension, EffectId};
 
 /// An accepted effect, the `index`th of `all`, after the joint refit.
 pub(crate) fn finding(
-    search: &Search,
+    workbench: &Workbench,
     found: &Accepted,
     all: &[Accepted],
     index: usize,
@@ -31,14 +33,14 @@ pub(crate) fn finding(
 ) -> Finding {
     let effect = found.effect();
     let fitted = improved.effects[index].clone();
-    let location = locate(search, improved, index);
+    let location = locate(workbench, improved, index);
     let equation = match &found.label {
-        Label::Named(id) => search.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
-        Label::Generic(rival) => formula::equation(search, all, index, *rival, &improved.noise),
+        Label::Named(id) => workbench.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
+        Label::Generic(rival) => formula::equation(workbench, all, index, *rival, &improved.noise),
     };
     let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
     let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
-    let locked = prove_alone(search, all, index, improved).map(|proof| proof.gain_nats);
+    let locked = prove_alone(workbench, all, index, improved).map(|proof| proof.gain_nats);
     let of_locked = locked.map(|gain| format!("; locked rows {gain:+.1} more")).unwrap_or_default();
     let evidence = format!(
         "{:.1} nats in favour (held-out folds {:+.1}{of_locked}), family-wise p {}, {} rival{} within reach",
@@ -48,14 +50,14 @@ pub(crate) fn finding(
         found.rivals.len(),
         if found.rivals.len() == 1 { "" } else { "s" },
     );
-    let nearest = nearest(search, &fitted, all, index);
+    let nearest = nearest(workbench, &fitted, all, index);
     Finding {
         effect,
         probability: probability(found),
         alternatives: alternatives(found),
         action: effect.action(),
         equation,
-        parameters: parameters(search, &fitted, actuator),
+        parameters: parameters(workbench, &fitted, actuator),
         location,
         evidence,
         separate_by: Advice { sentence: advice },
@@ -75,10 +77,10 @@ fn probability_text(probability: f64) -> String {
 }
 
 /// Coefficients, then free shapes, with units and 95 % intervals.
-fn parameters(search: &Search, fitted: &Fitted, actuator: &str) -> Vec<Parameter> {
+fn parameters(workbench: &Workbench, fitted: &Fitted, actuator: &str) -> Vec<Parameter> {
     let Label::Named(effect) = fitted.label else { return Vec::new() };
-    let Some(hypothesis) = search.hypothesis(effect) else { return Vec::new() };
-    let rotary = search.prepared.state.rotary;
+    let Some(hypothesis) = workbench.hypothesis(effect) else { return Vec::new() };
+    let rotary = workbench.prepared.state.rotary;
     let parameter = |name: &str, symbol: &str, dimension: Dimension, value: f64, deviation: f64| Parameter {
         name: name.to_string(),
         symbol: symbol.to_string(),

@@ -1,32 +1,45 @@
 //! A formula for an unnamed structure, where a simple one says as much as the free function does.
 
-use crate::diagnose::hypotheses::design::{Label, ridge_of};
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::function_form::{FORMULAS, Form};
-use crate::diagnose::hypotheses::refine::climb;
+use crate::diagnose::hypotheses::label::{Label, ridge_of};
 use crate::diagnose::hypotheses::unnamed::Generic;
 use crate::diagnose::noise::autoregression::Noise;
-use crate::diagnose::search::forward_backward::{Accepted, Search, others};
+use crate::diagnose::search::accepted::{Accepted, others};
 use crate::figures::digits;
+use crate::numerics::pattern_search::climb;
 use crate::physics::Shape;
 use rayon::prelude::*;
 
 /// The equation of an unnamed structure beside the other effects, with its coefficients where a formula carries it: each
 /// coefficient and each parameter of the shape is paid for (Schwarz 1978), and the formula has to be worth what the
 /// structure is as it was accepted.
-pub(crate) fn equation(search: &Search, accepted: &[Accepted], index: usize, rival: Generic, noise: &Noise) -> String {
+pub(crate) fn equation(
+    workbench: &Workbench,
+    accepted: &[Accepted],
+    index: usize,
+    rival: Generic,
+    noise: &Noise,
+) -> String {
     let unwritten = || format!("dF = {} c({})", rival.factor.text(), rival.channel.name());
-    formula(search, accepted, index, rival, noise).unwrap_or_else(unwritten)
+    formula(workbench, accepted, index, rival, noise).unwrap_or_else(unwritten)
 }
 
-fn formula(search: &Search, accepted: &[Accepted], index: usize, rival: Generic, noise: &Noise) -> Option<String> {
-    let state = &search.prepared.state;
+fn formula(
+    workbench: &Workbench,
+    accepted: &[Accepted],
+    index: usize,
+    rival: Generic,
+    noise: &Noise,
+) -> Option<String> {
+    let state = &workbench.prepared.state;
     let range = rival.range(state)?;
-    let bench = search.bench(search.base_with(others(accepted, index)), noise);
+    let bench = workbench.bench(workbench.base_with_tangents(others(accepted, index).map(Accepted::term)), noise);
     let alone = bench.alone()?;
     let rows = bench.rows();
     let weigh = |rival: Generic, shape: &[f64]| {
         let label = Label::Generic(rival);
-        let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
+        let columns = workbench.whitened(&workbench.filtered_columns(&label, shape), noise);
         let evidence = bench.weigh(&columns, &ridge_of(&label, shape), false)?;
         let shape_price = 0.5 * rival.form.movable(shape, range).len() as f64 * rows.ln();
         let gain = 0.5 * rows * (alone.residual / evidence.residual).ln() - evidence.complexity - shape_price;

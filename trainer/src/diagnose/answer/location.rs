@@ -1,10 +1,10 @@
 //! Where a finding sits: evidence density along time and every channel, and the interval that holds most of it.
 
 use crate::diagnose::answer::region::{Axis, Region, maximal_sum, regions};
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::proof::locked_rows::rest;
 use crate::diagnose::proof::refit::Refit;
-use crate::diagnose::search::forward_backward::Search;
 use crate::physics::EffectId;
 use std::ops::Range;
 
@@ -18,17 +18,17 @@ pub struct Location {
 }
 
 /// Locates one effect of a refit: the evidence that it adds to all the others.
-pub(crate) fn locate(search: &Search, refit: &Refit, index: usize) -> Location {
-    let runs = search.prepared.open_runs();
-    let with = rest(search, refit);
+pub(crate) fn locate(workbench: &Workbench, refit: &Refit, index: usize) -> Location {
+    let runs = workbench.prepared.open_runs();
+    let with = rest(workbench, refit);
     let effect = &refit.effects[index];
-    let torque = search.torque_of(effect);
+    let torque = workbench.torque_of(effect);
     let without: Vec<f64> = with.iter().zip(&torque).map(|(r, t)| r + t).collect();
     let [white_with, white_without] = [with, without].map(|rest| refit.noise.whitened(&rest, &runs));
     let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
     let density: Vec<f64> = rows.iter().map(|&i| 0.5 * (white_without[i].powi(2) - white_with[i].powi(2))).collect();
-    let state = &search.prepared.state;
-    let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[search.prepared.rows[i]]).collect() };
+    let state = &workbench.prepared.state;
+    let at_rows = |series: &[f64]| -> Vec<f64> { rows.iter().map(|&i| series[workbench.prepared.rows[i]]).collect() };
     let mut axes = vec![("velocity", at_rows(&state.velocity))];
     axes.extend(Channel::axes(state).into_iter().filter_map(|axis| Some((axis.name(), at_rows(&axis.series(state)?)))));
     let axes: Vec<Axis> = axes.iter().map(|(name, values)| (*name, values.as_slice())).collect();

@@ -1,6 +1,6 @@
 //! Stated probabilities: how often a name with this margin and set turned out right on the synthetic library.
 
-use crate::diagnose::search::forward_backward::Accepted;
+use crate::diagnose::search::accepted::Accepted;
 use crate::physics::EffectId;
 
 /// Frequency of a right first name that stands alone, measured on some five hundred concealed effects of other seeds than the
@@ -42,7 +42,7 @@ pub(crate) fn alternatives(found: &Accepted) -> Vec<(EffectId, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::hypotheses::design::Label;
+    use crate::diagnose::hypotheses::label::Label;
 
     fn beside(rivals: &[(EffectId, f64)]) -> Accepted {
         Accepted {

@@ -2,10 +2,10 @@
 
 use crate::diagnose::answer::location::locate_density;
 use crate::diagnose::answer::region::Region;
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::proof::locked_rows::rest;
 use crate::diagnose::proof::refit::Refit;
-use crate::diagnose::search::forward_backward::Search;
 use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
@@ -46,9 +46,9 @@ pub struct WorstLocked {
 }
 
 impl Traces {
-    /// Traces of a finished search.
-    pub(crate) fn of(search: &Search, baseline: &Refit, improved: &Refit) -> Self {
-        let prepared = search.prepared;
+    /// Traces of a finished workbench.
+    pub(crate) fn of(workbench: &Workbench, baseline: &Refit, improved: &Refit) -> Self {
+        let prepared = workbench.prepared;
         let state = &prepared.state;
         let mut locked = vec![false; prepared.rows.len()];
         let mut run_starts = Vec::new();
@@ -59,7 +59,7 @@ impl Traces {
             }
         }
         run_starts.sort_unstable();
-        let effects = improved.effects.iter().map(|effect| search.torque_of(effect)).collect();
+        let effects = improved.effects.iter().map(|effect| workbench.torque_of(effect)).collect();
         let channels = Channel::axes(state)
             .into_iter()
             .filter_map(|channel| Some((channel.name(), prepared.at_rows(&channel.series(state)?))))
@@ -69,8 +69,8 @@ impl Traces {
             time: prepared.at_rows(&state.time),
             velocity: prepared.at_rows(&state.velocity),
             torque: prepared.filtered(&prepared.torque),
-            before: rest(search, baseline),
-            after: rest(search, improved),
+            before: rest(workbench, baseline),
+            after: rest(workbench, improved),
             effects,
             locked,
             sign_is_sure: prepared.sign_is_sure(),

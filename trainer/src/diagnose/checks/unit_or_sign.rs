@@ -2,8 +2,9 @@
 
 use crate::diagnose::checks::health::HealthNote;
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::{ZeroPhase, first_derivative, second_derivative};
+use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::figures::digits;
+use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::{least_squares, residual};
 use crate::physics::EffectId;
 

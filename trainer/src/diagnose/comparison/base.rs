@@ -2,7 +2,6 @@
 
 use crate::diagnose::comparison::reference::tabulated_velocities;
 use crate::diagnose::comparison::sign_width::{WIDE_SIGN, add_softness, fit_width, sharpness};
-use crate::diagnose::evidence::measurement_noise::Grain;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::position_error::grain_through_inertia;
 use crate::diagnose::preparation::prepare::{Prepared, channel_filter};
@@ -33,8 +32,8 @@ pub struct Base {
     pub held: Vec<EffectId>,
     /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
     pub doubt: Vec<Vec<f64>>,
-    /// What more of the encoder's grain and of the torque's noise would change.
-    pub(crate) grain: Option<Grain>,
+    /// What the base with a delay of the torque leaves at every working row.
+    pub(crate) residual: Vec<f64>,
     /// Root mean square of what the formulas of a reference get wrong.
     pub formula_error: f64,
     /// Delay of the torque against the position that the fit found.
@@ -105,7 +104,6 @@ impl Base {
         let with_delay = least_squares(&columns, &target, &runs)?;
         let late = with_delay[columns.len() - 1];
         let left = residual(&columns, &target, &with_delay);
-        let grain = Grain::of(prepared, signals, &left);
         let delay = if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
             Delay::OfSampling(late)
         } else {
@@ -120,7 +118,7 @@ impl Base {
         };
         let doubt = prepared.filtered_all(doubt);
         let formula_error = signals.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
-        Some(Self { columns, names, target, held, doubt, grain, formula_error, delay })
+        Some(Self { columns, names, target, held, doubt, residual: left, formula_error, delay })
     }
 }
 

@@ -1,10 +1,10 @@
 //! How sharply friction turns over with the direction: the width of the smoothed sign, and what of it stays unknown.
 
 use crate::diagnose::comparison::base::{BaseKind, filtered_columns, raw_columns};
-use crate::diagnose::hypotheses::refine::{Movable, climb};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::prepare::Prepared;
 use crate::numerics::least_squares::{dot, least_squares, left_by_fit};
+use crate::numerics::pattern_search::{Movable, climb};
 
 /// Width of a softer sign over that of the smoothed one.
 pub(crate) const WIDE_SIGN: f64 = 3.0;

@@ -5,7 +5,7 @@ use crate::numerics::least_squares::{dot, orthonormal, project_out};
 use std::ops::Range;
 
 /// The doubts of a reference beside a base, whitened.
-pub(crate) struct Doubt {
+pub(crate) struct LawUncertainty {
     /// Torque of each uncertain direction at one standard deviation.
     torque: Vec<Vec<f64>>,
     /// Orthonormal directions that the base takes up.
@@ -13,8 +13,8 @@ pub(crate) struct Doubt {
     runs: Vec<Range<usize>>,
 }
 
-impl Doubt {
-    /// Doubts given as whitened torque beside whitened base columns.
+impl LawUncertainty {
+    /// LawUncertaintys given as whitened torque beside whitened base columns.
     pub fn beside(base: &[Vec<f64>], torque: Vec<Vec<f64>>, runs: Vec<Range<usize>>) -> Self {
         let base = if torque.is_empty() { Vec::new() } else { orthonormal(base, &runs) };
         Self { torque, base, runs }
@@ -42,10 +42,10 @@ mod tests {
         let axis =
             |place: usize, length: f64| (0..4).map(|i| if i == place { length } else { 0.0 }).collect::<Vec<f64>>();
         let all = std::iter::once(0..4).collect::<Vec<_>>();
-        let doubt = Doubt::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
+        let doubt = LawUncertainty::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
         assert!((doubt.trust(&[axis(1, 0.5)]) - 0.1).abs() < 1e-12);
         assert_eq!(doubt.trust(&[axis(2, 0.5)]), 1.0);
         assert!((doubt.trust(&[axis(1, 1.0), axis(2, 1.0)]) - 1.0 / 5.5).abs() < 1e-12);
-        assert_eq!(Doubt::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&[axis(1, 0.5)]), 1.0);
+        assert_eq!(LawUncertainty::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&[axis(1, 0.5)]), 1.0);
     }
 }

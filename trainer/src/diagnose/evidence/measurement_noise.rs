@@ -3,11 +3,11 @@
 //! Vandanjon & Gautier 2014).
 
 use crate::diagnose::evidence::score::Bench;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::preparation::prepare::{DEVIATION_PER_MEDIAN, Prepared, identified_inertia};
-use crate::diagnose::search::forward_backward::Search;
 use crate::numerics::least_squares::{dot, gram, orthonormal, project_out, solve_symmetric};
 use crate::numerics::random::{normal, uniform};
 use crate::numerics::statistics::quantile;
@@ -23,14 +23,14 @@ const SEED_OF_INSTANTS: u64 = 0x696e_7374_616e;
 
 /// A second helping of the encoder's grain and of the torque's noise.
 #[derive(Clone, Debug)]
-pub(crate) struct Grain {
+pub(crate) struct MeasurementNoise {
     /// States with it.
     state: JointState,
     /// Filtered change of what the base leaves.
     left: Vec<f64>,
 }
 
-impl Grain {
+impl MeasurementNoise {
     /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a
     /// fitted base leaves in half of the rows. `None` where the recording shows no inertia.
     pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
@@ -52,18 +52,18 @@ impl Grain {
     }
 
     /// What it does beside a bench.
-    pub fn beside<'g>(&'g self, search: &'g Search<'g>, bench: &'g Bench, noise: &'g Noise) -> GrainBeside<'g> {
+    pub fn beside<'g>(&'g self, workbench: &'g Workbench<'g>, bench: &'g Bench, noise: &'g Noise) -> NoiseBeside<'g> {
         let runs = bench.runs();
         let base = orthonormal(&bench.base, &runs);
-        let left = search.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
-        GrainBeside { state: &self.state, search, bench, noise, base, left, runs }
+        let left = workbench.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
+        NoiseBeside { state: &self.state, workbench, bench, noise, base, left, runs }
     }
 }
 
 /// A second helping of grain and noise beside a bench.
-pub(crate) struct GrainBeside<'g> {
+pub(crate) struct NoiseBeside<'g> {
     state: &'g JointState,
-    search: &'g Search<'g>,
+    workbench: &'g Workbench<'g>,
     bench: &'g Bench,
     noise: &'g Noise,
     /// Orthonormal directions that the base takes up.
@@ -73,17 +73,17 @@ pub(crate) struct GrainBeside<'g> {
     runs: Vec<Range<usize>>,
 }
 
-impl GrainBeside<'_> {
+impl NoiseBeside<'_> {
     /// Share of a candidate's evidence that the grain does not give it by itself, from 0 to 1.
     pub fn trust(&self, label: &Label, shape: &[f64]) -> f64 {
-        let Self { state, search, bench, noise, base, left, runs } = self;
+        let Self { state, workbench, bench, noise, base, left, runs } = self;
         let free = |columns: &[Vec<f64>]| {
-            let mut white = search.whitened(columns, noise);
+            let mut white = workbench.whitened(columns, noise);
             white.iter_mut().for_each(|column| project_out(column, base, runs));
             white
         };
-        let columns = search.filtered_columns(label, shape);
-        let with_more = search.filtered_columns_at(state, label, shape);
+        let columns = workbench.filtered_columns(label, shape);
+        let with_more = workbench.filtered_columns_at(state, label, shape);
         let change = |(more, column): (&Vec<f64>, &Vec<f64>)| more.iter().zip(column).map(|(m, c)| m - c).collect();
         let changes: Vec<Vec<f64>> = with_more.iter().zip(&columns).map(change).collect();
         let (columns, changes) = (free(&columns), free(&changes));

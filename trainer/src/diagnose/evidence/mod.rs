@@ -4,3 +4,4 @@ pub(crate) mod law_uncertainty;
 pub(crate) mod measurement_noise;
 pub(crate) mod score;
 pub(crate) mod strength;
+pub(crate) mod workbench;

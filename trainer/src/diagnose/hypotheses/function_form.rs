@@ -1,7 +1,7 @@
 //! What the function of a channel in an unnamed structure may look like.
 
-use crate::diagnose::hypotheses::refine::Movable;
 use crate::figures::digits;
+use crate::numerics::pattern_search::Movable;
 use crate::physics::Shape;
 use std::f64::consts::PI;
 

@@ -2,6 +2,8 @@
 
 pub(crate) mod channel;
 pub(crate) mod design;
+pub(crate) mod fitted;
 pub(crate) mod function_form;
+pub(crate) mod label;
 pub(crate) mod refine;
 pub(crate) mod unnamed;

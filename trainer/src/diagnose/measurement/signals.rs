@@ -2,9 +2,9 @@
 
 use crate::diagnose::comparison::reference::Reference;
 use crate::diagnose::measurement::other_joints::other_positions;
-use crate::diagnose::preparation::filter::second_derivative;
 use crate::error::Result;
 use crate::joint::Joint;
+use crate::numerics::derivatives::second_derivative;
 use crate::recording::{Axis, Quantity, Recording};
 use crate::samples::EvenClock;
 use crate::samples::spikes::{Spikes, without_spikes};

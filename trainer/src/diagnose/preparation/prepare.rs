@@ -1,11 +1,12 @@
 //! From signals to states and working rows: one filter for all, rest and edges left out, blocks set aside.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::{ZeroPhase, first_derivative, second_derivative};
+use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
 use crate::diagnose::preparation::position_error::{encoder_noise_is_small, sampling_jitter};
 use crate::diagnose::preparation::rows::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use crate::diagnose::preparation::two_encoders::told_by_twist;
+use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::least_squares;
 use crate::numerics::statistics::quantile;
 use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};

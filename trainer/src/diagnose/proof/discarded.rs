@@ -1,9 +1,12 @@
 //! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
 
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
 use crate::diagnose::proof::locked_rows::prove_alone;
 use crate::diagnose::proof::refit::{Refit, refit};
-use crate::diagnose::search::forward_backward::{Accepted, Search};
+use crate::diagnose::search::accepted::Accepted;
+use crate::diagnose::search::thresholds::Settings;
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::EffectId;
 
@@ -22,31 +25,35 @@ pub(crate) const FORMULA_ERROR: f64 = 1.5;
 const NEGLIGIBLE_TORQUE: f64 = 7e-4;
 
 /// Torque (root mean square) that matters in a recording.
-pub(crate) fn least_torque(search: &Search) -> f64 {
-    NEGLIGIBLE_TORQUE * root_mean_square(&search.prepared.filtered(&search.prepared.torque))
+pub(crate) fn least_torque(workbench: &Workbench) -> f64 {
+    NEGLIGIBLE_TORQUE * root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque))
 }
 
 /// Torque (root mean square) beside a known rigid body: weight and inertia can be many times what friction is.
-fn torque_beside_rigid_body(search: &Search) -> f64 {
-    let Prepared { torque, state, .. } = search.prepared;
+fn torque_beside_rigid_body(workbench: &Workbench) -> f64 {
+    let Prepared { torque, state, .. } = workbench.prepared;
     match &state.rigid_body {
-        Some(body) => root_mean_square(&search.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
-        None => root_mean_square(&search.prepared.filtered(torque)),
+        Some(body) => root_mean_square(&workbench.prepared.filtered(&state.map(|i| torque[i] - body[i]))),
+        None => root_mean_square(&workbench.prepared.filtered(torque)),
     }
 }
 
 /// Drops effects, weakest first, that the locked rows do not bear out. A one-off event has none to speak for it, but may make them
 /// worse.
-pub(crate) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
+pub(crate) fn withdraw_unproven(
+    workbench: &Workbench,
+    settings: &Settings,
+    accepted: &mut Vec<Accepted>,
+) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
-    while let Some(all) = refit(search, accepted) {
+    while let Some(all) = refit(workbench, accepted) {
         let unproven = (0..accepted.len()).filter_map(|i| {
-            let proof = prove_alone(search, accepted, i, &all)?;
+            let proof = prove_alone(workbench, accepted, i, &all)?;
             let Accepted { label, family_wise, .. } = &accepted[i];
             let is_carried = if accepted[i].effect() == EffectId::TransientEvent {
-                !search.settings.is_worse_by_an_event(&proof)
+                !is_worse_by_an_event(settings, &proof)
             } else {
-                search.settings.carried(label, *family_wise, &proof)
+                is_carried(settings, label, *family_wise, &proof)
             };
             (!is_carried).then_some((i, proof.gain_nats))
         });
@@ -57,25 +64,25 @@ pub(crate) fn withdraw_unproven(search: &Search, accepted: &mut Vec<Accepted>) -
 }
 
 /// Sets aside what explains no more than the formulas of the reference get wrong.
-pub(crate) fn set_aside_doubtful(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
-    set_aside_below(FORMULA_ERROR * search.base.formula_error, search, accepted)
+pub(crate) fn set_aside_doubtful(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    set_aside_below(FORMULA_ERROR * workbench.base.formula_error, workbench, accepted)
 }
 
 /// Sets aside what is too small to matter.
-pub(crate) fn set_aside_negligible(search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
-    set_aside_below(least_torque(search), search, accepted)
+pub(crate) fn set_aside_negligible(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    set_aside_below(least_torque(workbench), workbench, accepted)
 }
 
 /// Sets aside what explains less than a torque (root mean square), with what it explains. Effects that repeat count together.
-fn set_aside_below(least_torque: f64, search: &Search, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+fn set_aside_below(least_torque: f64, workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
     let mut set_aside = Vec::new();
     if least_torque == 0.0 {
         return set_aside;
     }
-    while let Some(all) = energy_left(search, accepted) {
+    while let Some(all) = energy_left(workbench, accepted) {
         let explained = |effect: EffectId| {
             let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
-            let explained = (energy_left(search, &without)? - all).max(0.0).sqrt();
+            let explained = (energy_left(workbench, &without)? - all).max(0.0).sqrt();
             (explained < least_torque).then_some((effect, explained))
         };
         let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(explained).collect();
@@ -99,31 +106,35 @@ fn take_least_in_favour(accepted: &mut Vec<Accepted>, small: &[(EffectId, f64)])
 }
 
 /// Mean square of what base and effects leave.
-fn energy_left(search: &Search, accepted: &[Accepted]) -> Option<f64> {
-    refit(search, accepted).map(|refit| refit.noise.rms.powi(2))
+fn energy_left(workbench: &Workbench, accepted: &[Accepted]) -> Option<f64> {
+    refit(workbench, accepted).map(|refit| refit.noise.rms.powi(2))
 }
 
 /// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
 /// error of the larger one's formula may pass for an effect. Effects that repeat count together.
-pub(crate) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, baseline: &Refit) -> Vec<(EffectId, f64)> {
-    let small_energy = (MINOR_TORQUE * torque_beside_rigid_body(search)).powi(2);
+pub(crate) fn set_aside_minor(
+    workbench: &Workbench,
+    accepted: &mut Vec<Accepted>,
+    baseline: &Refit,
+) -> Vec<(EffectId, f64)> {
+    let small_energy = (MINOR_TORQUE * torque_beside_rigid_body(workbench)).powi(2);
     let mut minor = Vec::new();
-    while let (Some(refitted), true) = (refit(search, accepted), accepted.len() > 1) {
+    while let (Some(refitted), true) = (refit(workbench, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);
         let share = |effect: EffectId| {
             // A structure without a name can take over what any effect explains: a name is weighed beside names.
             let beside = |other: EffectId| effect == EffectId::Unknown || other != EffectId::Unknown;
             let with: Vec<Accepted> = accepted.iter().filter(|other| beside(other.effect())).cloned().collect();
             let without: Vec<Accepted> = with.iter().filter(|other| other.effect() != effect).cloned().collect();
-            energy_left(search, &without)
-                .zip(energy_left(search, &with))
+            energy_left(workbench, &without)
+                .zip(energy_left(workbench, &with))
                 .map(|(without, with)| (effect, (without - with) / removable))
         };
         let is_minor = |(effect, share): &(EffectId, f64)| {
             let is_little = |least: f64| *share < least && share * removable < small_energy;
             match effect {
                 // A one-off event is short: its share of all says nothing of its size.
-                EffectId::TransientEvent => share_at_the_time_of_events(search, &refitted) < MINOR_SHARE,
+                EffectId::TransientEvent => share_at_the_time_of_events(workbench, &refitted) < MINOR_SHARE,
                 EffectId::Unknown => is_little(MINOR_SHARE_WITHOUT_NAME),
                 _ => is_little(MINOR_SHARE),
             }
@@ -136,13 +147,13 @@ pub(crate) fn set_aside_minor(search: &Search, accepted: &mut Vec<Accepted>, bas
 }
 
 /// Energy of the one-off events over that of the other effects at their time; infinite where these do nothing then.
-fn share_at_the_time_of_events(search: &Search, refitted: &Refit) -> f64 {
-    let rows = search.prepared.rows.len();
+fn share_at_the_time_of_events(workbench: &Workbench, refitted: &Refit) -> f64 {
+    let rows = workbench.prepared.rows.len();
     let torque = |is_event: bool| {
         let of_kind =
             refitted.effects.iter().filter(|fitted| is_event == (fitted.label.effect() == EffectId::TransientEvent));
         of_kind.fold(vec![0.0; rows], |mut sum, fitted| {
-            sum.iter_mut().zip(search.torque_of(fitted)).for_each(|(sum, torque)| *sum += torque);
+            sum.iter_mut().zip(workbench.torque_of(fitted)).for_each(|(sum, torque)| *sum += torque);
             sum
         })
     };

@@ -1,7 +1,8 @@
 //! The proof: rows locked away from all fitting and naming are opened at the end. They may withdraw a finding, and nothing else.
 
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::proof::refit::{Refit, refit};
-use crate::diagnose::search::forward_backward::{Accepted, Search, others};
+use crate::diagnose::search::accepted::{Accepted, others};
 use crate::numerics::least_squares::{dot, residual, rows_in};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
@@ -27,10 +28,11 @@ pub struct Proof {
 }
 
 /// Opens the locked blocks. `baseline` is the refit without effects. `None` where nothing was locked.
-pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Option<Proof> {
-    let blocks: Vec<&Vec<Range<usize>>> = search.prepared.blocks.iter().filter(|b| b.locked).map(|b| &b.runs).collect();
-    let before = rest(search, baseline);
-    let after = rest(search, improved);
+pub(crate) fn prove(workbench: &Workbench, baseline: &Refit, improved: &Refit) -> Option<Proof> {
+    let blocks: Vec<&Vec<Range<usize>>> =
+        workbench.prepared.blocks.iter().filter(|b| b.locked).map(|b| &b.runs).collect();
+    let before = rest(workbench, baseline);
+    let after = rest(workbench, improved);
     let energy = |series: &[f64], runs: &[Range<usize>]| dot(series, series, runs);
     let pairs: Vec<(f64, f64)> = blocks.iter().map(|runs| (energy(&before, runs), energy(&after, runs))).collect();
     let rows: usize = blocks.iter().map(|runs| rows_in(runs)).sum();
@@ -39,7 +41,7 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
     }
     let total = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     let ratio = (total.1 / total.0).sqrt();
-    let (open, locked) = (search.prepared.open_runs(), search.prepared.locked_runs());
+    let (open, locked) = (workbench.prepared.open_runs(), workbench.prepared.locked_runs());
     let white = |series: &[f64], runs: &[Range<usize>]| improved.noise.whitened(series, runs);
     let change: Vec<f64> = before.iter().zip(&after).map(|(b, a)| b - a).collect();
     let locked_change = white(&change, &locked);
@@ -58,16 +60,16 @@ pub(crate) fn prove(search: &Search, baseline: &Refit, improved: &Refit) -> Opti
 }
 
 /// The proof of one effect given all the others; `all` is the refit of every one of them. `None` where nothing is locked.
-pub(crate) fn prove_alone(search: &Search, accepted: &[Accepted], index: usize, all: &Refit) -> Option<Proof> {
+pub(crate) fn prove_alone(workbench: &Workbench, accepted: &[Accepted], index: usize, all: &Refit) -> Option<Proof> {
     let others: Vec<Accepted> = others(accepted, index).cloned().collect();
-    prove(search, &refit(search, &others)?, all)
+    prove(workbench, &refit(workbench, &others)?, all)
 }
 
 /// What a refit leaves at every working row.
-pub(crate) fn rest(search: &Search, refit: &Refit) -> Vec<f64> {
-    let mut rest = residual(&search.base.columns, &search.base.target, &refit.base);
+pub(crate) fn rest(workbench: &Workbench, refit: &Refit) -> Vec<f64> {
+    let mut rest = residual(&workbench.base.columns, &workbench.base.target, &refit.base);
     for effect in &refit.effects {
-        let torque = search.torque_of(effect);
+        let torque = workbench.torque_of(effect);
         rest.iter_mut().zip(&torque).for_each(|(r, t)| *r -= t);
     }
     rest

@@ -1,27 +1,14 @@
 //! All parameters together once the effects are chosen: continuous shapes, coefficients, intervals.
 
-use crate::diagnose::hypotheses::design::{Label, ridge_of};
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::{Label, ridge_of};
 use crate::diagnose::hypotheses::refine::refine;
 use crate::diagnose::noise::autoregression::Noise;
-use crate::diagnose::search::forward_backward::{Accepted, Search, others};
+use crate::diagnose::search::accepted::{Accepted, others};
 use crate::numerics::covariance;
 use crate::numerics::least_squares::{dot, least_squares, residual, rows_in, weighted};
 use crate::physics::{EffectId, Shape};
-
-/// A finding after the joint refit.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// What it is.
-    pub label: Label,
-    /// Shape parameters.
-    pub shape: Shape,
-    /// Deviation of each shape parameter; `None` for discrete ones.
-    pub shape_deviation: Vec<Option<f64>>,
-    /// Linear coefficients.
-    pub coefficients: Vec<f64>,
-    /// Their standard deviations.
-    pub deviation: Vec<f64>,
-}
 
 /// The joint refit of base and effects.
 #[derive(Clone, Debug)]
@@ -46,22 +33,22 @@ const SWEEPS: usize = 2;
 const WHITENING_COSTS: f64 = 1.1;
 
 /// Moves the shapes of the accepted effects to their joint optimum: one effect at a time, the others in the base.
-pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) {
-    let state = &search.prepared.state;
-    let plain = refit(search, accepted).is_some_and(|refit| refit.plain);
-    let white = Noise::white(search.prepared.rows.len());
+pub(crate) fn polish(workbench: &Workbench, accepted: &mut [Accepted], noise: &Noise) {
+    let state = &workbench.prepared.state;
+    let plain = refit(workbench, accepted).is_some_and(|refit| refit.plain);
+    let white = Noise::white(workbench.prepared.rows.len());
     let noise = if plain { &white } else { noise };
     let sweeps = if accepted.len() > 1 { SWEEPS } else { 1 };
     for _ in 0..sweeps {
         for index in 0..accepted.len() {
             let Label::Named(effect) = accepted[index].label else { continue };
-            let Some(hypothesis) = search.hypothesis(effect) else { continue };
-            let bench = search.bench(columns_with(search, others(accepted, index)), noise);
+            let Some(hypothesis) = workbench.hypothesis(effect) else { continue };
+            let bench = workbench.bench(workbench.base_with(others(accepted, index).map(Accepted::term)), noise);
             let label = accepted[index].label.clone();
             let weigh = |shape: &[f64]| {
-                let columns = search.whitened(&search.filtered_columns(&label, shape), noise);
+                let columns = workbench.whitened(&workbench.filtered_columns(&label, shape), noise);
                 let evidence = bench.weigh(&columns, &[], false)?;
-                search.is_possible(&label, &evidence.coefficients).then_some(evidence)
+                workbench.is_possible(&label, &evidence.coefficients).then_some(evidence)
             };
             if plain {
                 // The variant was chosen by what is fast in it; now by all that it explains.
@@ -75,7 +62,7 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
                 refine(hypothesis, state, &accepted[index].shape, |shape| weigh(shape).map(|e| e.statistic));
             if let (EffectId::TransientEvent, &[start, end]) = (effect, &accepted[index].shape[..]) {
                 // An end that lies beside the open rows could lie anywhere there.
-                accepted[index].shape = search.prepared.shown_by_open_rows([start, end]).to_vec();
+                accepted[index].shape = workbench.prepared.shown_by_open_rows([start, end]).to_vec();
             }
         }
     }
@@ -84,29 +71,29 @@ pub(crate) fn polish(search: &Search, accepted: &mut [Accepted], noise: &Noise) 
 /// Refits base and effects together, shapes as they stand, by generalised least squares with the colour of what is left
 /// (plain ones where whitening costs too much of the fit, with intervals from block to block); the shapes' uncertainty by
 /// Gauss-Newton. `None` where the system is singular.
-pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
-    let base_width = search.base.columns.len();
-    let mut columns = search.base.columns.clone();
+pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refit> {
+    let base_width = workbench.base.columns.len();
+    let mut columns = workbench.base.columns.clone();
     let mut places = Vec::new();
     let mut ridge = vec![0.0; base_width];
     for effect in accepted {
         let begin = columns.len();
-        columns.extend(search.filtered_columns(&effect.label, &effect.shape));
+        columns.extend(workbench.filtered_columns(&effect.label, &effect.shape));
         places.push(begin..columns.len());
         ridge.extend(ridge_of(&effect.label, &effect.shape));
         ridge.resize(columns.len(), 0.0);
     }
-    let noise = search.noise_after(&columns);
-    let bench = search.bench(columns.clone(), &noise);
+    let noise = workbench.noise_after(&columns);
+    let bench = workbench.bench(columns.clone(), &noise);
     let runs = bench.runs();
     let mut solution = bench.solve(&ridge)?;
     let white = residual(&bench.base, &bench.target, &solution);
-    let mut left = residual(&columns, &search.base.target, &solution);
+    let mut left = residual(&columns, &workbench.base.target, &solution);
     let rows = rows_in(&runs);
     let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > WHITENING_COSTS * noise.rms;
     if plain {
-        solution = least_squares(&columns, &search.base.target, &runs)?;
-        left = residual(&columns, &search.base.target, &solution);
+        solution = least_squares(&columns, &workbench.base.target, &runs)?;
+        left = residual(&columns, &workbench.base.target, &solution);
     }
     let mut effects: Vec<Fitted> = accepted
         .iter()
@@ -124,12 +111,12 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
             let all: Vec<Vec<f64>> = columns.iter().chain(tangents).cloned().collect();
             covariance::of_blocks(&all, &left, &bench.blocks)
         } else {
-            let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(search.whitened(tangents, &noise)).collect();
+            let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(workbench.whitened(tangents, &noise)).collect();
             covariance::of_whitened(&all, &white, &ridge, &runs)
         }
     };
     // Shapes that were fitted too make every interval wider: their tangents join the normal matrix (Gauss-Newton).
-    let (owners, tangents) = shape_tangents(search, &effects);
+    let (owners, tangents) = shape_tangents(workbench, &effects);
     let (covariance, owners) = match covariance_with(&tangents) {
         Some(widened) => (widened, owners),
         None => (covariance_with(&[])?, Vec::new()),
@@ -150,17 +137,10 @@ pub(crate) fn refit(search: &Search, accepted: &[Accepted]) -> Option<Refit> {
     })
 }
 
-/// Filtered base columns with those of accepted effects, shapes as they stand, without tangents.
-fn columns_with<'f>(search: &Search, accepted: impl Iterator<Item = &'f Accepted>) -> Vec<Vec<f64>> {
-    let mut columns = search.base.columns.clone();
-    columns.extend(accepted.flat_map(|effect| search.filtered_columns(&effect.label, &effect.shape)));
-    columns
-}
-
 /// Change of the torque with each free shape parameter of the effects, filtered, with the effect and the place of the parameter.
-fn shape_tangents(search: &Search, effects: &[Fitted]) -> (Vec<(usize, usize)>, Vec<Vec<f64>>) {
+fn shape_tangents(workbench: &Workbench, effects: &[Fitted]) -> (Vec<(usize, usize)>, Vec<Vec<f64>>) {
     let tangents = effects.iter().enumerate().flat_map(|(index, effect)| {
-        let of_columns = search.column_tangents(&effect.label, &effect.shape).into_iter();
+        let of_columns = workbench.column_tangents(&effect.label, &effect.shape).into_iter();
         of_columns.map(move |(slot, columns)| ((index, slot), weighted(&columns, &effect.coefficients)))
     });
     tangents.unzip()

@@ -5,9 +5,9 @@
 //! any effect, for both models, and `J` that of a given rigid body where there is one: what the findings change of either is felt
 //! through `r` alone. Memories and gravity are taken at the recorded motion too, which holds over short horizons.
 
+use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::proof::locked_rows::rest;
 use crate::diagnose::proof::refit::Refit;
-use crate::diagnose::search::forward_backward::Search;
 use crate::physics::{JointState, nominal_inertia};
 use serde::Serialize;
 use std::ops::Range;
@@ -34,14 +34,14 @@ const SLOPE_SHARE: f64 = 0.1;
 
 /// Rolls base and improved model out over the locked rows, or over all where none are locked. `None` without an inertia
 /// or a stretch of motion that is long enough.
-pub(crate) fn roll_out(search: &Search, baseline: &Refit, improved: &Refit) -> Option<Rollout> {
-    let prepared = search.prepared;
+pub(crate) fn roll_out(workbench: &Workbench, baseline: &Refit, improved: &Refit) -> Option<Rollout> {
+    let prepared = workbench.prepared;
     let locked = prepared.locked_runs();
     let runs = if locked.is_empty() { prepared.open_runs() } else { locked };
     let state = &prepared.state;
-    let inertia = |refit: &Refit| inertia(state, &search.base.names, refit).filter(|inertia| *inertia > 0.0);
-    let before = squares(state, &prepared.rows, &runs, &rest(search, baseline), inertia(baseline)?);
-    let after = squares(state, &prepared.rows, &runs, &rest(search, improved), inertia(improved)?);
+    let inertia = |refit: &Refit| inertia(state, &workbench.base.names, refit).filter(|inertia| *inertia > 0.0);
+    let before = squares(state, &prepared.rows, &runs, &rest(workbench, baseline), inertia(baseline)?);
+    let after = squares(state, &prepared.rows, &runs, &rest(workbench, improved), inertia(improved)?);
     let root_mean = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     (!before.is_empty()).then(|| Rollout {
         horizon_s: HORIZON_S,

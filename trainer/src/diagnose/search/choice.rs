@@ -1,8 +1,8 @@
 //! The end of a round: the best passing hypothesis with those that cannot be told apart from it, or nothing.
 
 use crate::diagnose::hypotheses::channel::Channel;
-use crate::diagnose::hypotheses::design::Label;
-use crate::diagnose::search::forward_backward::Accepted;
+use crate::diagnose::hypotheses::label::Label;
+use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::round::{Round, Scored};
 use crate::numerics::least_squares::{dot, orthonormal, project_out};
 use crate::physics::EffectId;
@@ -37,7 +37,7 @@ impl Round<'_, '_> {
     pub(crate) fn choose(&self, table: &[Scored]) -> Option<Accepted> {
         let settings = &self.search.settings;
         // Locked rows have nothing to say of a one-off event.
-        let any_locked = self.search.prepared.blocks.iter().any(|block| block.locked);
+        let any_locked = self.search.workbench.prepared.blocks.iter().any(|block| block.locked);
         let passes = |s: &&Scored| {
             let (level, score) = settings.on_open_rows(any_locked && s.label != Label::Named(EffectId::TransientEvent));
             s.family_wise < level && s.score > score
@@ -151,7 +151,7 @@ impl Round<'_, '_> {
     /// Lead in nats up to which a hypothesis yields to another; `None` if it does not.
     fn yields(&self, one: &Scored, other: &Scored) -> Option<f64> {
         let Label::Named(effect) = one.label else { return None };
-        let (first, no_better_by) = self.search.hypothesis(effect)?.yields_to()?;
+        let (first, no_better_by) = self.search.workbench.hypothesis(effect)?.yields_to()?;
         (other.label == Label::Named(first)).then_some(no_better_by)
     }
 
@@ -162,7 +162,9 @@ impl Round<'_, '_> {
         }
         let runs = self.bench.runs();
         let white = |scored: &Scored| {
-            self.search.whitened(&self.search.filtered_columns(&scored.label, &scored.shape), &self.noise)
+            self.search
+                .workbench
+                .whitened(&self.search.workbench.filtered_columns(&scored.label, &scored.shape), &self.noise)
         };
         let span = orthonormal(&self.bench.base.iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
         let base = orthonormal(&self.bench.base, &runs);

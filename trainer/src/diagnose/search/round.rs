@@ -1,12 +1,15 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
-use crate::diagnose::evidence::law_uncertainty::Doubt;
+use crate::diagnose::evidence::law_uncertainty::LawUncertainty;
 use crate::diagnose::evidence::score::{Bench, GroupEvidence, VariantEvidence};
-use crate::diagnose::hypotheses::design::{Group, Label, Variant, ridge_of};
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::design::{Group, Variant};
+use crate::diagnose::hypotheses::label::{Label, ridge_of};
 use crate::diagnose::hypotheses::refine::refine;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_square_surprise};
-use crate::diagnose::search::forward_backward::{Accepted, Search};
+use crate::diagnose::search::accepted::Accepted;
+use crate::diagnose::search::forward_backward::Search;
 use crate::diagnose::search::thresholds::Settings;
 use crate::numerics::least_squares::{orthonormal, project_out};
 use crate::physics::{EffectId, Shape};
@@ -64,7 +67,7 @@ pub(crate) struct Round<'s, 'a> {
     pub(crate) noise: Noise,
     pub(crate) bench: Bench,
     alone: Option<VariantEvidence>,
-    doubt: Doubt,
+    law_uncertainty: LawUncertainty,
     variants: Tested,
     white: Vec<Vec<f64>>,
     /// Largest energy that each group explains before whitening.
@@ -75,30 +78,30 @@ impl<'s, 'a> Round<'s, 'a> {
     pub(crate) fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
-        let mut noise = Noise::white(search.prepared.rows.len());
+        let mut noise = Noise::white(search.workbench.prepared.rows.len());
         let mut explained = Vec::new();
         for _ in 0..2 {
-            let (_, bench, variants) = weigh_all(search, base.clone(), &noise, false);
+            let (_, bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
                     let possible =
-                        tested.iter().flatten().filter(|v| search.is_possible(&group.label, &v.coefficients));
+                        tested.iter().flatten().filter(|v| search.workbench.is_possible(&group.label, &v.coefficients));
                     possible.map(|v| v.statistic).fold(0.0, f64::max)
                 };
-                explained = search.design.groups.iter().zip(&variants).map(largest).collect();
+                explained = search.workbench.design.groups.iter().zip(&variants).map(largest).collect();
             }
             let mut generous = base.clone();
-            generous.extend(best_two(search, &variants, bench.rows(), f64::NEG_INFINITY));
-            noise = search.noise_after(&generous);
+            generous.extend(best_two(search.workbench, &variants, bench.rows(), f64::NEG_INFINITY));
+            noise = search.workbench.noise_after(&generous);
         }
-        let (white, bench, variants) = weigh_all(search, base, &noise, true);
+        let (white, bench, variants) = weigh_all(search.workbench, base, &noise, true);
         let alone = bench.alone();
-        let doubt = search.doubt(&bench, &noise);
-        Self { search, noise, bench, alone, doubt, variants, white, explained }
+        let law_uncertainty = search.workbench.law_uncertainty(&bench, &noise);
+        Self { search, noise, bench, alone, law_uncertainty, variants, white, explained }
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
-        let best = best_two(self.search, &self.variants, self.bench.rows(), CLEAR_NATS);
+        let best = best_two(self.search.workbench, &self.variants, self.bench.rows(), CLEAR_NATS);
         let runs = self.bench.runs();
         let base_directions = orthonormal(&self.bench.base, &runs);
         let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
@@ -116,16 +119,16 @@ impl<'s, 'a> Round<'s, 'a> {
                     Label::Named(_) => Family::Named,
                     Label::Generic(_) => Family::Generic,
                 },
-                only_positive: self.search.only_positive(&group.label),
+                only_positive: self.search.workbench.only_positive(&group.label),
                 variants: weighed.map(|(variant, _)| directions(variant)).collect(),
             }
         };
         let groups: Vec<NullGroup> =
-            self.search.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
+            self.search.workbench.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
         let mut rest = self.bench.target.clone();
         project_out(&mut rest, &base_directions, &runs);
         let mut extended = base_directions.clone();
-        extended.extend(self.search.whitened(&best, &self.noise));
+        extended.extend(self.search.workbench.whitened(&best, &self.noise));
         project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
         let Settings { null_draws, seed, .. } = self.search.settings;
         NullDraws::draw(&groups, &rest, &runs, null_draws, seed)
@@ -136,17 +139,18 @@ impl<'s, 'a> Round<'s, 'a> {
         let rows = self.bench.rows();
         let mut table: Vec<Scored> = self
             .search
+            .workbench
             .design
             .groups
             .iter()
             .enumerate()
             .filter(|(_, group)| self.search.may_be_found(&group.label, accepted))
             .filter_map(|(index, group)| {
-                let grid = self.search.grid_size(index);
+                let grid = self.search.workbench.grid_size(index);
                 let admissible = self.admissible(index);
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
-                let scanned = self.search.scanned_beyond(index);
-                let trust = |variant: &Variant| self.doubt.trust(&self.white[variant.columns.clone()]);
+                let scanned = self.search.workbench.scanned_beyond(index);
+                let trust = |variant: &Variant| self.law_uncertainty.trust(&self.white[variant.columns.clone()]);
                 // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&admissible);
                 let surprise = free
@@ -174,12 +178,12 @@ impl<'s, 'a> Round<'s, 'a> {
 
     /// Takes from every candidate what the encoder's grain gives it by itself.
     fn discount_grain(&self, table: &mut [Scored]) {
-        let Some(grain) = &self.search.base.grain else { return };
+        let Some(grain) = self.search.measurement_noise else { return };
         let least = self.search.settings.candidate_score;
         if table.iter().all(|scored| scored.score <= least) {
             return;
         }
-        let grain = grain.beside(self.search, &self.bench, &self.noise);
+        let grain = grain.beside(self.search.workbench, &self.bench, &self.noise);
         table.par_iter_mut().filter(|scored| scored.score > least).for_each(|scored| {
             let trust = grain.trust(&scored.label, &scored.shape);
             scored.score *= trust;
@@ -189,8 +193,8 @@ impl<'s, 'a> Round<'s, 'a> {
 
     /// The variants of a group whose coefficients have a possible sign.
     fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
-        let label = &self.search.design.groups[group].label;
-        let possible = |e: &VariantEvidence| self.search.is_possible(label, &e.coefficients);
+        let label = &self.search.workbench.design.groups[group].label;
+        let possible = |e: &VariantEvidence| self.search.workbench.is_possible(label, &e.coefficients);
         self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
     }
 
@@ -202,25 +206,29 @@ impl<'s, 'a> Round<'s, 'a> {
         let threshold = (lead - REFINED_WITHIN_NATS).max(0.0);
         table.par_iter_mut().for_each(|scored| {
             let Label::Named(effect) = scored.label else { return };
-            let Some(hypothesis) = self.search.hypothesis(effect) else { return };
+            let Some(hypothesis) = self.search.workbench.hypothesis(effect) else { return };
             if scored.score < threshold {
                 return;
             }
-            let state = &self.search.prepared.state;
-            let white =
-                |shape: &[f64]| self.search.whitened(&self.search.filtered_columns(&scored.label, shape), &self.noise);
+            let state = &self.search.workbench.prepared.state;
+            let white = |shape: &[f64]| {
+                self.search
+                    .workbench
+                    .whitened(&self.search.workbench.filtered_columns(&scored.label, shape), &self.noise)
+            };
             let weigh = |shape: &[f64]| {
                 let evidence = self.bench.evidence(&white(shape))?;
-                self.search.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
+                self.search.workbench.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
-            let grid = self.search.grid_size(scored.group);
+            let grid = self.search.workbench.grid_size(scored.group);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
-                let trust = self.doubt.trust(&white(&shape));
+                let trust = self.law_uncertainty.trust(&white(&shape));
                 let score = trust * score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
-                    let looked_at = PLACES_LOOKED_AT.ln() * free as f64 + self.search.scanned_beyond(scored.group);
+                    let looked_at =
+                        PLACES_LOOKED_AT.ln() * free as f64 + self.search.workbench.scanned_beyond(scored.group);
                     let refined = chi_square_surprise(trust * evidence.statistic, evidence.degrees) - looked_at;
                     scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;
@@ -233,10 +241,10 @@ impl<'s, 'a> Round<'s, 'a> {
 }
 
 /// Whitens the design and weighs every variant, held-out folds only where asked for.
-fn weigh_all(search: &Search, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
-    let bench = search.bench(base, noise);
-    let white = search.whitened(&search.design.columns, noise);
-    let variants = search
+fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
+    let bench = workbench.bench(base, noise);
+    let white = workbench.whitened(&workbench.design.columns, noise);
+    let variants = workbench
         .design
         .groups
         .par_iter()
@@ -264,7 +272,7 @@ const ROWS_PER_COEFFICIENT_BESIDE_NOISE: f64 = 150.0;
 
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
 /// dominant event.
-fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
+fn best_two(workbench: &Workbench, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
     let is_dominant = |gain: f64| gain > DOMINANT_NATS_A_ROW * rows;
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
@@ -280,14 +288,14 @@ fn best_two(search: &Search, variants: &Tested, rows: f64, least: f64) -> Vec<Ve
     gains.sort_by(|a, b| b.0.total_cmp(&a.0));
     let is_dominant_event = |(gain, group, _): &&(f64, usize, usize)| {
         let event = Label::Named(EffectId::TransientEvent);
-        is_dominant(*gain) && search.design.groups[*group].label == event
+        is_dominant(*gain) && workbench.design.groups[*group].label == event
     };
     gains
         .iter()
         .take(2)
         .chain(gains.iter().skip(2).filter(is_dominant_event))
         .flat_map(|(_, group, variant)| {
-            search.design.columns[search.design.groups[*group].variants[*variant].columns.clone()].to_vec()
+            workbench.design.columns[workbench.design.groups[*group].variants[*variant].columns.clone()].to_vec()
         })
         .collect()
 }

@@ -1,9 +1,5 @@
 //! Limits of the search, fixed on one set of seeds and reported on another.
 
-use crate::diagnose::hypotheses::design::Label;
-use crate::diagnose::proof::locked_rows::Proof;
-use statrs::function::erf::erfc_inv;
-
 /// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
@@ -57,9 +53,6 @@ impl Default for Settings {
 /// the null draws understate it three to five times.
 const BEHIND_GRAIN: f64 = 0.25;
 
-/// Share of the level that is left to what the locked rows ask for the opposite of.
-const BEYOND_DOUBT: f64 = 0.007;
-
 impl Settings {
     /// Limits for a recording whose band is limited by the grain of its encoder.
     pub(crate) fn behind_grain(self) -> Self {
@@ -74,139 +67,5 @@ impl Settings {
         } else {
             (self.unconfirmed_level, self.unconfirmed_score)
         }
-    }
-
-    /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
-    /// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice. What the locked
-    /// rows ask for the opposite of, where they count once, has to be beyond doubt on the open ones, and nothing carries what makes
-    /// the locked rows clearly worse, whitened and not: beside larger effects, whose formulas err slowly, whitening may see a loss
-    /// where the error falls. A structure without a name is not compensated: of it the locked rows may ask for less.
-    pub(crate) fn carried(&self, label: &Label, family_wise: f64, locked: &Proof) -> bool {
-        let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
-        let counted = if is_contradicted { 1.0 } else { LOCKED_WEIGHT };
-        let weight = (counted * locked.locked_share).min(LARGEST_WEIGHT);
-        let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
-        let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * self.family_wise_level;
-        let is_to_be_compensated = matches!(label, Label::Named(_));
-        let is_far_worse = locked.improved_rmse > FAR_WORSE * locked.baseline_rmse;
-        let may_be_worse = !is_contradicted && !is_to_be_compensated && !is_far_worse;
-        let errs_more = locked.ratio_ci95[0] > 1.0 && locked.improved_rmse > ERRS_MORE * locked.baseline_rmse;
-        together >= deviations_of(level)
-            && (may_be_worse || !self.is_worse(locked))
-            && !(is_to_be_compensated && errs_more)
-    }
-
-    /// Whether an effect makes the locked rows clearly worse.
-    pub(crate) fn is_worse(&self, locked: &Proof) -> bool {
-        locked.gain_nats < -self.largest_locked_loss && locked.improved_rmse >= locked.baseline_rmse
-    }
-
-    /// Whether an event makes the locked rows clearly worse: they may hold the rest of it, so that a little more of it in the base
-    /// costs many nats.
-    pub(crate) fn is_worse_by_an_event(&self, locked: &Proof) -> bool {
-        self.is_worse(locked) && locked.improved_rmse > WORSE_BY_AN_EVENT * locked.baseline_rmse
-    }
-}
-
-/// Weight of the locked rows over their share of the evidence, and the largest that they get.
-const LOCKED_WEIGHT: f64 = 2.0;
-const LARGEST_WEIGHT: f64 = 0.9;
-
-/// Share of the evidence from which the locked rows can contradict the open ones.
-const TELLING_SHARE: f64 = 0.03;
-
-/// Error of the locked rows over that without a one-off event, from which it is refused.
-const WORSE_BY_AN_EVENT: f64 = 1.1;
-/// The same of what is to be compensated, where it is certain from block to block.
-const ERRS_MORE: f64 = 1.03;
-/// Error of the locked rows over that without an effect, from which nothing speaks for it.
-const FAR_WORSE: f64 = 1.5;
-
-/// Standard deviations that a normal variable exceeds with a probability.
-fn deviations_of(probability: f64) -> f64 {
-    std::f64::consts::SQRT_2 * erfc_inv(2.0 * probability.max(f64::MIN_POSITIVE))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::hypotheses::channel::Channel;
-    use crate::diagnose::hypotheses::function_form::Form;
-    use crate::diagnose::hypotheses::unnamed::{Factor, Generic};
-    use crate::physics::EffectId;
-
-    const NAMED: Label = Label::Named(EffectId::Stribeck);
-
-    fn is_carried(family_wise: f64, locked_deviations: f64, gain_nats: f64) -> bool {
-        let locked = Proof { gain_nats, locked_deviations, locked_share: 0.2, ..Proof::default() };
-        Settings::default().carried(&NAMED, family_wise, &locked)
-    }
-
-    #[test]
-    fn locked_rows_decide_about_a_weak_candidate() {
-        assert!(is_carried(0.03, 2.8, 3.0));
-        assert!(!is_carried(0.03, 0.5, 0.0), "the locked rows hardly ask for it");
-        assert!(is_carried(3e-4, 0.0, -2.0), "what is clear on the open rows stands");
-        assert!(!is_carried(3e-3, 0.0, -2.0));
-        assert!(!is_carried(1e-4, -0.2, -3.0), "the locked rows ask for the opposite");
-        assert!(is_carried(1e-8, -0.2, -3.0), "beyond doubt on the open rows");
-        assert!(!is_carried(1e-30, -2.0, -20.0), "nothing survives locked rows that clearly speak against it");
-    }
-
-    #[test]
-    fn what_the_locked_rows_tell_counts_double() {
-        // Weighted by their shares alone the deviations would make 2.41, and 2.51 are needed.
-        assert!(is_carried(0.05, 2.1, 2.5));
-        assert!(!is_carried(3e-3, 0.3, -0.5), "the open rows have chosen: alone they hardly count");
-    }
-
-    #[test]
-    fn rows_that_hardly_show_an_effect_do_not_contradict_it() {
-        let hardly = Proof { locked_deviations: -0.5, locked_share: 0.01, ..Proof::default() };
-        assert!(Settings::default().carried(&NAMED, 1e-3, &hardly));
-        assert!(!Settings::default().carried(&NAMED, 1e-3, &Proof { locked_share: 0.2, ..hardly }));
-    }
-
-    #[test]
-    fn deviations_belong_to_their_probability() {
-        assert!((deviations_of(0.025) - 1.959_964).abs() < 1e-5);
-        assert!((deviations_of(0.5)).abs() < 1e-12);
-        assert!(deviations_of(0.0) > 37.0 && deviations_of(0.0).is_finite());
-    }
-
-    #[test]
-    fn what_the_locked_rows_cannot_show_needs_the_open_ones_alone() {
-        let blind = Proof::default();
-        let level = Settings::default().family_wise_level;
-        assert!(
-            Settings::default().carried(&NAMED, 0.9 * level, &blind)
-                && !Settings::default().carried(&NAMED, 1.1 * level, &blind)
-        );
-    }
-
-    #[test]
-    fn a_loss_behind_whitening_is_none_where_the_error_falls() {
-        let locked = Proof {
-            baseline_rmse: 242.0,
-            improved_rmse: 142.0,
-            gain_nats: -20.0,
-            locked_deviations: -2.0,
-            locked_share: 0.2,
-            ..Proof::default()
-        };
-        assert!(Settings::default().carried(&NAMED, 1e-30, &locked));
-    }
-
-    #[test]
-    fn of_a_structure_without_a_name_the_locked_rows_may_ask_for_less() {
-        let unnamed = Label::Generic(Generic { factor: Factor::Sign, channel: Channel::Position, form: Form::Free });
-        let less = Proof { gain_nats: -6.0, locked_deviations: 1.9, locked_share: 0.2, ..Proof::default() };
-        assert!(
-            Settings::default().carried(&unnamed, 1e-20, &less) && !Settings::default().carried(&NAMED, 1e-20, &less)
-        );
-        let far_worse = Proof { baseline_rmse: 1.0, improved_rmse: 2.0, ..less.clone() };
-        assert!(!Settings::default().carried(&unnamed, 1e-20, &far_worse));
-        let opposite = Proof { locked_deviations: -0.5, ..less };
-        assert!(!Settings::default().carried(&unnamed, 1e-20, &opposite));
     }
 }

@@ -5,10 +5,11 @@ use crate::diagnose::answer::outcome::{Given, Score};
 use crate::diagnose::answer::traces::Traces;
 use crate::diagnose::comparison::base::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::locked_rows::Proof;
-use crate::diagnose::proof::refit::{Fitted, Refit};
+use crate::diagnose::proof::refit::Refit;
 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 

@@ -4,7 +4,7 @@
 use crate::diagnose::comparison::base::BaseKind;
 use crate::diagnose::comparison::reference::Reference;
 use crate::diagnose::comparison::simulation::InverseLaw;
-use crate::diagnose::hypotheses::design::Label;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::gravity::give_body;
 use crate::diagnose::preparation::prepare::Prepared;
