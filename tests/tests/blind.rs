@@ -4,8 +4,8 @@ use frikan_tests::concealed::intervals::held;
 use frikan_tests::concealed::simulated::{self, Comparison, Group};
 use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::{Case, Hidden, Outcome, conceal, diagnosis_of, run, set_of, signals};
-use frikan_trainer::diagnose::simulation::learn;
-use frikan_trainer::diagnose::{BaseKind, Lock, Options, Verdict, diagnose};
+use frikan_trainer::diagnose::learn_simulation as learn;
+use frikan_trainer::diagnose::{self, BaseKind, Lock, Options, Verdict, diagnose};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind};
 use rayon::prelude::*;
@@ -100,10 +100,10 @@ fn a_noisy_simulation_is_not_taken_at_its_word() {
     for (noise, seed) in seeds {
         let case = Case { base: BaseKind::Reference, ..control(noise, seed) };
         let simulated = conceal(&control(noise, seed + 5_000_000)).unwrap();
-        let [mut real, simulated] = [conceal(&case).unwrap(), simulated].map(|m| signals(&m.recording, &m.joint));
+        let [real, simulated] = [conceal(&case).unwrap(), simulated].map(|m| signals(&m.recording, &m.joint));
         let law = learn(&simulated, &real).unwrap();
-        real.compare_with(law.at(&real.states()));
-        let diagnosis = diagnosis_of(&case, &real).unwrap();
+        let reference = law.at(&real.states());
+        let diagnosis = diagnosis_of(&case, &diagnose::Comparison::with(real, reference)).unwrap();
         let named: Vec<EffectId> = diagnosis.findings.iter().map(|finding| finding.effect).collect();
         assert_eq!(named, [], "{noise:?}, seed {seed}");
     }
@@ -207,7 +207,7 @@ fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
     let concealed = conceal(&control(NoiseKind::Coloured, 460_040)).unwrap();
     let mut signals = signals(&concealed.recording, &concealed.joint);
     let options = Options::default();
-    let before = diagnose(&signals, "N m", &options).unwrap();
+    let before = diagnose(&signals.clone().into(), "N m", &options).unwrap();
     assert_eq!((before.findings.len(), before.lock), (0, Lock::Spread));
     let traces = &before.traces;
     let rows: Vec<(f64, bool)> = traces.time.iter().copied().zip(traces.locked.iter().copied()).collect();
@@ -219,7 +219,7 @@ fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
         for ((torque, recorded), time) in signals.torque.iter_mut().zip(&recorded).zip(&signals.time) {
             *torque = recorded + if event.contains(time) { event_torque } else { 0.0 };
         }
-        diagnose(&signals, "N m", &options).unwrap()
+        diagnose(&signals.clone().into(), "N m", &options).unwrap()
     };
     for event_torque in [1.0, 20.0] {
         let after = with_event(event_torque);

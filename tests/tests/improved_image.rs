@@ -4,7 +4,7 @@ use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_tests::concealed::{Case, Concealed, Hidden, conceal, signals};
 use frikan_trainer::compile::improved::{Origin, improve};
-use frikan_trainer::diagnose::{BaseKind, Lock, Options, Prepared, diagnose, model};
+use frikan_trainer::diagnose::{BaseKind, Comparison, Lock, Options, diagnose, model};
 use frikan_trainer::plant::NoiseKind;
 
 /// Effects that an image holds as a torque, one of each kind of term.
@@ -43,13 +43,13 @@ fn left(effect: &'static str, lambda: f64) -> Left {
         // Beside a recorded temperature that would be named.
         signals.temperature = None;
     }
-    let diagnosis = diagnose(&signals, "N m", &Options::default()).unwrap();
+    let diagnosis = diagnose(&signals.clone().into(), "N m", &Options::default()).unwrap();
     let origin = Origin::Recording(RigidBody::default());
-    let improved = improve(&diagnosis, &signals, origin, Unit::NewtonMetre).unwrap();
+    let improved = improve(&diagnosis, &signals.clone().into(), origin, Unit::NewtonMetre).unwrap();
     // The diagnosis puts the sampling's own delay back, and so is the image's error measured.
     let signals = signals.realigned(diagnosis.sampling_delay_s);
     let state = signals.states();
-    let prepared = Prepared::new(&signals, Lock::Nothing);
+    let prepared = Comparison::from(signals.clone()).prepare(Lock::Nothing);
     let mut without = improved.model.clone();
     without.effects.clear();
     let image = [&without, &improved.model].map(|model| {

@@ -19,7 +19,7 @@ fn load(name: &str, joint: &Joint) -> Option<Recording> {
 
 fn diagnosed(recording: &Recording, joint: &Joint, unit: &str, lock: Lock) -> (Signals, Diagnosis) {
     let signals = Signals::of(recording, joint).unwrap();
-    let diagnosis = diagnose(&signals, unit, &Options { lock, ..Options::default() }).unwrap();
+    let diagnosis = diagnose(&signals.clone().into(), unit, &Options { lock, ..Options::default() }).unwrap();
     (signals, diagnosis)
 }
 
@@ -47,7 +47,9 @@ fn the_emps_axis_differs_between_its_directions() {
     let names = named(&diagnosis);
     let expected = [EffectId::DirectionAsymmetry, EffectId::TorqueOffset];
     assert!(!names.is_empty() && names.iter().all(|name| expected.contains(name)), "{names:?}");
-    let image = improve(&diagnosis, &signals, Origin::Recording(RigidBody::default()), Unit::Newton).unwrap().model;
+    let image = improve(&diagnosis, &signals.clone().into(), Origin::Recording(RigidBody::default()), Unit::Newton)
+        .unwrap()
+        .model;
     let error = |recording| trace(&image, recording, &joint).unwrap().filtered_score.relative_error;
     let (on_train, on_pulses) = (error(&train), error(&pulses));
     println!("{names:?}: {:.2} % train, {:.2} % pulses", 100.0 * on_train, 100.0 * on_pulses);

@@ -5,7 +5,9 @@ use std::fmt::Write;
 
 use super::summary::share;
 use super::{set_of, signals};
-use frikan_trainer::diagnose::{Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan};
+use frikan_trainer::diagnose::{
+    Comparison, Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan,
+};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, Campaign, Motion, Trajectory};
 
@@ -96,12 +98,12 @@ pub fn run(case: &Confounded, seed: u64) -> Result<Advised, String> {
     let options = Options { lock: Lock::Nothing, ..Options::default() };
     let diagnosed = |joint: &plant::Joint| {
         let recording = plant::simulate(joint, seed).map_err(|e| e.to_string())?;
-        let signals = signals(&recording, joint);
-        let diagnosis = diagnose(&signals, "N m", &options).map_err(|e| e.to_string())?;
-        Ok::<_, String>((signals, diagnosis))
+        let comparison = Comparison::from(signals(&recording, joint));
+        let diagnosis = diagnose(&comparison, "N m", &options).map_err(|e| e.to_string())?;
+        Ok::<_, String>((comparison, diagnosis))
     };
-    let (signals, before) = diagnosed(&joint)?;
-    let question = Question { signals: &signals, diagnosis: &before, limits: LIMITS, reference: None };
+    let (comparison, before) = diagnosed(&joint)?;
+    let question = Question { comparison: &comparison, diagnosis: &before, limits: LIMITS, reference: None };
     let Some(plan) = plan(&question) else { return Ok(Advised { before, plan: None, after: None }) };
     let recorded_s = joint.campaign.duration_s();
     joint.campaign.trajectories.push(following(&plan, case));

@@ -7,7 +7,7 @@ use super::{Case, Hidden, conceal, signals};
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_trainer::compile::improved::{Origin, improve};
-use frikan_trainer::diagnose::{BaseKind, Diagnosis, Lock, Options, Prepared, Settings, Signals, diagnose, model};
+use frikan_trainer::diagnose::{BaseKind, Comparison, Diagnosis, Lock, Options, Settings, Signals, diagnose, model};
 use frikan_trainer::plant::{self, NoiseKind};
 
 /// Effects that a drive can feed forward from what it measures.
@@ -65,7 +65,7 @@ pub fn run(effect: &'static str, lambda: f64, seed: u64) -> Result<Afterwards, S
 
 /// A recording whose first half is diagnosed and whose second half is predicted.
 struct Halves {
-    recorded: Signals,
+    recorded: Comparison,
     diagnosis: Diagnosis,
     later: Signals,
     later_noise: Vec<f64>,
@@ -76,7 +76,7 @@ impl Halves {
         let both = plant::simulate(joint, seed).map_err(|e| e.to_string())?;
         let half = both.len() / 2;
         let (first, second) = (both.part(0..half), both.part(half..both.len()));
-        let recorded = signals(&first, joint);
+        let recorded = signals(&first, joint).into();
         let options = Options { settings: Settings { seed, ..Settings::default() }, ..Options::default() };
         let diagnosis = diagnose(&recorded, "N m", &options).map_err(|e| e.to_string())?;
         Ok(Self { recorded, diagnosis, later: signals(&second, joint), later_noise: second.truth.noise_torque })
@@ -104,7 +104,7 @@ impl Halves {
     }
 
     fn filtered_rms(&self, series: &[f64]) -> f64 {
-        let filtered = Prepared::new(&self.later, Lock::Nothing).filtered(series);
+        let filtered = Comparison::from(self.later.clone()).prepare(Lock::Nothing).filtered(series);
         (filtered.iter().map(|r| r * r).sum::<f64>() / filtered.len() as f64).sqrt()
     }
 }

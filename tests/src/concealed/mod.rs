@@ -16,7 +16,7 @@ pub mod tables;
 use std::fmt;
 
 use frikan_trainer::diagnose::{
-    BaseKind, Diagnosis, Finding, Lock, Options, Settings, Signals, Strength, diagnose, strength,
+    BaseKind, Comparison, Diagnosis, Finding, Lock, Options, Settings, Signals, Strength, diagnose, strength,
 };
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind, SimulatedRecording};
@@ -160,7 +160,7 @@ pub fn conceal(case: &Case) -> Result<Concealed, plant::PlantError> {
 
 fn reach(recording: &SimulatedRecording, torque: &[f64], joint: &plant::Joint, case: &Case) -> Option<Strength> {
     let base = if case.base == BaseKind::Spline { BaseKind::Spline } else { BaseKind::CoulombViscous };
-    strength(&signals(recording, joint), torque, &recording.truth.noise_torque, base, Lock::Spread)
+    strength(&signals(recording, joint).into(), torque, &recording.truth.noise_torque, base, Lock::Spread)
 }
 
 /// Faults of the measurement that have no torque of their own, or none below a threshold: their amplitude is taken as it is.
@@ -197,20 +197,21 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
 ///
 /// # Errors
 /// What keeps the recording from being diagnosed.
-pub fn diagnosis_of(case: &Case, signals: &Signals) -> Result<Diagnosis, String> {
+pub fn diagnosis_of(case: &Case, comparison: &Comparison) -> Result<Diagnosis, String> {
     let settings = Settings { seed: case.seed, ..Settings::default() };
     let options = Options { base: case.base, settings, ..Options::default() };
-    diagnose(signals, "N m", &options).map_err(|e| e.to_string())
+    diagnose(comparison, "N m", &options).map_err(|e| e.to_string())
 }
 
 /// Runs a case.
 pub fn run(case: &Case) -> Result<Outcome, String> {
     let concealed = conceal(case).map_err(|e| e.to_string())?;
-    let mut signals = signals(&concealed.recording, &concealed.joint);
-    if case.base == BaseKind::Reference {
-        symbolic::compare_with_own_law(&mut signals)?;
-    }
-    let diagnosis = diagnosis_of(case, &signals)?;
+    let signals = signals(&concealed.recording, &concealed.joint);
+    let comparison = match case.base {
+        BaseKind::Reference => symbolic::compare_with_own_law(signals)?,
+        _ => signals.into(),
+    };
+    let diagnosis = diagnosis_of(case, &comparison)?;
     Ok(Outcome { case: case.clone(), concealed, diagnosis })
 }
 
@@ -228,7 +229,7 @@ impl Outcome {
             |torque: &[f64]| Signals { torque: torque.to_vec(), ..recorded.clone() }.realigned(diagnosis.put_back_s);
         let [effect, noise] =
             [&recording.truth.effect_torque, &recording.truth.noise_torque].map(|t| put_back(t).torque);
-        strength(&put_back(&recorded.torque), &effect, &noise, case.base, diagnosis.lock)
+        strength(&put_back(&recorded.torque).into(), &effect, &noise, case.base, diagnosis.lock)
     }
 
     /// Names of the findings in the order in which they were accepted.

@@ -66,7 +66,7 @@ pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<
     let signals = Signals::of(&recording, &joint).map_err(|e| e.to_string())?;
     let state = signals.states();
     let options = Options::default();
-    let diagnosed = |signals: &Signals| diagnose(signals, unit, &options).map_err(|e| e.to_string());
+    let diagnosed = |signals: &Signals| diagnose(&signals.clone().into(), unit, &options).map_err(|e| e.to_string());
     let found_before: Vec<&'static str> = diagnosed(&signals)?.findings.iter().map(|f| f.effect.name()).collect();
     // Without a rigid body to be wrong its inertia is part of the base.
     let can_be_wrong = |effect: &str| effect != "inertia_error" || signals.rigid_body.is_some();
@@ -76,7 +76,8 @@ pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<
         .map(|effect| {
             let shape = torque(effect, &state);
             let mut with = signals.clone();
-            let one = strength(&signals, &shape, &signals.torque, BaseKind::CoulombViscous, Lock::Spread);
+            let one =
+                strength(&signals.clone().into(), &shape, &signals.torque, BaseKind::CoulombViscous, Lock::Spread);
             let amplitude = one.map_or(0.0, |s| SHARE / s.effect_to_noise.max(f64::MIN_POSITIVE));
             with.torque.iter_mut().zip(&shape).for_each(|(t, s)| *t += amplitude * s);
             let found = sets(&diagnosed(&with)?);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::summary::share;
 use super::{Case, Hidden, conceal, diagnosis_of, set_of, signals};
-use frikan_trainer::diagnose::simulation::learn;
+use frikan_trainer::diagnose::{self, learn_simulation as learn};
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, NoiseKind};
 
@@ -95,10 +95,10 @@ pub fn run(comparison: &Comparison) -> Result<Compared, String> {
     for column in &mut simulation.columns {
         column.values.truncate((group.simulated() * column.values.len() as f64) as usize);
     }
-    let mut recorded = signals(&real.recording, &real.joint);
+    let recorded = signals(&real.recording, &real.joint);
     let law = learn(&signals(&simulation, &simulator), &recorded).map_err(|e| e.to_string())?;
-    recorded.compare_with(law.at(&recorded.states()));
-    let diagnosis = diagnosis_of(case, &recorded)?;
+    let reference = law.at(&recorded.states());
+    let diagnosis = diagnosis_of(case, &diagnose::Comparison::with(recorded, reference))?;
     let mut names = real.joint.effects.into_iter().map(|effect| effect.name);
     Ok(Compared {
         comparison: comparison.clone(),

@@ -2,7 +2,7 @@
 //! hidden effect, it has swallowed.
 
 use crate::laws::{data, velocity};
-use frikan_trainer::diagnose::{Reference, Signals};
+use frikan_trainer::diagnose::{Comparison, Reference, Signals};
 use frikan_trainer::law::{KnownForm, fit_form};
 
 /// Most samples that the law is fitted to.
@@ -14,7 +14,7 @@ const STEP: f64 = 1e-4;
 ///
 /// # Errors
 /// What keeps the law from being fitted.
-pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
+pub fn compare_with_own_law(signals: Signals) -> Result<Comparison, String> {
     let state = signals.states();
     let rigid_body = state.rigid_body.clone().ok_or("no rigid-body torque is given")?;
     let moving: Vec<usize> = (0..state.len()).filter(|&i| !state.memory.at_rest[i]).collect();
@@ -44,6 +44,5 @@ pub fn compare_with_own_law(signals: &mut Signals) -> Result<(), String> {
         rigid_body,
         ..Reference::default()
     };
-    signals.compare_with(reference);
-    Ok(())
+    Ok(Comparison::with(signals, reference))
 }

@@ -8,10 +8,11 @@ use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::improved::{Origin, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
-use crate::diagnose::comparison::base::BaseKind;
-use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::comparison::columns::BaseKind;
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::preparation::rows::Lock;
-use crate::diagnose::run::{Options, Refusal, diagnose};
+use crate::diagnose::request::{Options, Refusal};
+use crate::diagnose::run::diagnose;
 use crate::diagnose::search::thresholds::Settings;
 use crate::error::{Error, Result, codes};
 use crate::fit;
@@ -25,7 +26,7 @@ use crate::report;
 use crate::report::DiagnosisPage;
 use crate::report::tell::{Story, tell};
 use clap::{Args, ValueEnum};
-use compare::{Compared, compared_signals};
+use compare::{Compared, comparison};
 use frikan_shared::image::Image;
 use frikan_shared::units::Unit;
 use std::path::{Path, PathBuf};
@@ -98,7 +99,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let recordings =
         arguments.recordings.iter().map(|path| recording::load(path, &joint)).collect::<Result<Vec<Recording>>>()?;
     let real = &recordings[0];
-    let (signals, compared) = compared_signals(arguments, &recordings, &joint)?;
+    let (comparison, compared) = comparison(arguments, &recordings, &joint)?;
     let units = units(real);
     let options = Options {
         base: base_kind(arguments),
@@ -106,9 +107,9 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         settings: Settings { seed: arguments.seed, ..Settings::default() },
     };
     reporter.say("weighing every effect against the noise");
-    let mut diagnosis = diagnose(&signals, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
+    let mut diagnosis = diagnose(&comparison, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
     reporter.say("choosing what to record next");
-    let advice = advice(&signals, &diagnosis, &joint, (&compared, real));
+    let advice = advice(&comparison, &diagnosis, &joint, (&compared, real));
     if let Some(plan) = &advice {
         heed(&mut diagnosis, plan);
     }
@@ -128,7 +129,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
     if let Some(path) = arguments.output.as_ref().filter(|_| !diagnosis.is_blocked()) {
-        let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &signals, &compared)?;
+        let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &comparison, &compared)?;
         outputs.add(path, image);
         remarks = export;
     }
@@ -165,7 +166,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     if !arguments.quiet {
         remarks.iter().for_each(|sentence| eprintln!("{sentence}"));
         let memory = peak_memory_mb().map_or_else(String::new, |mb| format!(", {mb:.0} MB of memory"));
-        let (samples, rows, hz) = (signals.time.len(), diagnosis.rows, diagnosis.cut_off_hz);
+        let (samples, rows, hz) = (comparison.signals.time.len(), diagnosis.rows, diagnosis.cut_off_hz);
         eprintln!("{}: {samples} samples, {rows} rows behind {hz:.0} Hz, {seconds:.1} s{memory}", real.label);
     }
     Ok(exit_status(diagnosis.verdict))
@@ -173,7 +174,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
 
 /// The motion that would tell apart what cannot be told, within the limits of the joint.
 fn advice(
-    signals: &Signals,
+    comparison: &Comparison,
     diagnosis: &Diagnosis,
     joint: &Joint,
     (compared, real): (&Compared, &Recording),
@@ -186,7 +187,7 @@ fn advice(
     };
     let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
     let at = |state: &JointState| compared.at(state, recorded_body);
-    plan(&Question { signals, diagnosis, limits, reference: Some(&at) })
+    plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
 }
 
 /// Puts the plan before the general advice of every finding that it concerns.
@@ -202,7 +203,7 @@ fn improved_image(
     arguments: &Diagnose,
     (recordings, joint): (&[Recording], &Joint),
     diagnosis: &Diagnosis,
-    signals: &Signals,
+    comparison: &Comparison,
     compared: &Compared,
 ) -> Result<(Vec<u8>, Vec<String>)> {
     let origin = match compared {
@@ -215,7 +216,7 @@ fn improved_image(
         "A" => Unit::Ampere,
         _ => Unit::NewtonMetre,
     };
-    let improved = improve(diagnosis, signals, origin, unit)
+    let improved = improve(diagnosis, comparison, origin, unit)
         .ok_or_else(|| Error::new(&codes::BAD_IMAGE, "the findings and the law together make no valid model"))?;
     let name = joint.name.as_deref().unwrap_or_default();
     let provenance = fit::model::provenance(name, recordings, arguments.seed);

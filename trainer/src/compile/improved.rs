@@ -6,13 +6,15 @@ use crate::compile::interval::Interval;
 use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::compile_layout;
 use crate::diagnose::answer::outcome::Diagnosis;
-use crate::diagnose::comparison::base::{BaseKind, friction_basis};
+use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::from_model::{
     Movement, hats, is_odd, law_at, mean_measurement, moved, movement, moving_constants,
 };
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::refit::Refit;
 use crate::fit::HostModel;
 use crate::numerics::statistics::quantile;
@@ -50,8 +52,8 @@ const OCTAVE_CELLS_LOG2: u8 = 3;
 const OUTPUT_ROOM: f64 = 2.0;
 
 /// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
-pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
-    let state = signals.states();
+pub fn improve(diagnosis: &Diagnosis, comparison: &Comparison, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
+    let state = comparison.prepare(Lock::Nothing).state;
     let places = if let Origin::Model(model) = origin { moving_constants(model, &state) } else { Vec::new() };
     let [before, friction] = [&diagnosis.baseline_refit, &diagnosis.improved_refit]
         .map(|refit| refitted_friction(diagnosis.base, refit, (origin, &places), &state));
@@ -66,7 +68,7 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
         power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
         duration: state.time.last()? - state.time.first()?,
     };
-    let mut terms = Terms { rigid_body: rigid_body(diagnosis, signals, origin), ..Terms::default() };
+    let mut terms = Terms { rigid_body: rigid_body(diagnosis, &comparison.signals, origin), ..Terms::default() };
     if let Origin::Model(model) = origin {
         terms.effects.extend(model.effects.iter().cloned());
     }
@@ -88,7 +90,7 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
     model.cells = Pool::from_slice(&cells).ok()?;
     model.effects = terms.effects.iter().cloned().collect();
     add_channels(&mut model, &terms.channels, &state)?;
-    let largest = signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
+    let largest = comparison.signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
     let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
     model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
     model.validate().ok()?;

@@ -1,13 +1,10 @@
-//! A torque that was recorded at another time than the motion is put back before physics is looked for.
+//! A torque that was recorded at another time than the motion is put back before physics is looked for: which delay to try
+//! next, and what the trials say together. Knows how a diagnosis reads, not how it is made.
 
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::checks::health::late_torque;
-use crate::diagnose::comparison::base::{LONGEST_SAMPLING_DELAY, delay_by_shifting};
-use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::Prepared;
-use crate::diagnose::run::{Options, Refusal};
+use crate::diagnose::comparison::delay::LONGEST_SAMPLING_DELAY;
 use crate::physics::EffectId;
-use std::borrow::Cow;
 
 /// Realignments after the first: the linear regressor of a delay falls short of a long one.
 const MOST_REALIGNMENTS: usize = 2;
@@ -15,77 +12,94 @@ const MOST_REALIGNMENTS: usize = 2;
 const LEAST_SAMPLING_DELAY: f64 = 0.3;
 /// Samples of a longer shift that are left to the regressor of a delay.
 const LEFT_OF_A_SHIFT: f64 = 2.0;
-/// Error over that of another diagnosis up to which it is as much.
-const AS_MUCH: f64 = 1.02;
-/// The same from which it is clearly less.
-const CLEARLY_LESS: f64 = 0.8;
+/// Ratio of two errors up to which they are equal.
+const EQUAL_ERROR_RATIO: f64 = 1.02;
+/// Ratio of two errors below which the first is clearly less.
+const LESSER_ERROR_RATIO: f64 = 0.8;
 
-/// Diagnoses signals whose torque and motion belong together.
-type Diagnose<'d> = &'d dyn Fn(&Signals) -> Result<Diagnosis, Refusal>;
+/// A diagnosis of signals whose torque was put back by a delay.
+pub(crate) struct Trial {
+    /// The delay in s; positive where the torque was recorded late.
+    pub delay_s: f64,
+    /// What came of it.
+    pub diagnosis: Diagnosis,
+}
 
-/// Diagnoses signals with their torque put back to the time of the motion.
-pub(crate) fn diagnose_in_step(signals: &Signals, options: &Options, diagnose: Diagnose) -> Result<Diagnosis, Refusal> {
-    let shift = delay_by_shifting(Prepared::new(signals, options.lock), signals, options.base);
-    let samples = shift / signals.period;
-    if samples.abs() <= LONGEST_SAMPLING_DELAY {
-        let is_felt = samples.abs() > LEAST_SAMPLING_DELAY;
-        return diagnose_put_back(signals, if is_felt { shift } else { 0.0 }, diagnose);
+/// Where the trials begin, by the shift of the torque (s) with which the base explains most of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Realignment {
+    shift_s: f64,
+    period_s: f64,
+}
+
+impl Realignment {
+    pub(crate) fn new(shift_s: f64, period_s: f64) -> Self {
+        Self { shift_s, period_s }
     }
-    let as_recorded = diagnose_put_back(signals, 0.0, diagnose)?;
-    if misalignment(&as_recorded).is_some() {
-        return Ok(as_recorded);
+
+    fn samples(self) -> f64 {
+        self.shift_s / self.period_s
     }
-    // What is left of the shift is short enough for the linear regressor of a delay.
-    let left = LEFT_OF_A_SHIFT * signals.period * samples.signum();
-    match diagnose_put_back(signals, shift - left, diagnose) {
-        Ok(shifted) if misalignment(&shifted).is_some() && says_more_with_less(&shifted, &as_recorded) => Ok(shifted),
-        _ => Ok(as_recorded),
+
+    /// The delay to begin with, s: the sampling's own where it is felt, and none of a longer shift, which may be physics.
+    pub(crate) fn first_delay_s(self) -> f64 {
+        let is_of_sampling = (LEAST_SAMPLING_DELAY..=LONGEST_SAMPLING_DELAY).contains(&self.samples().abs());
+        if is_of_sampling && self.samples().abs() > LEAST_SAMPLING_DELAY { self.shift_s } else { 0.0 }
+    }
+
+    /// The delay to begin with again where the first beginning found no misalignment, s: what is left of a longer shift is short
+    /// enough for the linear regressor of a delay.
+    pub(crate) fn second_delay_s(self, first: &Diagnosis) -> Option<f64> {
+        let is_long = self.samples().abs() > LONGEST_SAMPLING_DELAY;
+        let left = LEFT_OF_A_SHIFT * self.period_s * self.samples().signum();
+        (is_long && misalignment(first).is_none()).then_some(self.shift_s - left)
     }
 }
 
-/// Whether a diagnosis leaves as much as another with fewer findings, or clearly less with no more.
-fn says_more_with_less(one: &Diagnosis, other: &Diagnosis) -> bool {
-    let (fewer, left) = (one.findings.len().cmp(&other.findings.len()), one.improved.rmse / other.improved.rmse);
-    fewer.is_lt() && left < AS_MUCH || fewer.is_eq() && left < CLEARLY_LESS
+/// The delay to try after the given trials, s: the last one and what it left. `None` where the torque is in step, or was moved often
+/// enough.
+pub(crate) fn next_delay_s(trials: &[Trial]) -> Option<f64> {
+    let last = trials.last().filter(|_| trials.len() < 2 + MOST_REALIGNMENTS)?;
+    misalignment(&last.diagnosis).map(|finding| last.delay_s + finding.fitted.coefficients[0])
 }
 
-/// Diagnoses a recording with its torque put back by `delay` (s), and by what the diagnosis then finds of it.
-fn diagnose_put_back(signals: &Signals, delay: f64, diagnose: Diagnose) -> Result<Diagnosis, Refusal> {
-    let put_back = |delay: f64| {
-        let signals = if delay == 0.0 { Cow::Borrowed(signals) } else { Cow::Owned(signals.realigned(delay)) };
-        diagnose(&signals).map(|diagnosis| Diagnosis { put_back_s: delay, ..diagnosis })
+/// What trials from one beginning say together: the physics of the last, behind the misalignment that the first found.
+pub(crate) fn joined(mut trials: Vec<Trial>, period_s: f64) -> Option<Diagnosis> {
+    let last = trials.pop()?;
+    let mut diagnosis = Diagnosis { put_back_s: last.delay_s, ..last.diagnosis };
+    let Some(Trial { diagnosis: first, .. }) = trials.into_iter().next() else {
+        if misalignment(&diagnosis).is_none() {
+            diagnosis.sampling_delay_s += last.delay_s;
+            diagnosis.health.extend((last.delay_s != 0.0).then(|| late_torque(last.delay_s, period_s)));
+        }
+        return Some(diagnosis);
     };
-    let mut first = put_back(delay)?;
-    let Some(mut misaligned) = misalignment(&first).cloned() else {
-        first.sampling_delay_s += delay;
-        first.health.extend((delay != 0.0).then(|| late_torque(delay, signals.period)));
-        return Ok(first);
-    };
-    let mut total = delay + misaligned.fitted.coefficients[0];
-    let Ok(mut aligned) = put_back(total) else { return Ok(first) };
-    for _ in 0..MOST_REALIGNMENTS {
-        let Some(rest) = misalignment(&aligned) else { break };
-        let longer = total + rest.fitted.coefficients[0];
-        let Ok(again) = put_back(longer) else { break };
-        (total, aligned) = (longer, again);
-    }
-    let moved = total - misaligned.fitted.coefficients[0];
-    misaligned.fitted.coefficients[0] = total;
+    let mut misaligned = misalignment(&first)?.clone();
+    let moved = last.delay_s - misaligned.fitted.coefficients[0];
+    misaligned.fitted.coefficients[0] = last.delay_s;
     if let Some(parameter) = misaligned.parameters.first_mut() {
         parameter.value += moved;
         parameter.ci95 = parameter.ci95.map(|end| end + moved);
     }
     let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
-    let physics = aligned.findings.into_iter().zip(aligned.traces.effects).filter(of_physics);
-    (aligned.findings, aligned.traces.effects) = physics.unzip();
-    aligned.put_first(misaligned);
-    aligned.baseline = first.baseline;
-    if let (Some(proof), Some(before)) = (&mut aligned.proof, &first.proof) {
+    let physics = diagnosis.findings.into_iter().zip(diagnosis.traces.effects).filter(of_physics);
+    (diagnosis.findings, diagnosis.traces.effects) = physics.unzip();
+    diagnosis.put_first(misaligned);
+    diagnosis.baseline = first.baseline;
+    if let (Some(proof), Some(before)) = (&mut diagnosis.proof, &first.proof) {
         let larger = before.baseline_rmse / proof.baseline_rmse;
         proof.ratio_ci95 = proof.ratio_ci95.map(|end| end / larger);
         proof.baseline_rmse = before.baseline_rmse;
     }
-    Ok(aligned)
+    Some(diagnosis)
+}
+
+/// Whether a second beginning says more than the first: a misalignment, with fewer findings that leave as much, or no more that leave
+/// clearly less.
+pub(crate) fn is_better(second: &Diagnosis, first: &Diagnosis) -> bool {
+    let (fewer, left) = (second.findings.len().cmp(&first.findings.len()), second.improved.rmse / first.improved.rmse);
+    let says_more = fewer.is_lt() && left < EQUAL_ERROR_RATIO || fewer.is_eq() && left < LESSER_ERROR_RATIO;
+    misalignment(second).is_some() && says_more
 }
 
 /// The finding that the torque was recorded at another time than the motion, where it is the first.

@@ -1,5 +1,8 @@
 //! Statistics that every room uses.
 
+/// Standard deviation of normal noise over the median of its magnitude: 1 / (quantile of the normal distribution at 3/4).
+pub(crate) const DEVIATION_PER_MEDIAN: f64 = 1.4826;
+
 /// Quantile of finite values by sorting; 0 when there are none.
 pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();

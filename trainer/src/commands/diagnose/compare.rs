@@ -2,10 +2,10 @@
 
 use super::{Diagnose, units};
 use crate::diagnose::comparison::from_model;
-use crate::diagnose::comparison::reference::Reference;
-use crate::diagnose::comparison::simulation;
+use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
 use crate::fit;
 use crate::fit::HostModel;
@@ -37,30 +37,28 @@ impl Compared {
     }
 }
 
-/// Signals of the real recordings beside what they are compared with.
-pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Signals, Compared)> {
+/// The real recordings and what they are compared with.
+pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
     if let Some(path) = &arguments.simulation {
         let simulated = recording::load(path, joint)?;
         same_units(&real[0], &simulated)?;
-        let mut signals = joined(real, joint)?;
+        let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
-        let law = simulation::learn(&simulation, &signals)
+        let law = learn_simulation(&simulation, &signals)
             .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
-        signals.compare_with(law.at(&state));
-        Ok((signals, Compared::Simulation(Box::new(law))))
+        Ok((Comparison::with(signals, law.at(&state)), Compared::Simulation(Box::new(law))))
     } else if let Some(path) = &arguments.model {
         let (_, image) = fit::model::load(path)?;
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
-        let mut signals = joined(real, &bare)?;
+        let signals = joined(real, &bare)?;
         let state = states(&signals, &real[0])?;
         let reference = from_model::at(&image.model, &state, state.rigid_body.as_deref())
             .map_err(|error| error.in_file(real[0].file()))?;
-        signals.compare_with(reference);
-        Ok((signals, Compared::Model(Box::new(image.model))))
+        Ok((Comparison::with(signals, reference), Compared::Model(Box::new(image.model))))
     } else {
-        Ok((joined(real, joint)?, Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
+        Ok((joined(real, joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::answer::region::{Region, Side};
-use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::search::round::Scored;
 use crate::physics::EffectId;
 use crate::report::tell::Story;

@@ -148,7 +148,6 @@ impl<'a> Future<'a> {
             series.extend(std::iter::repeat_n(series.last().copied().unwrap_or(0.0), count));
         }
         signals.position.extend_from_slice(position);
-        signals.reference = None;
         signals
     }
 }

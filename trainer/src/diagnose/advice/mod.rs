@@ -10,11 +10,10 @@ mod future;
 mod outlook;
 
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
-use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::statistics::quantile;
 use crate::physics::names::plain_name;
@@ -24,20 +23,13 @@ use future::Future;
 use outlook::Outlook;
 use rayon::prelude::*;
 
-/// An excitation that would separate a finding from its rivals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Advice {
-    /// In words.
-    pub sentence: String,
-}
-
 /// Predicts the reference's torque at given states.
 pub type ReferenceAt<'a> = dyn Fn(&JointState) -> Option<Reference> + Sync + 'a;
 
 /// Everything from which a plan is made.
 pub struct Question<'a> {
-    /// The recording that was diagnosed.
-    pub signals: &'a Signals,
+    /// The recording that was diagnosed, and what it was compared with.
+    pub comparison: &'a Comparison,
     /// What came of it.
     pub diagnosis: &'a Diagnosis,
     /// Limits within which the joint may move.
@@ -181,14 +173,16 @@ pub fn plan(question: &Question) -> Option<Plan> {
     if pairs.is_empty() {
         return None;
     }
-    let past = Prepared::at_cut_off(question.signals, question.diagnosis.cut_off_hz, question.diagnosis.lock);
-    let future = Future::new(question.signals, &past.state);
-    let present = Outlook::new(question, question.signals.clone())?.evidence(&pairs, true);
+    let Comparison { signals, .. } = question.comparison;
+    let known = question.comparison.known();
+    let past = Prepared::at_cut_off(signals, question.diagnosis.cut_off_hz, known, question.diagnosis.lock);
+    let future = Future::new(signals, &past.state);
+    let present = Outlook::new(question, question.comparison.clone())?.evidence(&pairs, true);
     let weigh = |candidates: Vec<Candidate>, refined: bool| -> Vec<Weighed> {
         candidates
             .into_par_iter()
             .filter_map(|candidate| {
-                let outlook = Outlook::new(question, future.with(&candidate))?;
+                let outlook = Outlook::new(question, future.with(&candidate).into())?;
                 Some(Weighed { nats: outlook.evidence(&pairs, refined), candidate })
             })
             .collect()
@@ -210,7 +204,7 @@ pub fn plan(question: &Question) -> Option<Plan> {
         words: candidate.words(),
         rest_before_s: candidate.rest_before_s,
         load: candidate.payload.map(|_| future.load(&candidate)),
-        period: question.signals.period,
+        period: signals.period,
         expected_nats: least(&nats, &separable),
         present_nats: least(&present, &separable),
         position: candidate.excitation.position,
@@ -279,7 +273,7 @@ impl Candidate {
 const DURATION_S: (f64, f64) = (20.0, 60.0);
 
 fn candidates(question: &Question, future: &Future, state: &JointState, pairs: &[Pair]) -> Vec<Candidate> {
-    let signals = question.signals;
+    let signals = &question.comparison.signals;
     let duration = (signals.period * signals.time.len() as f64).clamp(DURATION_S.0, DURATION_S.1);
     let motions = excitation::library(&question.limits.envelope(state), duration, signals.period);
     let slow = [EffectId::Temperature, EffectId::WarmUp, EffectId::SlowDrift];

@@ -1,14 +1,15 @@
 //! The evidence that a recording, planned or made, holds between two effects.
 
 use crate::diagnose::advice::{Pair, Question};
-use crate::diagnose::comparison::base::{Base, BaseKind};
+use crate::diagnose::comparison::base::Base;
+use crate::diagnose::comparison::columns::BaseKind;
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::evidence::score::Bench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::hypotheses::refine::refine;
-use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::Noise;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::physics::{EffectId, Hypothesis, Shape, catalogue};
 use std::ops::Range;
@@ -29,17 +30,19 @@ pub(crate) struct Outlook {
 }
 
 impl Outlook {
-    /// Prepares signals of which the part as long as `question.signals` was recorded. `None` where the base cannot be
+    /// Prepares signals of which the part as long as the recording was recorded. `None` where the base cannot be
     /// determined.
-    pub(crate) fn new(question: &Question, mut signals: Signals) -> Option<Self> {
+    pub(crate) fn new(question: &Question, mut comparison: Comparison) -> Option<Self> {
         let (cut_off, lock) = (question.diagnosis.cut_off_hz, question.diagnosis.lock);
-        let mut prepared = Prepared::at_cut_off(&signals, cut_off, lock);
-        if question.diagnosis.base == BaseKind::Reference && signals.reference.is_none() {
-            signals.compare_with(question.reference?(&prepared.state)?);
-            prepared = Prepared::at_cut_off(&signals, cut_off, lock);
+        let prepare =
+            |comparison: &Comparison| Prepared::at_cut_off(&comparison.signals, cut_off, comparison.known(), lock);
+        let mut prepared = prepare(&comparison);
+        if question.diagnosis.base == BaseKind::Reference && comparison.reference.is_none() {
+            comparison = Comparison::with(comparison.signals, question.reference?(&prepared.state)?);
+            prepared = prepare(&comparison);
         }
-        let base = Base::fit(&mut prepared, &signals, question.diagnosis.base)?;
-        let recorded = question.signals.time.len();
+        let base = Base::fit(&mut prepared, &comparison, question.diagnosis.base)?;
+        let recorded = question.comparison.signals.time.len();
         let open = prepared.open_runs();
         let made: Vec<Range<usize>> = open.iter().filter(|run| prepared.rows[run.start] < recorded).cloned().collect();
         let hypotheses = catalogue();

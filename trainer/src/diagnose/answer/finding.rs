@@ -1,14 +1,13 @@
 //! What one accepted effect tells its reader: name, probability, parameters with units and intervals, place, evidence.
 
-use crate::diagnose::advice::Advice;
 use crate::diagnose::answer::formula;
 use crate::diagnose::answer::location::{Location, locate};
 use crate::diagnose::answer::nearest_named::nearest;
-use crate::diagnose::answer::outcome::Finding;
+use crate::diagnose::answer::outcome::{Advice, Finding};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::stated_probability::{alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
-use crate::diagnose::checks::health::{HealthNote, unexplained_event};
+use crate::diagnose::checks::note::HealthNote;
 use crate::diagnose::comparison::base::Base;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
@@ -17,6 +16,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::proof::locked_rows::prove_alone;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::accepted::Accepted;
+use crate::figures::{digits, quantity};
 use crate::parameter::Parameter;
 use crate::physics::separation::separation;
 use crate::physics::units::unit_text;
@@ -139,6 +139,18 @@ const AS_GOOD_AS_CERTAIN: f64 = 0.99;
 /// A fault of the measurement as a finding.
 pub(crate) fn measurement_finding(note: &HealthNote) -> Finding {
     unfitted(note.effect, AS_GOOD_AS_CERTAIN, Action::Measurement, note.sentence.clone())
+}
+
+/// Something that happened once, in rows that were locked away.
+pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNote {
+    let ([from, to], rms) = (worst.when_s.map(digits), quantity(worst.rms, actuator));
+    HealthNote {
+        effect: EffectId::TransientEvent,
+        blocking: false,
+        sentence: format!(
+            "between {from} and {to} s the model is wrong by {rms} (root mean square), which nothing in the other rows is like"
+        ),
+    }
 }
 
 /// What happened once in rows that were locked away, where no row that might name it shows it.

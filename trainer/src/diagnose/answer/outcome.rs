@@ -1,10 +1,9 @@
 //! What a diagnosis says: verdict, findings with their evidence, gain, and what would have been seen.
 
-use crate::diagnose::advice::Advice;
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::traces::Traces;
-use crate::diagnose::checks::health::HealthNote;
-use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::preparation::rows::Lock;
@@ -28,6 +27,13 @@ pub enum Verdict {
     Unexplained,
     /// The measurement is at fault.
     BadData,
+}
+
+/// An excitation that would separate a finding from its rivals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advice {
+    /// In words.
+    pub sentence: String,
 }
 
 /// One finding.

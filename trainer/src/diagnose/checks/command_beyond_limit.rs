@@ -1,8 +1,6 @@
 //! A recorded torque beyond what the drive can give is its command: what the joint felt is the limit.
 
-use crate::diagnose::answer::finding::measurement_finding;
-use crate::diagnose::answer::outcome::Diagnosis;
-use crate::diagnose::checks::health::HealthNote;
+use crate::diagnose::checks::note::HealthNote;
 use crate::diagnose::measurement::signals::Signals;
 use crate::figures::digits;
 use crate::physics::EffectId;
@@ -38,10 +36,10 @@ impl Command {
         Signals { torque, ..signals.clone() }
     }
 
-    /// Puts what is wrong with the recording before what was found behind it.
-    pub fn tell(&self, diagnosis: &mut Diagnosis) {
+    /// What is wrong with the recording.
+    pub(crate) fn note(&self) -> HealthNote {
         let [limit, largest] = [self.limit, self.largest].map(digits);
-        let note = HealthNote {
+        HealthNote {
             effect: EffectId::Saturation,
             blocking: false,
             sentence: format!(
@@ -49,9 +47,7 @@ impl Command {
                  N m: it is the command, and the limit is taken for what the joint felt",
                 100.0 * self.share
             ),
-        };
-        diagnosis.put_first(measurement_finding(&note));
-        diagnosis.health.insert(0, note);
+        }
     }
 }
 

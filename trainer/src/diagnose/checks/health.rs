@@ -1,26 +1,14 @@
 //! Measurement before physics: what is wrong with the recording itself.
 
-use crate::diagnose::answer::traces::WorstLocked;
+use crate::diagnose::checks::note::HealthNote;
 use crate::diagnose::checks::unit_or_sign::{contradicting_velocity, wrong_sign_or_unit};
-use crate::diagnose::comparison::reference::Outside;
+use crate::diagnose::comparison::reference::{Comparison, Outside};
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::figures::{digits, quantity};
 use crate::numerics::statistics::quantile;
 use crate::physics::EffectId;
 use crate::samples::spikes::{PRINTED, Spikes};
-use serde::Serialize;
-
-/// A note on the measurement chain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct HealthNote {
-    /// The effect of the catalogue it stands for.
-    pub effect: EffectId,
-    /// Whether a diagnosis of physics makes no sense before it is repaired.
-    pub blocking: bool,
-    /// One sentence with figures.
-    pub sentence: String,
-}
 
 /// Share of samples at one extreme torque from which it counts as clipped.
 const CLIPPED_SHARE: f64 = 0.02;
@@ -53,11 +41,11 @@ impl AsRecorded {
 }
 
 /// Looks at what the signals say of each other.
-pub(crate) fn examine(signals: &Signals) -> Vec<HealthNote> {
+pub(crate) fn examine(comparison: &Comparison) -> Vec<HealthNote> {
     let mut notes = Vec::new();
-    notes.extend(contradicting_velocity(signals));
-    notes.extend(wrong_sign_or_unit(signals));
-    notes.extend(signals.reference.as_ref().and_then(|reference| beyond_the_model(&reference.outside)));
+    notes.extend(contradicting_velocity(&comparison.signals));
+    notes.extend(wrong_sign_or_unit(comparison));
+    notes.extend(comparison.reference.as_ref().and_then(|reference| beyond_the_model(&reference.outside)));
     notes
 }
 
@@ -126,18 +114,6 @@ fn torque_step(signals: &Signals) -> Option<TorqueStep> {
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
     (steps.len() > FEWEST_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
-}
-
-/// Something that happened once, in rows that were locked away.
-pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNote {
-    let ([from, to], rms) = (worst.when_s.map(digits), quantity(worst.rms, actuator));
-    HealthNote {
-        effect: EffectId::TransientEvent,
-        blocking: false,
-        sentence: format!(
-            "between {from} and {to} s the model is wrong by {rms} (root mean square), which nothing in the other rows is like"
-        ),
-    }
 }
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.

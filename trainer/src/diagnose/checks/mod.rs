@@ -2,4 +2,5 @@
 
 pub(crate) mod command_beyond_limit;
 pub(crate) mod health;
+pub(crate) mod note;
 pub(crate) mod unit_or_sign;

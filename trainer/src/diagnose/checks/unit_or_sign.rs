@@ -1,6 +1,7 @@
 //! Whether torque, position, velocity and the bodies that are given have one unit and one sign.
 
-use crate::diagnose::checks::health::HealthNote;
+use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::figures::digits;
@@ -73,7 +74,8 @@ pub(crate) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
 
 /// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a given
 /// body that enters with its sign turned or near a unit's factor betray a wrong sign or unit.
-pub(crate) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
+pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> {
+    let Comparison { signals, reference } = comparison;
     let filter = slow_filter(signals);
     let segments = &signals.segments;
     let position = filter.over(&signals.position, segments);
@@ -93,7 +95,7 @@ pub(crate) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
     let smooth = |series: &[f64]| filter.over(series, segments);
     let mut bodies: Vec<(&str, Vec<f64>)> = match (
-        signals.reference.as_ref().map(|reference| &reference.torque),
+        reference.as_ref().map(|reference| &reference.torque),
         signals.rigid_body.as_ref(),
         signals.load.as_ref(),
     ) {
@@ -106,7 +108,7 @@ pub(crate) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
         (None, None, _) => vec![("acceleration", acceleration)],
     };
     bodies.retain(|(_, column)| column.iter().any(|v| *v != 0.0));
-    let given = signals.known_torque().is_some();
+    let given = comparison.known().torque.is_some();
     let mut columns: Vec<Vec<f64>> = bodies.iter().map(|(_, column)| column.clone()).collect();
     let friction = columns.len();
     columns.extend([sign, velocity, vec![1.0; position.len()]]);
@@ -120,7 +122,7 @@ pub(crate) fn wrong_sign_or_unit(signals: &Signals) -> Option<HealthNote> {
     let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
     let wrong = |sentence: String| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, sentence });
     // A reference holds friction of its own, and what it has too much of comes out negative.
-    let drives = signals.reference.is_none() && coefficients[friction] < 0.0;
+    let drives = reference.is_none() && coefficients[friction] < 0.0;
     if drives && share(friction) > 0.1 {
         return wrong("friction comes out as driving the joint: torque and motion have opposite signs".into());
     }
@@ -168,7 +170,7 @@ mod tests {
     #[test]
     fn hysteresis_is_no_body_of_the_wrong_sign() {
         for signals in [swing(|_| None), swing(|a| Some(0.1 * a))] {
-            assert_eq!(wrong_sign_or_unit(&signals), None);
+            assert_eq!(wrong_sign_or_unit(&signals.into()), None);
         }
     }
 
@@ -201,7 +203,7 @@ mod tests {
             signals.torque.iter_mut().zip(body).for_each(|(torque, body)| *torque += sign * body);
             signals
         };
-        assert_eq!(wrong_sign_or_unit(&heavy(1.0)), None);
-        assert!(wrong_sign_or_unit(&heavy(-1.0)).is_some_and(|note| note.blocking));
+        assert_eq!(wrong_sign_or_unit(&heavy(1.0).into()), None);
+        assert!(wrong_sign_or_unit(&heavy(-1.0).into()).is_some_and(|note| note.blocking));
     }
 }

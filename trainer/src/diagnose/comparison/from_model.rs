@@ -1,6 +1,6 @@
 //! A fitted model image evaluated at the recorded states, in the arithmetic of the drive, with what its parameters may move.
 
-use crate::diagnose::comparison::base::{BaseKind, friction_basis};
+use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
 use crate::physics::JointState;

@@ -1,8 +1,8 @@
 //! A law from elsewhere (a simulation, a fitted model) evaluated at the recorded states, as the base of a comparison.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::Prepared;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::physics::{EffectId, JointState};
 
 /// A law at the states of a recording.
@@ -37,19 +37,48 @@ pub struct Outside {
     pub channels: Vec<(String, [f64; 2], String)>,
 }
 
-impl Signals {
-    /// The states at which a reference is evaluated: those behind the filter that the recording asks for.
+/// A recording and what it is compared with: a law from elsewhere, or nothing but a static model of the recording itself.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The recording.
+    pub signals: Signals,
+    /// The law of a simulation or a fitted model at the recorded states.
+    pub reference: Option<Reference>,
+}
+
+impl From<Signals> for Comparison {
+    fn from(signals: Signals) -> Self {
+        Self { signals, reference: None }
+    }
+}
+
+impl Comparison {
+    /// Compares a recording with a law. Its rigid body stands for the recording's where none is given.
     #[must_use]
-    pub fn states(&self) -> JointState {
-        Prepared::new(self, Lock::Nothing).state
+    pub fn with(mut signals: Signals, reference: Reference) -> Self {
+        if signals.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
+            signals.rigid_body = Some(reference.rigid_body.clone());
+        }
+        Self { signals, reference: Some(reference) }
     }
 
-    /// Takes a reference for the model that the recording is compared with.
-    pub fn compare_with(&mut self, reference: Reference) {
-        if self.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
-            self.rigid_body = Some(reference.rigid_body.clone());
+    /// The torque that needs no identification: the reference's, or the rigid body's.
+    pub(crate) fn known(&self) -> Known<'_> {
+        match &self.reference {
+            Some(reference) => Known { torque: Some(&reference.torque), outside: &reference.outside.samples },
+            None => Known::of(&self.signals),
         }
-        self.reference = Some(reference);
+    }
+
+    /// States and rows behind the filter that the recording asks for.
+    pub fn prepare(&self, lock: Lock) -> Prepared {
+        Prepared::new(&self.signals, self.known(), lock)
+    }
+
+    /// The same with the torque, recorded late by `delay` (s; negative where early), put back to its time.
+    #[must_use]
+    pub fn realigned(&self, delay: f64) -> Self {
+        Self { signals: self.signals.realigned(delay), reference: self.reference.clone() }
     }
 }
 

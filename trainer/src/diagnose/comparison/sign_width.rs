@@ -1,13 +1,10 @@
 //! How sharply friction turns over with the direction: the width of the smoothed sign, and what of it stays unknown.
 
-use crate::diagnose::comparison::base::{BaseKind, filtered_columns, raw_columns};
-use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::comparison::columns::{BaseKind, WIDE_SIGN, filtered_columns, raw_columns};
+use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, least_squares, left_by_fit};
 use crate::numerics::pattern_search::{Movable, climb};
-
-/// Width of a softer sign over that of the smoothed one.
-pub(crate) const WIDE_SIGN: f64 = 3.0;
 
 /// Widths of the smoothed sign that are tried, over the least.
 const WIDTHS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
@@ -24,7 +21,7 @@ const WORTH_A_CLOSER_LOOK: f64 = 0.1;
 const MOST_SOFTNESS: f64 = 1.5;
 
 /// Widens the smoothed sign where friction turns over so softly that next to nothing else is wrong with the base.
-pub(crate) fn fit_width(prepared: &mut Prepared, signals: &Signals, kind: BaseKind) {
+pub(crate) fn fit_width(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) {
     if kind == BaseKind::Reference {
         return;
     }
@@ -32,7 +29,7 @@ pub(crate) fn fit_width(prepared: &mut Prepared, signals: &Signals, kind: BaseKi
     let (target, runs) = (prepared.filtered(&prepared.friction_torque), prepared.open_runs());
     let mut left_at = |over_least: f64| {
         prepared.state.turn_over_within(over_least * least);
-        let columns = filtered_columns(prepared, signals, &raw_columns(&prepared.state, signals, kind));
+        let columns = filtered_columns(prepared, comparison, &raw_columns(&prepared.state, comparison, kind));
         left_by_fit(&columns, &target, &runs).map_or(f64::INFINITY, |left| dot(&left, &left, &runs))
     };
     let unwidened = left_at(1.0);
@@ -48,13 +45,6 @@ pub(crate) fn fit_width(prepared: &mut Prepared, signals: &Signals, kind: BaseKi
         }
     }
     prepared.state.turn_over_within(own * least);
-}
-
-/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
-/// between its sign and the smoothed one is a nuisance too.
-pub(crate) fn sharpness(prepared: &Prepared) -> Vec<f64> {
-    let state = &prepared.state;
-    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
 }
 
 /// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
@@ -75,6 +65,7 @@ pub(crate) fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, tar
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::measurement::signals::Signals;
     use crate::diagnose::preparation::rows::Lock;
     use std::f64::consts::TAU;
 
@@ -95,16 +86,17 @@ mod tests {
         Signals::without_gap(1e-3, time, position, torque)
     }
 
-    fn widened(signals: &Signals) -> (f64, f64) {
-        let mut prepared = Prepared::new(signals, Lock::Nothing);
+    fn widened(signals: Signals) -> (f64, f64) {
+        let comparison = Comparison::from(signals);
+        let mut prepared = comparison.prepare(Lock::Nothing);
         let least = prepared.state.sign_velocity;
-        fit_width(&mut prepared, signals, BaseKind::CoulombViscous);
+        fit_width(&mut prepared, &comparison, BaseKind::CoulombViscous);
         (least, prepared.state.sign_velocity)
     }
 
     #[test]
     fn the_width_of_a_soft_sign_is_found() {
-        let (_, width) = widened(&moving(|velocity, _| 2.0 * (velocity / 0.04).tanh() + 0.3 * velocity));
+        let (_, width) = widened(moving(|velocity, _| 2.0 * (velocity / 0.04).tanh() + 0.3 * velocity));
         assert!((width / 0.04 - 1.0).abs() < 0.1, "{width}");
     }
 
@@ -113,7 +105,7 @@ mod tests {
         let presliding = moving(|velocity, travelled| 2.0 * (travelled / 0.02).clamp(-1.0, 1.0) + 0.3 * velocity);
         let stribeck = moving(|velocity, _| (2.0 + (-(velocity / 0.2).powi(2)).exp()) * (velocity / 1e-3).tanh());
         for signals in [presliding, stribeck] {
-            let (least, width) = widened(&signals);
+            let (least, width) = widened(signals);
             assert_eq!(width, least);
         }
     }

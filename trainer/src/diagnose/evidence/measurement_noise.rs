@@ -2,14 +2,15 @@
 //! motion and the torque through the inertia, those of the torque enter what is worked out from it (errors in variables; Janot,
 //! Vandanjon & Gautier 2014).
 
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::evidence::score::Bench;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::Noise;
-use crate::diagnose::preparation::prepare::{DEVIATION_PER_MEDIAN, Prepared, identified_inertia};
+use crate::diagnose::preparation::states::{Prepared, identified_inertia};
 use crate::numerics::least_squares::{dot, gram, orthonormal, project_out, solve_symmetric};
 use crate::numerics::random::{normal, uniform};
+use crate::numerics::statistics::DEVIATION_PER_MEDIAN;
 use crate::numerics::statistics::quantile;
 use crate::physics::JointState;
 use nalgebra::DVector;
@@ -33,9 +34,10 @@ pub(crate) struct MeasurementNoise {
 impl MeasurementNoise {
     /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a
     /// fitted base leaves in half of the rows. `None` where the recording shows no inertia.
-    pub fn of(prepared: &Prepared, signals: &Signals, left_by_base: &[f64]) -> Option<Self> {
+    pub fn of(prepared: &Prepared, comparison: &Comparison, left_by_base: &[f64]) -> Option<Self> {
+        let Comparison { signals, reference } = comparison;
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
-        let inertia = if body_is_recorded && signals.reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
+        let inertia = if body_is_recorded && reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
         let [mut random, mut instants] = [SEED, SEED_OF_INSTANTS].map(ChaCha8Rng::seed_from_u64);
         let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
         let late = prepared.state.velocity.iter().map(|v| prepared.sampling_jitter * v * normal(&mut instants));

@@ -1,10 +1,10 @@
 //! How strong a hidden torque is for a diagnosis: its non-centrality after base, filter and noise.
 
-use crate::diagnose::comparison::base::{Base, BaseKind};
+use crate::diagnose::comparison::base::Base;
+use crate::diagnose::comparison::columns::BaseKind;
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::evidence::score::Bench;
-use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
-use crate::diagnose::preparation::prepare::Prepared;
 use crate::diagnose::preparation::rows::Lock;
 use crate::numerics::least_squares::{dot, left_by_fit, residual, rows_in};
 
@@ -24,9 +24,15 @@ pub struct Strength {
 /// Strength of `torque` (one value a sample, unfiltered) against `noise` in the same recording. What the diagnosis
 /// whitens with is the noise model of somebody who knows that torque: what base and torque together leave.
 /// `None` where the recording cannot determine the base.
-pub fn strength(signals: &Signals, torque: &[f64], noise: &[f64], base: BaseKind, lock: Lock) -> Option<Strength> {
-    let mut prepared = Prepared::new(signals, lock);
-    let base = Base::fit(&mut prepared, signals, base)?;
+pub fn strength(
+    comparison: &Comparison,
+    torque: &[f64],
+    noise: &[f64],
+    base: BaseKind,
+    lock: Lock,
+) -> Option<Strength> {
+    let mut prepared = comparison.prepare(lock);
+    let base = Base::fit(&mut prepared, comparison, base)?;
     let runs = prepared.open_runs();
     let filtered = prepared.filtered(torque);
     let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();

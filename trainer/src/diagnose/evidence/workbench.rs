@@ -7,7 +7,7 @@ use crate::diagnose::hypotheses::design::Design;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{left_by_fit, weighted};
 use crate::physics::{EffectId, Hypothesis, JointState};
 use rayon::prelude::*;

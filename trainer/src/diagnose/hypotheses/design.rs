@@ -2,7 +2,7 @@
 
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::hypotheses::unnamed::generic_rivals;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, rows_in};
 use crate::physics::{EffectId, Hypothesis, Shape};
 use rayon::prelude::*;

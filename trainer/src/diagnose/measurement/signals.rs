@@ -1,6 +1,5 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
-use crate::diagnose::comparison::reference::Reference;
 use crate::diagnose::measurement::other_joints::other_positions;
 use crate::error::Result;
 use crate::joint::Joint;
@@ -35,8 +34,6 @@ pub struct Signals {
     pub link_position: Option<Vec<f64>>,
     /// Positions of other joints on the same clock, in rad or m.
     pub other_positions: Vec<Vec<f64>>,
-    /// The fitted model or simulation that it is compared with, at the recorded states.
-    pub reference: Option<Reference>,
     /// Stretches of uninterrupted motion (trajectories, or pieces between gaps).
     pub segments: Vec<Range<usize>>,
     /// Motor turns per joint turn, where known.
@@ -54,11 +51,6 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// The torque that needs no identification: the reference's, or the rigid body's.
-    pub(crate) fn known_torque(&self) -> Option<&Vec<f64>> {
-        self.reference.as_ref().map(|reference| &reference.torque).or(self.rigid_body.as_ref())
-    }
-
     /// Signals of a recording on its even clock. Rigid-body parameters given for the joint become its rigid-body torque
     /// where the recording carries none; friction that was separated before holds none any more.
     ///

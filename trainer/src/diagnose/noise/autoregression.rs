@@ -2,7 +2,7 @@
 //!
 //! e = A(L)^-1 sigma(x) w with the order of A by Akaike's information criterion and log sigma^2 linear in the state.
 
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::rows_in;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;

@@ -48,8 +48,6 @@ pub(crate) fn slope_of_gravity(state: &JointState) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::diagnose::measurement::signals::Signals;
-    use crate::diagnose::preparation::prepare::Prepared;
-    use crate::diagnose::preparation::rows::Lock;
 
     /// A joint that swings under one payload and then under another; `rotary` or along a line.
     fn swinging(rotary: bool) -> JointState {
@@ -68,7 +66,7 @@ mod tests {
             rotary,
             ..Signals::default()
         };
-        Prepared::new(&signals, Lock::Nothing).state
+        signals.states()
     }
 
     #[test]

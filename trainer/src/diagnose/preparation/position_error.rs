@@ -1,58 +1,13 @@
 //! What is wrong with a recorded position, and how much of the torque that explains: the encoder's grain, and the scatter of the
-//! instants of sampling where the clock does not show it, in proportion to the speed.
+//! instants of sampling.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::prepare::{DEVIATION_PER_MEDIAN, Prepared, identified_inertia, simplest_model};
+use crate::diagnose::preparation::states::{Prepared, identified_inertia, simplest_model};
 use crate::numerics::least_squares::{dot, left_by_fit, rows_in};
-use crate::numerics::statistics::{quantile, root_mean_square};
-use crate::physics::JointState;
+use crate::numerics::statistics::root_mean_square;
 
 /// Share of the residual's deviation that encoder noise may reach through the inertia: what it gives a candidate is taken off that.
 const ENCODER_SHARE: f64 = 0.4;
-/// Sum of the squares of the weights of a fourth difference.
-const POWER_OF_DIFFERENCE: f64 = 70.0;
-/// Speeds over the top speed from which a sample is fast, and below which it is slow.
-const FAST: f64 = 0.5;
-const SLOW: f64 = 0.1;
-/// Scatter in periods up to which it may be what a joint's own motion has beyond a fourth difference.
-const LEAST_JITTER: f64 = 0.05;
-/// Samples of a kind at least.
-const LEAST_SAMPLES: usize = 100;
-
-/// Standard deviation of the instants of sampling, s: what the fourth differences of the position have at high speed beyond those
-/// at low speed and the encoder's grain. 0 where that is little, and where the clock tells the instants.
-pub(crate) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
-    if signals.resampled {
-        return 0.0;
-    }
-    let top_speed = state.top_speed();
-    let (mut fast, mut slow) = (Vec::new(), Vec::new());
-    for segment in &signals.segments {
-        for i in segment.start + 2..segment.end.saturating_sub(2) {
-            let [a, b, c, d, e] = [i - 2, i - 1, i, i + 1, i + 2].map(|j| signals.position[j]);
-            let difference = a - 4.0 * b + 6.0 * c - 4.0 * d + e;
-            let speed = state.velocity[i].abs();
-            if speed > FAST * top_speed {
-                fast.push((difference.abs(), speed));
-            } else if speed < SLOW * top_speed {
-                slow.push(difference.abs());
-            }
-        }
-    }
-    if fast.len() < LEAST_SAMPLES {
-        return 0.0;
-    }
-    let power = |differences: &mut dyn Iterator<Item = f64>| {
-        (DEVIATION_PER_MEDIAN * quantile(differences, 0.5)).powi(2) / POWER_OF_DIFFERENCE
-    };
-    let at_low_speed = if slow.len() < LEAST_SAMPLES { 0.0 } else { power(&mut slow.into_iter()) };
-    let of_grain = signals.position_resolution.powi(2) / 12.0;
-    let beyond = power(&mut fast.iter().map(|(difference, _)| *difference)) - at_low_speed.max(of_grain);
-    let speed = quantile(fast.iter().map(|(_, speed)| *speed), 0.5);
-    let jitter = beyond.max(0.0).sqrt() / speed.max(f64::MIN_POSITIVE);
-    if jitter < LEAST_JITTER * signals.period { 0.0 } else { jitter }
-}
-
 /// Standard deviation of the recorded position, in its unit.
 fn position_error(prepared: &Prepared, signals: &Signals) -> f64 {
     let speed = root_mean_square(&prepared.state.velocity);
@@ -78,37 +33,4 @@ pub(crate) fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> 
 pub(crate) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
     let acceleration = prepared.filter.second_derivative_gain(signals.period);
     identified_inertia(prepared).map(|inertia| inertia.abs() * position_error(prepared, signals) * acceleration)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::preparation::rows::Lock;
-    use crate::numerics::random::normal;
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::SeedableRng;
-
-    /// A swing sampled every millisecond, each time some periods early or late, by an encoder of some steps a radian.
-    fn swing(jitter_periods: f64, steps: f64) -> Signals {
-        let mut random = ChaCha8Rng::seed_from_u64(3);
-        let time: Vec<f64> = (0..10_000).map(|i| 1e-3 * f64::from(i)).collect();
-        let position = |t: &f64| {
-            let at = t + 1e-3 * jitter_periods * normal(&mut random);
-            (steps * ((3.0 * at).sin() + 0.3 * (11.0 * at).sin())).round() / steps
-        };
-        let position = time.iter().map(position).collect();
-        let torque = time.iter().map(|t| (3.0 * t).cos()).collect();
-        Signals { position_resolution: 1.0 / steps, ..Signals::without_gap(1e-3, time, position, torque) }
-    }
-
-    #[test]
-    fn scattered_instants_are_told_from_the_grain_of_an_encoder() {
-        let periods = |signals: &Signals| Prepared::new(signals, Lock::Nothing).sampling_jitter / signals.period;
-        let scattered = periods(&swing(0.2, 1e5));
-        assert!((scattered - 0.2).abs() < 0.03, "{scattered}");
-        for steps in [1e3, 1e4, 1e6] {
-            let even = periods(&swing(0.0, steps));
-            assert_eq!(even, 0.0, "{steps} steps a radian");
-        }
-    }
 }

@@ -76,8 +76,6 @@ fn winding(torque: &[f64], reach: f64, segments: &[Range<usize>]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::diagnose::measurement::signals::Signals;
-    use crate::diagnose::preparation::prepare::Prepared;
-    use crate::diagnose::preparation::rows::Lock;
     use crate::physics::catalogue;
 
     fn told(twist: impl Fn(f64, f64) -> f64) -> Twist {
@@ -110,7 +108,7 @@ mod tests {
             rotary: true,
             ..Signals::default()
         };
-        Prepared::new(&signals, Lock::Nothing).state
+        signals.states()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
 
 use crate::diagnose::evidence::workbench::Workbench;
-use crate::diagnose::preparation::prepare::Prepared;
+use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
 use crate::diagnose::proof::locked_rows::prove_alone;
 use crate::diagnose::proof::refit::{Refit, refit};

@@ -1,15 +1,12 @@
 //! Accepts one effect after the other while the evidence lasts, then cleans up backwards.
 
-use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::score::GroupEvidence;
-use crate::diagnose::evidence::workbench::Workbench;
-use crate::diagnose::hypotheses::label::{Label, ridge_of};
+use crate::diagnose::hypotheses::label::ridge_of;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::noise::null_draws::NullDraws;
 use crate::diagnose::search::accepted::{Accepted, others};
 use crate::diagnose::search::round::{Round, Scored, score_of};
-use crate::diagnose::search::thresholds::Settings;
-use crate::physics::Hypothesis;
+use crate::diagnose::search::setup::Search;
 
 /// Terms at most, repeated ones included.
 const MOST_TERMS: usize = 12;
@@ -25,24 +22,7 @@ pub struct SearchOutcome {
     pub noise: Noise,
 }
 
-/// The search over one prepared recording.
-pub struct Search<'a> {
-    pub(crate) workbench: &'a Workbench<'a>,
-    /// What more of the encoder's grain and of the torque's noise would change.
-    pub(crate) measurement_noise: Option<&'a MeasurementNoise>,
-    pub(crate) settings: Settings,
-}
-
 impl<'a> Search<'a> {
-    /// Whether a label may be found in the next round: once, except for effects that repeat with other shapes.
-    pub(crate) fn may_be_found(&self, label: &Label, accepted: &[Accepted]) -> bool {
-        let repeats = match label {
-            Label::Named(effect) => self.workbench.hypothesis(*effect).is_some_and(Hypothesis::repeats),
-            Label::Generic(_) => false,
-        };
-        repeats || accepted.iter().all(|found| found.label != *label)
-    }
-
     /// Effects that count towards the largest number of findings: a repeated one counts once.
     fn kinds(accepted: &[Accepted]) -> usize {
         (0..accepted.len()).filter(|&i| accepted[..i].iter().all(|before| before.label != accepted[i].label)).count()

@@ -4,4 +4,5 @@ pub(crate) mod accepted;
 pub(crate) mod choice;
 pub(crate) mod forward_backward;
 pub(crate) mod round;
+pub(crate) mod setup;
 pub(crate) mod thresholds;

@@ -9,7 +9,7 @@ use crate::diagnose::hypotheses::refine::refine;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_square_surprise};
 use crate::diagnose::search::accepted::Accepted;
-use crate::diagnose::search::forward_backward::Search;
+use crate::diagnose::search::setup::Search;
 use crate::diagnose::search::thresholds::Settings;
 use crate::numerics::least_squares::{orthonormal, project_out};
 use crate::physics::{EffectId, Shape};

@@ -1,9 +1,9 @@
 use super::*;
-use crate::diagnose::advice::Advice;
 use crate::diagnose::answer::location::Location;
+use crate::diagnose::answer::outcome::Advice;
 use crate::diagnose::answer::outcome::{Given, Score};
 use crate::diagnose::answer::traces::Traces;
-use crate::diagnose::comparison::base::BaseKind;
+use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;

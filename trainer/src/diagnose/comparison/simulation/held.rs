@@ -1,21 +1,23 @@
 //! Effects of the catalogue that a simulator computes itself: they are its law as much as its static friction, and nothing that
 //! the real joint has beyond it.
 
-use crate::diagnose::comparison::base::BaseKind;
-use crate::diagnose::comparison::reference::Reference;
+use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::InverseLaw;
+use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::gravity::give_body;
-use crate::diagnose::preparation::prepare::Prepared;
 use crate::diagnose::preparation::rows::Lock;
-use crate::diagnose::run::{Options, diagnose};
+use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::numerics::least_squares::weighted;
 use crate::numerics::random::normal;
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState, Shape, catalogue};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+
+/// Finds the effects of the catalogue that a recording holds beside the law that it is compared with.
+pub type FindEffects<'f> = &'f dyn Fn(&Comparison) -> Vec<Fitted>;
 
 /// An effect of a law, at unit coefficients.
 #[derive(Clone, Debug)]
@@ -45,18 +47,21 @@ fn belongs_to_the_state(effect: EffectId) -> bool {
 ///
 /// The simulation is given a share of the `noise` of the real recording: below that the formulas of simulator and catalogue
 /// differ, and the recording could not show it.
-pub(crate) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Option<HeldEffects> {
+pub(crate) fn held_by(
+    simulation: &Signals,
+    law: &InverseLaw,
+    noise: f64,
+    find_effects: FindEffects,
+) -> Option<HeldEffects> {
     let mut signals = simulation.clone();
     add_noise(&mut signals, NOISE_SHARE * noise);
     let state = signals.states();
     let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
-    signals.compare_with(Reference { jacobian, doubt: Vec::new(), ..law.at(&state) });
-    let options = Options { base: BaseKind::Reference, ..Options::default() };
-    let diagnosis = diagnose(&signals, "", &options).ok()?;
-    let held = diagnosis.findings.iter().filter_map(|finding| match finding.fitted.label {
+    let comparison = Comparison::with(signals, Reference { jacobian, doubt: Vec::new(), ..law.at(&state) });
+    let held = find_effects(&comparison).into_iter().filter_map(|found| match found.label {
         Label::Named(effect) if belongs_to_the_state(effect) => {
-            let width = finding.fitted.coefficients.len();
-            (width > 0).then(|| Held { effect, shape: finding.fitted.shape.clone(), width })
+            let width = found.coefficients.len();
+            (width > 0).then_some(Held { effect, shape: found.shape, width })
         }
         _ => None,
     });
@@ -68,7 +73,7 @@ pub(crate) fn held_by(simulation: &Signals, law: &InverseLaw, noise: f64) -> Opt
 fn add_noise(signals: &mut Signals, deviation: f64) {
     let mut random = ChaCha8Rng::seed_from_u64(0);
     let white: Vec<f64> = signals.torque.iter().map(|_| normal(&mut random)).collect();
-    let behind = root_mean_square(&Prepared::new(signals, Lock::Nothing).filtered(&white));
+    let behind = root_mean_square(&Prepared::new(signals, Known::of(signals), Lock::Nothing).filtered(&white));
     let scale = deviation / behind.max(f64::MIN_POSITIVE);
     signals.torque.iter_mut().zip(&white).for_each(|(torque, noise)| *torque += scale * noise);
 }

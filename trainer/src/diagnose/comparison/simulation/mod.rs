@@ -6,17 +6,18 @@ mod held;
 mod replay;
 mod residual_noise;
 
-use crate::diagnose::comparison::base::{nuisances, speed_hats};
+use crate::diagnose::comparison::columns::{nuisances, speed_hats};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
-use crate::diagnose::preparation::prepare::Prepared;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::numerics::covariance::of_whitened;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState};
 use curvature_prior::Bends;
+pub use held::FindEffects;
 use held::{HeldEffects, held_by};
 use replay::Left;
 use residual_noise::{Rest, rest_of};
@@ -71,12 +72,12 @@ pub struct InverseLaw {
 ///
 /// # Errors
 /// [`Unlearnable`] for a simulation of rest or of one velocity.
-pub fn learn(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
+pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
-    let prepared = Prepared::new(simulation, Lock::Nothing);
+    let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
     let law = learn_with(None, &prepared, given)?;
     let Some(Rest { noise, .. }) = rest_of(real, &law) else { return Ok(law) };
-    let held = held_by(simulation, &law, noise);
+    let held = held_by(simulation, &law, noise, find_effects);
     let mut law = if held.is_none() { law } else { learn_with(held, &prepared, given).unwrap_or(law) };
     if let Some(rest) = rest_of(simulation, &law).filter(|rest| rest.noise < QUIET * noise) {
         law.left = Some(Left::of(simulation, &law.torque(&prepared.state)));
@@ -302,7 +303,7 @@ mod tests {
     fn a_law_learned_elsewhere_holds_at_other_states() {
         // Shorter, shifted in time and sampled differently.
         let real = moving(31.0, 500.0, 0.0);
-        let law = learn(&moving(20.0, 400.0, 1.3), &real).unwrap();
+        let law = learn(&moving(20.0, 400.0, 1.3), &real, &|_| Vec::new()).unwrap();
         let reference = law.at(&real.states());
         let error: f64 =
             reference.torque.iter().zip(&real.torque).skip(500).take(14000).map(|(a, b)| (a - b).powi(2)).sum();
@@ -315,6 +316,6 @@ mod tests {
     fn rest_teaches_nothing() {
         let mut still = moving(5.0, 400.0, 0.0);
         still.position.fill(0.3);
-        assert!(learn(&still, &moving(5.0, 400.0, 0.0)).is_err());
+        assert!(learn(&still, &moving(5.0, 400.0, 0.0), &|_| Vec::new()).is_err());
     }
 }

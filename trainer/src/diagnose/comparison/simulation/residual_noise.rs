@@ -1,12 +1,14 @@
 //! How much a law leaves of a recording, and how much of that is noise.
 
-use crate::diagnose::comparison::base::{Base, BaseKind};
+use crate::diagnose::comparison::base::Base;
+use crate::diagnose::comparison::columns::BaseKind;
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::Noise;
-use crate::diagnose::preparation::prepare::{DEVIATION_PER_MEDIAN, Prepared};
 use crate::diagnose::preparation::rows::Lock;
 use crate::numerics::least_squares::left_by_fit;
+use crate::numerics::statistics::DEVIATION_PER_MEDIAN;
 use crate::numerics::statistics::{quantile, root_mean_square};
 
 /// What a law leaves of a recording, behind its filter.
@@ -19,10 +21,9 @@ pub(crate) struct Rest {
 
 /// What a law leaves of a recording once its Coulomb and viscous friction have moved.
 pub(crate) fn rest_of(recording: &Signals, law: &InverseLaw) -> Option<Rest> {
-    let mut signals = recording.clone();
-    signals.compare_with(law.at(&recording.states()));
-    let mut prepared = Prepared::new(&signals, Lock::Nothing);
-    let base = Base::fit(&mut prepared, &signals, BaseKind::Reference)?;
+    let comparison = Comparison::with(recording.clone(), law.at(&recording.states()));
+    let mut prepared = comparison.prepare(Lock::Nothing);
+    let base = Base::fit(&mut prepared, &comparison, BaseKind::Reference)?;
     let runs = prepared.open_runs();
     let rest = left_by_fit(&base.columns, &base.target, &runs)?;
     let model = Noise::fit(&rest, &runs, &[]);

@@ -1,14 +1,15 @@
-//! From signals to states and working rows: one filter for all, rest and edges left out, blocks set aside.
+//! From signals to states and working rows behind a given filter: one filter for all channels, rest and edges left out, blocks set
+//! aside.
 
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
-use crate::diagnose::preparation::position_error::{encoder_noise_is_small, sampling_jitter};
 use crate::diagnose::preparation::rows::{Block, Lock, hesitation, rows_and_blocks, standstill};
+use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
 use crate::diagnose::preparation::two_encoders::told_by_twist;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::least_squares;
-use crate::numerics::statistics::quantile;
+use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, quantile};
 use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};
 use std::ops::Range;
 
@@ -39,8 +40,22 @@ pub struct Prepared {
     pub torque: Vec<f64>,
 }
 
-/// Cut-off frequencies that are tried, widest first, in Hz.
-const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
+/// What of the recorded torque needs no identification, and where nothing is compared.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known<'a> {
+    /// Known torque at every sample, in the unit of the actuator.
+    pub torque: Option<&'a [f64]>,
+    /// Samples beyond what a law was fitted on; empty where all are within.
+    pub outside: &'a [bool],
+}
+
+impl<'a> Known<'a> {
+    /// The rigid body of a recording.
+    pub fn of(signals: &'a Signals) -> Self {
+        Self { torque: signals.rigid_body.as_deref(), outside: &[] }
+    }
+}
+
 /// Width of the smoothed sign at least, as a share of the top speed.
 const SIGN_SHARE: f64 = 0.001;
 /// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
@@ -49,36 +64,14 @@ const STATE_WIDTHS: [f64; 3] = [4.0, 2.5, 1.6];
 const CHANNEL_WIDTH: f64 = 1.6;
 /// Widest filter, in cycles a sample.
 const WIDEST: f64 = 0.35;
-/// Standard deviation of normal noise over the median of its magnitude.
-pub(crate) const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 /// Filter of the nuisance column of the velocity over that before the motion.
 const NARROW_VELOCITY: f64 = 0.4;
 /// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.
 const NARROW_ACCELERATION: f64 = 0.8;
 
 impl Prepared {
-    /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay
-    /// small against the residual.
-    pub fn new(signals: &Signals, lock: Lock) -> Self {
-        let rate = 1.0 / signals.period;
-        let mut chosen = None;
-        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
-            let mut prepared = Self::at_cut_off(signals, cut_off, lock);
-            prepared.grain_limited = chosen.is_some();
-            let fits = encoder_noise_is_small(&prepared, signals);
-            let enough_rows = prepared.rows.len() >= 200;
-            match chosen {
-                // A narrower filter that leaves too little to work on is no help.
-                Some(wider) if !enough_rows => return Self { grain_limited: true, ..wider },
-                _ if fits => return prepared,
-                _ => chosen = Some(prepared),
-            }
-        }
-        chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, lock))
-    }
-
     /// Prepares states and rows behind a given cut-off in Hz.
-    pub(crate) fn at_cut_off(signals: &Signals, cut_off: f64, lock: Lock) -> Self {
+    pub(crate) fn at_cut_off(signals: &Signals, cut_off: f64, known: Known, lock: Lock) -> Self {
         let period = signals.period;
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);
@@ -128,17 +121,14 @@ impl Prepared {
         };
         state.gravity_slope = slope_of_gravity(&state);
         state.twist = told_by_twist(&state);
-        let known = signals.known_torque();
-        let friction_torque = match known {
+        let friction_torque = match known.torque {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),
         };
         let unsure = hesitation(&state.velocity, state.sign_velocity, segments);
         let mut left_out: Vec<bool> =
             standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
-        if let Some(reference) = &signals.reference {
-            left_out.iter_mut().zip(&reference.outside.samples).for_each(|(left_out, outside)| *left_out |= outside);
-        }
+        left_out.iter_mut().zip(known.outside).for_each(|(left_out, outside)| *left_out |= outside);
         let (rows, blocks) = rows_and_blocks(&state, &left_out, &filter, lock);
         Self {
             sampling_jitter: sampling_jitter(signals, &state),

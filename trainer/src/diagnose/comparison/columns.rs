@@ -1,0 +1,126 @@
+//! The parameters of a base as regressors, and the nuisances that carry the bias of differentiation.
+
+use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::preparation::states::Prepared;
+use crate::physics::JointState;
+
+/// Which static friction model the recording is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BaseKind {
+    /// Symmetric Coulomb and viscous friction, refitted.
+    CoulombViscous,
+    /// A symmetric spline over speed with nine coefficients, refitted.
+    Spline,
+    /// The law of a fitted model or a simulation: its torque is given, its parameters may move by the given Jacobian.
+    Reference,
+}
+
+/// Coefficients of the spline base.
+const SPLINE_KNOTS: usize = 9;
+
+/// The friction columns of a base kind at one velocity.
+/// `sign` is the smoothed sign at that velocity.
+pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed: f64) -> Vec<f64> {
+    match kind {
+        BaseKind::CoulombViscous => vec![sign, velocity],
+        BaseKind::Spline => {
+            speed_hats(velocity.abs() / top_speed.max(f64::MIN_POSITIVE), SPLINE_KNOTS).map(|hat| hat * sign).collect()
+        }
+        BaseKind::Reference => Vec::new(),
+    }
+}
+
+/// Place of a knot over speed as a share of the top speed, by a square law: dense at low speed, where friction bends.
+pub(crate) fn speed_knot(j: usize, knots: usize) -> f64 {
+    (j as f64 / (knots - 1) as f64).powi(2)
+}
+
+/// Hat functions over speed as a share of the top speed, linear between knots, so exact for Coulomb and viscous friction. The last
+/// two continue beyond the top speed, which only most samples stay below.
+pub(crate) fn speed_hats(share: f64, knots: usize) -> impl Iterator<Item = f64> {
+    let last = knots - 1;
+    let knot = move |j: usize| speed_knot(j, knots);
+    let after = ((share.sqrt() * last as f64) as usize + 1).min(last);
+    let rise = (share - knot(after - 1)) / (knot(after) - knot(after - 1));
+    (0..knots).map(move |j| match after.checked_sub(j) {
+        Some(0) => rise,
+        Some(1) => 1.0 - rise,
+        _ => 0.0,
+    })
+}
+
+/// Width of a softer sign over that of the smoothed one.
+pub(crate) const WIDE_SIGN: f64 = 3.0;
+
+/// The columns of the parameters and the nuisances behind the common filter.
+pub(crate) fn filtered_columns(
+    prepared: &Prepared,
+    comparison: &Comparison,
+    raw: &[(&'static str, Vec<f64>)],
+) -> Vec<Vec<f64>> {
+    let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
+    columns.extend(nuisances(prepared));
+    columns.push(sharpness(prepared));
+    if let Some(reference) = &comparison.reference {
+        columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
+    }
+    columns
+}
+
+pub(crate) fn raw_columns(
+    state: &JointState,
+    comparison: &Comparison,
+    kind: BaseKind,
+) -> Vec<(&'static str, Vec<f64>)> {
+    let top_speed = state.top_speed();
+    let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    let count = friction_basis(kind, 1.0, 1.0, top_speed).len();
+    let names = match kind {
+        BaseKind::CoulombViscous => &["coulomb_torque", "viscous_coefficient"][..],
+        _ => &["friction_knot"; SPLINE_KNOTS][..],
+    };
+    for (j, name) in names.iter().enumerate().take(count) {
+        columns.push((name, state.map(|i| friction_basis(kind, state.velocity[i], state.sign[i], top_speed)[j])));
+    }
+    if let Some(reference) = &comparison.reference {
+        columns.extend(reference.jacobian.iter().cloned());
+    } else if comparison.signals.rigid_body.is_none() {
+        // No rigid body is given: its inertia is identified together with friction.
+        columns.push(("inertia", state.acceleration.clone()));
+    }
+    columns
+}
+
+/// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
+pub(crate) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let state = &prepared.state;
+    let narrow_sign = state.averaged_sign(&prepared.narrow_velocity, state.sign_velocity);
+    let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
+    let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
+    // The smoothed sign stands for a jump: its width is a nuisance too.
+    let wide_sign = state.averaged_sign(&state.velocity, WIDE_SIGN * state.sign_velocity);
+    let width = state.map(|i| wide_sign[i] - state.sign[i]);
+    vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
+}
+
+/// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is
+/// between its sign and the smoothed one is a nuisance too.
+pub(crate) fn sharpness(prepared: &Prepared) -> Vec<f64> {
+    let state = &prepared.state;
+    prepared.filtered(&state.map(|i| state.velocity[i].signum() - state.sign[i]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spline_holds_coulomb_and_viscous_friction_exactly() {
+        let (knots, top_speed) = (9, 3.0);
+        let at_knots: Vec<f64> = (0..knots).map(|j| 2.0 + 1.2 * top_speed * (j as f64 / 8.0).powi(2)).collect();
+        for speed in [0.0, 1e-9, 0.02, 0.4, 0.75, 2.9, 3.0, 3.3, 9.0] {
+            let torque: f64 = speed_hats(speed / top_speed, knots).zip(&at_knots).map(|(hat, f)| hat * f).sum();
+            assert!((torque - (2.0 + 1.2 * speed)).abs() < 1e-9, "{torque} at {speed}");
+        }
+    }
+}

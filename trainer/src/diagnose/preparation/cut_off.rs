@@ -1,0 +1,39 @@
+//! The choice of the common filter: as wide as the errors of the position allow.
+
+use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::position_error::encoder_noise_is_small;
+use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::preparation::states::{Known, Prepared};
+use crate::physics::JointState;
+
+/// Cut-off frequencies that are tried, widest first, in Hz.
+const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
+impl Prepared {
+    /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay
+    /// small against the residual.
+    pub fn new(signals: &Signals, known: Known, lock: Lock) -> Self {
+        let rate = 1.0 / signals.period;
+        let mut chosen = None;
+        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
+            let mut prepared = Self::at_cut_off(signals, cut_off, known, lock);
+            prepared.grain_limited = chosen.is_some();
+            let fits = encoder_noise_is_small(&prepared, signals);
+            let enough_rows = prepared.rows.len() >= 200;
+            match chosen {
+                // A narrower filter that leaves too little to work on is no help.
+                Some(wider) if !enough_rows => return Self { grain_limited: true, ..wider },
+                _ if fits => return prepared,
+                _ => chosen = Some(prepared),
+            }
+        }
+        chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, known, lock))
+    }
+}
+
+impl Signals {
+    /// The states behind the filter that the recording asks for.
+    #[must_use]
+    pub fn states(&self) -> JointState {
+        Prepared::new(self, Known::of(self), Lock::Nothing).state
+    }
+}

@@ -1,0 +1,44 @@
+//! Other rows are locked where a one-off event lay in those that were: nothing that fits it was open. Knows how a diagnosis reads,
+//! not how it is made.
+
+use crate::diagnose::answer::finding::{unexplained_event, unexplained_finding};
+use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
+use crate::diagnose::answer::traces::WorstLocked;
+use crate::diagnose::preparation::rows::Lock;
+use crate::physics::EffectId;
+
+/// Ratio of what a locked stretch is left with to what any open one is, root mean square, from which other blocks are locked.
+const EVENT_RATIO: f64 = 1.5;
+/// The same from which it is no noise, whatever it is.
+const NO_NOISE_RATIO: f64 = 6.0;
+
+/// The locked stretch that the open rows do not explain.
+pub(crate) fn locked_event(diagnosis: &Diagnosis) -> Option<WorstLocked> {
+    let worst = diagnosis.traces.worst_locked().filter(|worst| worst.over_open > EVENT_RATIO);
+    worst.filter(|_| diagnosis.lock == Lock::Spread)
+}
+
+/// Adds what happened once in the locked rows to a diagnosis that cannot name it.
+pub(crate) fn add_locked_event(diagnosis: &mut Diagnosis, event: WorstLocked, actuator: &str) {
+    if event.over_open <= NO_NOISE_RATIO {
+        return;
+    }
+    match diagnosis.verdict {
+        Verdict::BadData => {}
+        Verdict::Consistent => {
+            diagnosis.verdict = Verdict::Unexplained;
+            diagnosis.findings.push(unexplained_finding(event, &diagnosis.traces, actuator));
+            diagnosis.traces.effects.push(diagnosis.traces.left_within(event.when_s));
+        }
+        Verdict::MissingPhysics | Verdict::Unexplained => diagnosis.health.push(unexplained_event(event, actuator)),
+    }
+}
+
+/// Whether a diagnosis with other rows locked names more of the event.
+pub(crate) fn names_more(second: &Diagnosis, first: &Diagnosis, event: WorstLocked) -> bool {
+    let events = |diagnosis: &Diagnosis| {
+        diagnosis.findings.iter().filter(|finding| finding.effect == EffectId::TransientEvent).count()
+    };
+    let leaves_less = || second.traces.worst_locked().is_some_and(|left| left.over_open < event.over_open);
+    events(second) > events(first) || events(second) == events(first) && events(first) > 0 && leaves_less()
+}
