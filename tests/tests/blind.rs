@@ -207,7 +207,7 @@ fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
     let concealed = conceal(&control(NoiseKind::Coloured, 460_040)).unwrap();
     let mut signals = signals(&concealed.recording, &concealed.joint);
     let options = Options::default();
-    let before = diagnose(&signals.clone().into(), "N m", &options).unwrap();
+    let before = diagnose(&signals.clone().into(), &options).unwrap();
     assert_eq!((before.findings.len(), before.lock), (0, Lock::Spread));
     let traces = &before.traces;
     let rows: Vec<(f64, bool)> = traces.time.iter().copied().zip(traces.locked.iter().copied()).collect();
@@ -219,7 +219,7 @@ fn an_event_that_lies_in_locked_rows_is_found_behind_another_lock() {
         for ((torque, recorded), time) in signals.torque.iter_mut().zip(&recorded).zip(&signals.time) {
             *torque = recorded + if event.contains(time) { event_torque } else { 0.0 };
         }
-        diagnose(&signals.clone().into(), "N m", &options).unwrap()
+        diagnose(&signals.clone().into(), &options).unwrap()
     };
     for event_torque in [1.0, 20.0] {
         let after = with_event(event_torque);

@@ -43,7 +43,7 @@ fn left(effect: &'static str, lambda: f64) -> Left {
         // Beside a recorded temperature that would be named.
         signals.temperature = None;
     }
-    let diagnosis = diagnose(&signals.clone().into(), "N m", &Options::default()).unwrap();
+    let diagnosis = diagnose(&signals.clone().into(), &Options::default()).unwrap();
     let origin = Origin::Recording(RigidBody::default());
     let improved = improve(&diagnosis, &signals.clone().into(), origin, Unit::NewtonMetre).unwrap();
     // The diagnosis puts the sampling's own delay back, and so is the image's error measured.

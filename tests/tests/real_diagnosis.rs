@@ -17,9 +17,9 @@ fn load(name: &str, joint: &Joint) -> Option<Recording> {
     Some(recording::load(&recordings()?.join(name), joint).unwrap_or_else(|error| panic!("{error}")))
 }
 
-fn diagnosed(recording: &Recording, joint: &Joint, unit: &str, lock: Lock) -> (Signals, Diagnosis) {
+fn diagnosed(recording: &Recording, joint: &Joint, lock: Lock) -> (Signals, Diagnosis) {
     let signals = Signals::of(recording, joint).unwrap();
-    let diagnosis = diagnose(&signals.clone().into(), unit, &Options { lock, ..Options::default() }).unwrap();
+    let diagnosis = diagnose(&signals.clone().into(), &Options { lock, ..Options::default() }).unwrap();
     (signals, diagnosis)
 }
 
@@ -43,7 +43,7 @@ fn the_emps_axis_differs_between_its_directions() {
     let joint = Joint::default();
     let Some(train) = load("emps/train.csv", &joint) else { return };
     let pulses = load("emps/pulses.csv", &joint).unwrap();
-    let (signals, diagnosis) = diagnosed(&train, &joint, "N", Lock::Spread);
+    let (signals, diagnosis) = diagnosed(&train, &joint, Lock::Spread);
     let names = named(&diagnosis);
     let expected = [EffectId::DirectionAsymmetry, EffectId::TorqueOffset];
     assert!(!names.is_empty() && names.iter().all(|name| expected.contains(name)), "{names:?}");
@@ -62,7 +62,7 @@ fn the_bare_motor_cogs_as_its_map_says() {
     const COUNTS: usize = 8192;
     let joint = Joint::parse(&format!("[drive]\ncounts_per_turn = {COUNTS}")).unwrap();
     let Some(motor) = load("odrive_cogging/slow2-nocomp_0.csv", &joint) else { return };
-    let (_, diagnosis) = diagnosed(&motor, &joint, "A", Lock::Tail(0.5));
+    let (_, diagnosis) = diagnosed(&motor, &joint, Lock::Tail(0.5));
     let [before, after] = locked_r2(&diagnosis);
     let ripples: Vec<(f64, f64, f64)> = diagnosis
         .findings
@@ -95,7 +95,7 @@ fn the_bare_motor_cogs_as_its_map_says() {
 fn the_tribometer_slides_little_beyond_break_away() {
     let joint = Joint::default();
     let Some(pin) = load("tribometer/reciprocating.csv", &joint) else { return };
-    let (_, diagnosis) = diagnosed(&pin, &joint, "N", Lock::Tail(0.5));
+    let (_, diagnosis) = diagnosed(&pin, &joint, Lock::Tail(0.5));
     let [before, after] = locked_r2(&diagnosis);
     println!("{:?}, R2 {before:.4} -> {after:.4} on the later half", named(&diagnosis));
     assert_eq!(diagnosis.findings[0].effect, EffectId::Presliding);

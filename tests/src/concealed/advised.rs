@@ -99,7 +99,7 @@ pub fn run(case: &Confounded, seed: u64) -> Result<Advised, String> {
     let diagnosed = |joint: &plant::Joint| {
         let recording = plant::simulate(joint, seed).map_err(|e| e.to_string())?;
         let comparison = Comparison::from(signals(&recording, joint));
-        let diagnosis = diagnose(&comparison, "N m", &options).map_err(|e| e.to_string())?;
+        let diagnosis = diagnose(&comparison, &options).map_err(|e| e.to_string())?;
         Ok::<_, String>((comparison, diagnosis))
     };
     let (comparison, before) = diagnosed(&joint)?;

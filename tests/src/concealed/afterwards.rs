@@ -78,7 +78,7 @@ impl Halves {
         let (first, second) = (both.part(0..half), both.part(half..both.len()));
         let recorded = signals(&first, joint).into();
         let options = Options { settings: Settings { seed, ..Settings::default() }, ..Options::default() };
-        let diagnosis = diagnose(&recorded, "N m", &options).map_err(|e| e.to_string())?;
+        let diagnosis = diagnose(&recorded, &options).map_err(|e| e.to_string())?;
         Ok(Self { recorded, diagnosis, later: signals(&second, joint), later_noise: second.truth.noise_torque })
     }
 

@@ -200,7 +200,7 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
 pub fn diagnosis_of(case: &Case, comparison: &Comparison) -> Result<Diagnosis, String> {
     let settings = Settings { seed: case.seed, ..Settings::default() };
     let options = Options { base: case.base, settings, ..Options::default() };
-    diagnose(comparison, "N m", &options).map_err(|e| e.to_string())
+    diagnose(comparison, &options).map_err(|e| e.to_string())
 }
 
 /// Runs a case.

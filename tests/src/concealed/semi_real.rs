@@ -11,9 +11,8 @@ use frikan_trainer::joint::Joint;
 use frikan_trainer::physics::{EffectId, JointState};
 use frikan_trainer::recording;
 
-/// Recordings that effects are added to, and the text of their actuator's unit.
-pub const RECORDINGS: [(&str, &str); 3] =
-    [("emps/train.csv", "N"), ("kr300/axis1-A.csv", "N m"), ("kr300/axis3-A.csv", "N m")];
+/// Recordings that effects are added to.
+pub const RECORDINGS: [&str; 3] = ["emps/train.csv", "kr300/axis1-A.csv", "kr300/axis3-A.csv"];
 
 /// Effects that are added.
 pub const ADDED: [&str; 9] = [
@@ -60,13 +59,13 @@ const SHARE: f64 = 0.05;
 ///
 /// # Errors
 /// What keeps the recording from being read or diagnosed.
-pub fn run(folder: &Path, (name, unit): (&'static str, &'static str)) -> Result<Vec<Added>, String> {
+pub fn run(folder: &Path, name: &'static str) -> Result<Vec<Added>, String> {
     let joint = Joint::default();
     let recording = recording::load(&folder.join(name), &joint).map_err(|e| e.to_string())?;
     let signals = Signals::of(&recording, &joint).map_err(|e| e.to_string())?;
     let state = signals.states();
     let options = Options::default();
-    let diagnosed = |signals: &Signals| diagnose(&signals.clone().into(), unit, &options).map_err(|e| e.to_string());
+    let diagnosed = |signals: &Signals| diagnose(&signals.clone().into(), &options).map_err(|e| e.to_string());
     let found_before: Vec<&'static str> = diagnosed(&signals)?.findings.iter().map(|f| f.effect.name()).collect();
     // Without a rigid body to be wrong its inertia is part of the base.
     let can_be_wrong = |effect: &str| effect != "inertia_error" || signals.rigid_body.is_some();

@@ -2,6 +2,7 @@
 
 mod compare;
 mod summary;
+mod trajectory;
 
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
@@ -24,6 +25,7 @@ use crate::recording;
 use crate::recording::{Axis, Quantity, Recording};
 use crate::report;
 use crate::report::DiagnosisPage;
+use crate::report::tell::evidence::planned_motion;
 use crate::report::tell::{Story, tell};
 use clap::{Args, ValueEnum};
 use compare::{Compared, comparison};
@@ -31,7 +33,8 @@ use frikan_shared::image::Image;
 use frikan_shared::units::Unit;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use summary::summary;
+use summary::{Told, summary};
+use trajectory::to_csv;
 
 /// Compare a recording with a simulation, a model or a static friction model fitted to itself, and name the physics that is missing
 ///
@@ -107,18 +110,19 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         settings: Settings { seed: arguments.seed, ..Settings::default() },
     };
     reporter.say("weighing every effect against the noise");
-    let mut diagnosis = diagnose(&comparison, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
+    let diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
     reporter.say("choosing what to record next");
     let advice = advice(&comparison, &diagnosis, &joint, (&compared, real));
-    if let Some(plan) = &advice {
-        heed(&mut diagnosis, plan);
-    }
     let story = tell(&diagnosis, units);
     reporter.say("writing");
     let mut outputs = Outputs::default();
     let seconds = begin.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
-        let summary = summary(&diagnosis, &story, advice.as_ref(), seconds, arguments.seed);
+        let summary = summary(
+            &Told { diagnosis: &diagnosis, story: &story, plan: advice.as_ref(), units },
+            seconds,
+            arguments.seed,
+        );
         outputs.add(path, summary.to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
@@ -146,7 +150,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         outputs.add(path, report::diagnosis(&page));
     }
     match (&arguments.advise, &advice) {
-        (Some(path), Some(plan)) => outputs.add(path, plan.to_csv(units.rotary)),
+        (Some(path), Some(plan)) => outputs.add(path, to_csv(plan, units.rotary)),
         (Some(_), None) => {
             let has_rivals = diagnosis.findings.iter().any(|finding| !finding.alternatives.is_empty());
             let reason = if has_rivals {
@@ -188,14 +192,6 @@ fn advice(
     let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
     let at = |state: &JointState| compared.at(state, recorded_body);
     plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
-}
-
-/// Puts the plan before the general advice of every finding that it concerns.
-fn heed(diagnosis: &mut Diagnosis, plan: &Plan) {
-    for found in diagnosis.findings.iter_mut().filter(|found| !found.alternatives.is_empty()) {
-        let general = &mut found.separate_by.sentence;
-        *general = format!("{}; in general: {general}", plan.sentence());
-    }
 }
 
 /// The improved image, with what it holds in sentences.
@@ -276,7 +272,7 @@ fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
     let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
     let rest = story.rest().map(|sentence| format!("{sentence}\n"));
-    let advice = advice.map(|plan| format!("{}.\n", capital(&plan.sentence())));
+    let advice = advice.map(|plan| format!("{}.\n", capital(&planned_motion(plan))));
     let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()
 }

@@ -22,10 +22,10 @@ pub(crate) mod search;
 
 pub use advice::{Limits, Plan, Question, TOLD_APART_NATS, plan};
 pub use answer::location::Location;
-pub use answer::outcome::{Advice, DetectionLimit, Diagnosis, Finding, Given, Score, Verdict};
+pub use answer::outcome::{DetectionLimit, Diagnosis, Estimate, Evidence, Finding, Given, Score, Verdict};
 pub use answer::region::{Region, Side};
 pub use answer::traces::{Traces, WorstLocked};
-pub use checks::note::HealthNote;
+pub use checks::note::{HealthNote, Observation};
 pub use comparison::columns::BaseKind;
 pub use comparison::reference::{Comparison, Reference};
 pub use comparison::{from_model as model, simulation};

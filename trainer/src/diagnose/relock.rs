@@ -19,7 +19,7 @@ pub(crate) fn locked_event(diagnosis: &Diagnosis) -> Option<WorstLocked> {
 }
 
 /// Adds what happened once in the locked rows to a diagnosis that cannot name it.
-pub(crate) fn add_locked_event(diagnosis: &mut Diagnosis, event: WorstLocked, actuator: &str) {
+pub(crate) fn add_locked_event(diagnosis: &mut Diagnosis, event: WorstLocked) {
     if event.over_open <= NO_NOISE_RATIO {
         return;
     }
@@ -27,10 +27,10 @@ pub(crate) fn add_locked_event(diagnosis: &mut Diagnosis, event: WorstLocked, ac
         Verdict::BadData => {}
         Verdict::Consistent => {
             diagnosis.verdict = Verdict::Unexplained;
-            diagnosis.findings.push(unexplained_finding(event, &diagnosis.traces, actuator));
+            diagnosis.findings.push(unexplained_finding(event, &diagnosis.traces));
             diagnosis.traces.effects.push(diagnosis.traces.left_within(event.when_s));
         }
-        Verdict::MissingPhysics | Verdict::Unexplained => diagnosis.health.push(unexplained_event(event, actuator)),
+        Verdict::MissingPhysics | Verdict::Unexplained => diagnosis.health.push(unexplained_event(event)),
     }
 }
 

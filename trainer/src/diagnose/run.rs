@@ -34,19 +34,19 @@ use crate::physics::catalogue;
 /// Least rows of evidence.
 const LEAST_ROWS: usize = 150;
 
-/// Diagnoses one recording. `actuator` is the text of the actuator's unit ("N m", "N" or "A").
+/// Diagnoses one recording.
 ///
 /// A torque that was recorded at another time than the motion is a finding of its own; physics is looked for once it is
 /// put back. Up to about a sample it is the sampling's own: put back and no finding.
 ///
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
-pub fn diagnose(comparison: &Comparison, actuator: &str, options: &Options) -> Result<Diagnosis, Refusal> {
+pub fn diagnose(comparison: &Comparison, options: &Options) -> Result<Diagnosis, Refusal> {
     let Comparison { signals, reference } = comparison;
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
-    let request = Request { actuator, options: *options, as_recorded: &AsRecorded::of(signals, actuator) };
+    let request = Request { options: *options, as_recorded: &AsRecorded::of(signals) };
     let Some(command) = Command::of(signals) else { return diagnose_in_step(comparison, &request) };
     let limited = Comparison { signals: command.given(signals), reference: reference.clone() };
     let mut diagnosis = diagnose_in_step(&limited, &request)?;
@@ -64,7 +64,7 @@ pub fn diagnose(comparison: &Comparison, actuator: &str, options: &Options) -> R
 pub fn learn_simulation(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
     let options = Options { base: BaseKind::Reference, ..Options::default() };
     learn(simulation, real, &|comparison| {
-        let found = diagnose(comparison, "", &options).map(|diagnosis| diagnosis.findings).unwrap_or_default();
+        let found = diagnose(comparison, &options).map(|diagnosis| diagnosis.findings).unwrap_or_default();
         found.into_iter().map(|finding| finding.fitted).collect()
     })
 }
@@ -72,7 +72,6 @@ pub fn learn_simulation(simulation: &Signals, real: &Signals) -> Result<InverseL
 /// What is asked for, whatever becomes of the signals on the way.
 #[derive(Clone, Copy)]
 struct Request<'a> {
-    actuator: &'a str,
     options: Options,
     /// What is wrong with the recording as it is: of a torque that was put back between its samples nobody can tell.
     as_recorded: &'a AsRecorded,
@@ -113,7 +112,7 @@ fn diagnose_from(delay_s: f64, comparison: &Comparison, request: &Request) -> Re
 fn diagnose_with_event_open(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
     let mut first = diagnose_locked(comparison, request)?;
     let Some(event) = locked_event(&first) else { return Ok(first) };
-    add_locked_event(&mut first, event, request.actuator);
+    add_locked_event(&mut first, event);
     let elsewhere = Options { lock: Lock::SpreadElsewhere, ..request.options };
     match diagnose_locked(comparison, &Request { options: elsewhere, ..*request }) {
         Ok(second) if names_more(&second, &first, event) => Ok(second),
@@ -123,7 +122,7 @@ fn diagnose_with_event_open(comparison: &Comparison, request: &Request) -> Resul
 
 /// Diagnoses with some rows locked.
 fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
-    let Request { actuator, options, as_recorded } = *request;
+    let Request { options, as_recorded } = *request;
     let signals = &comparison.signals;
     let mut prepared = comparison.prepare(options.lock);
     let rows = rows_in(&prepared.open_runs());
@@ -137,7 +136,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let measurement_noise = MeasurementNoise::of(&prepared, comparison, &base.residual);
     let search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings };
     let baseline = refit(workbench, &[]).ok_or(Refusal::Undetermined)?;
-    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms, actuator).collect();
+    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms).collect();
     health.extend(examine(comparison));
     health.extend(coarse_position(signals, &prepared));
     health.extend(scattered_sampling(signals, &prepared));
@@ -157,7 +156,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let findings: Vec<Finding> = accepted
         .iter()
         .enumerate()
-        .map(|(index, found)| finding(workbench, found, &accepted, index, &improved, actuator))
+        .map(|(index, found)| finding(workbench, found, &accepted, index, &improved))
         .collect();
     let faults = health.iter().filter(|note| note.blocking).map(measurement_finding);
     let findings = if blocked { faults.collect() } else { findings };
@@ -172,7 +171,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
         base: options.base,
         lock: options.lock,
         given: (options.base == BaseKind::Reference).then(|| score_as_given(workbench, &baseline)),
-        base_parameters: base_parameters(&base, &improved, signals, actuator),
+        base_parameters: base_parameters(&base, &improved),
         noise_rmse: improved.noise.rms,
         traces,
         baseline: score(workbench, &baseline),

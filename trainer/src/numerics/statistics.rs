@@ -1,5 +1,7 @@
 //! Statistics that every room uses.
 
+/// Standard deviations to each side of a 95 % interval of a normal variable.
+pub(crate) const NORMAL_95: f64 = 1.96;
 /// Standard deviation of normal noise over the median of its magnitude: 1 / (quantile of the normal distribution at 3/4).
 pub(crate) const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 

@@ -1,6 +1,7 @@
 //! Scales and ticks.
 
 use crate::figures::digits;
+use crate::physics::units::Units;
 
 /// A linear scale from data to pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,11 @@ impl Scale {
             .map(|value| (value, if value.abs() < 1e-9 * step { "0".to_string() } else { digits(value) }))
             .collect()
     }
+}
+
+/// Label of an axis over a channel, with its unit.
+pub(super) fn axis_label(channel: &str, units: Units) -> String {
+    format!("{} ({})", channel.replace('_', " "), units.of_channel(channel))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The page of a diagnosis: sentences first, then what they rest on.
 
-use super::axis::Scale;
+use super::axis::{Scale, axis_label};
 use super::chart::{Chart, Ink, bars};
-use super::finding::evidence;
+use super::finding::section;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
 use crate::diagnose::advice::Plan;
@@ -12,6 +12,7 @@ use crate::figures::{digits, quantity};
 use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::report::tell::Story;
+use crate::report::tell::evidence::{parameters, planned_motion};
 
 /// What goes onto the page.
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +60,8 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         page.list(&story.health, "findings");
     }
     overview(&mut page, diagnosis, units);
-    for (index, found) in diagnosis.findings.iter().enumerate() {
-        evidence(&mut page, diagnosis, found, index, units);
+    for index in 0..diagnosis.findings.len() {
+        section(&mut page, diagnosis, index, units, content.plan);
     }
     if let Some(plan) = content.plan {
         next(&mut page, plan, units);
@@ -73,7 +74,7 @@ pub fn diagnosis(content: &DiagnosisPage<'_>) -> String {
         } else {
             "Parameters of the base model, refitted"
         });
-        page.table(&PARAMETER_HEADER, &parameter_rows(&diagnosis.base_parameters));
+        page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&diagnosis.base_parameters, units)));
     }
     limits(&mut page, diagnosis, units);
     if !content.export.is_empty() {
@@ -164,14 +165,10 @@ fn second_axis(traces: &Traces, found: &Finding) -> &'static str {
         .unwrap_or("position")
 }
 
-pub(super) fn axis_label(channel: &str, units: Units) -> String {
-    format!("{} ({})", channel.replace('_', " "), units.of_channel(channel))
-}
-
 /// The motion that is proposed, over time.
 fn next(page: &mut Page, plan: &Plan, units: Units) {
     page.heading("What to record next");
-    page.paragraph(&format!("{}.", capital(&plan.sentence())));
+    page.paragraph(&format!("{}.", capital(&planned_motion(plan))));
     let points: Vec<[f64; 2]> =
         plan.position.iter().enumerate().map(|(k, position)| [k as f64 * plan.period, *position]).collect();
     let (time, position) = ((0.0, plan.duration_s()), Scale::over(plan.position.iter().copied()));

@@ -1,10 +1,10 @@
 //! One finding of a diagnosis on its page: equation, parameters, pictures, rivals, the drive.
 
-use super::axis::Scale;
+use super::axis::{Scale, axis_label};
 use super::chart::{Chart, Ink, bars};
-use super::diagnosis::axis_label;
 use super::on_the_drive::on_the_drive;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
+use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::traces::Traces;
@@ -12,18 +12,20 @@ use crate::figures::digits;
 use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
+use crate::report::tell::evidence::{evidence, parameters, separate_by};
 
 /// Names in the chart of one finding's rivals, its own included.
 const MOST_STANDINGS: usize = 6;
 
 /// One finding: equation, parameters, torque over its channel and time, regions.
-pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
+pub(super) fn section(page: &mut Page, diagnosis: &Diagnosis, index: usize, units: Units, plan: Option<&Plan>) {
+    let found = &diagnosis.findings[index];
     let code = if found.effect == EffectId::Unknown { "" } else { found.effect.code() };
     let name = format!("{code} {}", found.effect.name());
     page.heading(&format!("{}. {} ({})", index + 1, capital(plain_name(found.effect)), name.trim()));
-    page.paragraph(&format!("{}.", capital(&found.evidence)));
+    page.paragraph(&format!("{}.", capital(&evidence(found, units))));
     page.equation(&found.equation);
-    page.table(&PARAMETER_HEADER, &parameter_rows(&found.parameters));
+    page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&found.parameters, units)));
     figures(page, diagnosis, found, index, units);
     let regions: Vec<Vec<String>> = found
         .location
@@ -52,7 +54,7 @@ pub(super) fn evidence(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, 
     }
     if !found.alternatives.is_empty() {
         page.subheading("What would tell the alternatives apart");
-        page.paragraph(&format!("{}.", capital(&found.separate_by.sentence)));
+        page.paragraph(&format!("{}.", capital(&separate_by(found, plan))));
     }
 }
 

@@ -1,19 +1,32 @@
 //! A diagnosis as JSON, schema `frikan.diagnose/1`.
 
 use crate::diagnose::advice::Plan;
-use crate::diagnose::answer::outcome::{Diagnosis, Finding};
+use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::checks::note::HealthNote;
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::search::round::Scored;
 use crate::physics::EffectId;
+use crate::physics::units::Units;
 use crate::report::tell::Story;
+use crate::report::tell::evidence::{evidence, parameters, separate_by};
+use crate::report::tell::measurement::observation;
 use serde_json::{Value, json};
 
 /// Rivals listed with a finding, nearest first.
 const STANDINGS: usize = 8;
 
+/// A diagnosis and how it is told.
+pub(super) struct Told<'a> {
+    pub diagnosis: &'a Diagnosis,
+    pub story: &'a Story,
+    pub plan: Option<&'a Plan>,
+    pub units: Units,
+}
+
 /// The whole summary.
-pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>, seconds: f64, seed: u64) -> Value {
+pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
+    let Told { diagnosis, story, plan, units } = *told;
     let held_out = diagnosis.proof.as_ref().map(|proof| {
         json!({
             "baseline_rmse": proof.baseline_rmse,
@@ -29,8 +42,8 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
         "schema": "frikan.diagnose/1",
         "verdict": diagnosis.verdict,
         "headline": story.headline,
-        "health": diagnosis.health,
-        "findings": diagnosis.findings.iter().zip(&story.findings).map(finding_json).collect::<Vec<_>>(),
+        "health": diagnosis.health.iter().map(|note| health_json(note, units)).collect::<Vec<_>>(),
+        "findings": (0..diagnosis.findings.len()).map(|index| finding_json(told, index)).collect::<Vec<_>>(),
         "minor": diagnosis.minor.iter().map(|(effect, share)| json!({ "effect": effect, "share": share })).collect::<Vec<_>>(),
         "doubtful": explaining(&diagnosis.doubtful),
         "negligible": explaining(&diagnosis.negligible),
@@ -44,7 +57,7 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
             BaseKind::Reference => "reference",
         },
         "given": diagnosis.given,
-        "base_parameters": diagnosis.base_parameters,
+        "base_parameters": parameters(&diagnosis.base_parameters, units),
         "fit": {
             "noise_rmse": diagnosis.noise_rmse,
             "baseline": diagnosis.baseline,
@@ -72,7 +85,13 @@ fn plan_json(plan: &Plan) -> Value {
     })
 }
 
-fn finding_json((found, sentence): (&Finding, &String)) -> Value {
+fn health_json(note: &HealthNote, units: Units) -> Value {
+    json!({ "effect": note.effect, "blocking": note.blocking, "sentence": observation(&note.observation, units) })
+}
+
+fn finding_json(told: &Told, index: usize) -> Value {
+    let Told { plan, units, .. } = *told;
+    let (found, sentence) = (&told.diagnosis.findings[index], &told.story.findings[index]);
     json!({
         "effect": found.effect,
         "probability": found.probability,
@@ -83,11 +102,11 @@ fn finding_json((found, sentence): (&Finding, &String)) -> Value {
         "nearest": found.nearest.map(|(effect, share)| json!({"effect": effect, "share": share})),
         "action": found.action,
         "equation": found.equation,
-        "parameters": found.parameters,
+        "parameters": parameters(&found.parameters, units),
         "where": found.location.regions.iter().map(region_json).collect::<Vec<_>>(),
         "when_s": found.location.when_s,
-        "evidence": found.evidence,
-        "separate_by": found.separate_by.sentence,
+        "evidence": evidence(found, units),
+        "separate_by": separate_by(found, plan),
         "sentence": sentence,
         "score_nats": found.score,
         "margin_nats": found.margin,

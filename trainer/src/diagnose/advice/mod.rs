@@ -14,9 +14,7 @@ use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::statistics::quantile;
-use crate::physics::names::plain_name;
 use crate::physics::{EffectId, JointState};
 use excitation::{Envelope, Excitation};
 use future::Future;
@@ -106,57 +104,6 @@ impl Plan {
     #[must_use]
     pub fn suffices(&self) -> bool {
         self.expected_nats >= TOLD_APART_NATS
-    }
-
-    /// The plan in one sentence.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let text = |pairs: &[(EffectId, EffectId)]| {
-            let pairs: Vec<String> =
-                pairs.iter().map(|(a, b)| format!("{} from {}", plain_name(*a), plain_name(*b))).collect();
-            pairs.join(", and ")
-        };
-        let (seconds, words, pairs) = (self.duration_s(), &self.words, text(&self.pairs));
-        let (expected, present) = (self.expected_nats, self.present_nats);
-        if !self.suffices() {
-            return format!(
-                "no motion within the limits tells {pairs}: the best of them, {seconds:.0} s of {words}, promises \
-                 {expected:.1} nats, where {TOLD_APART_NATS} are needed"
-            );
-        }
-        let told = format!(
-            "{seconds:.0} s of {words}, recorded next, would tell {pairs}: expected margin {expected:.1} nats, where \
-             {TOLD_APART_NATS} suffice and this recording holds {present:.1}"
-        );
-        if self.left_open.is_empty() { told } else { format!("{told}; it cannot tell {}", text(&self.left_open)) }
-    }
-
-    /// The motion as CSV: time, position, velocity, acceleration, and the load torque where a payload is asked for. A
-    /// rest is the step of time behind the first row, over which the position is held.
-    #[must_use]
-    pub fn to_csv(&self, rotary: bool) -> String {
-        use std::fmt::Write;
-        let all = [0..self.position.len()];
-        let velocity = first_derivative(&self.position, &all, self.period);
-        let acceleration = second_derivative(&self.position, &all, self.period);
-        let header = match (rotary, self.load.is_some()) {
-            (true, false) => "time_s,position_rad,velocity_rad_s,acceleration_rad_s2",
-            (true, true) => "time_s,position_rad,velocity_rad_s,acceleration_rad_s2,load_torque_Nm",
-            (false, false) => "time_s,position_m,velocity_m_s,acceleration_m_s2",
-            (false, true) => "time_s,position_m,velocity_m_s,acceleration_m_s2,load_torque_N",
-        };
-        let mut text = format!("{header}\n");
-        for (k, position) in self.position.iter().enumerate() {
-            let rest = if k > 0 { self.rest_before_s } else { 0.0 };
-            let time = rest + k as f64 * self.period;
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{time:.6},{position:.9},{:.6},{:.6}", velocity[k], acceleration[k]);
-            let _ = match &self.load {
-                Some(load) => writeln!(text, ",{:.6}", load[k]),
-                None => writeln!(text),
-            };
-        }
-        text
     }
 }
 

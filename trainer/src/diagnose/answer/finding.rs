@@ -3,23 +3,18 @@
 use crate::diagnose::answer::formula;
 use crate::diagnose::answer::location::{Location, locate};
 use crate::diagnose::answer::nearest_named::nearest;
-use crate::diagnose::answer::outcome::{Advice, Finding};
+use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::stated_probability::{alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::base::Base;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::proof::locked_rows::prove_alone;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::accepted::Accepted;
-use crate::figures::{digits, quantity};
-use crate::parameter::Parameter;
-use crate::physics::separation::separation;
-use crate::physics::units::unit_text;
 use crate::physics::{Action, Dimension, EffectId};
 
 /// An accepted effect, the `index`th of `all`, after the joint refit.
@@ -29,7 +24,6 @@ pub(crate) fn finding(
     all: &[Accepted],
     index: usize,
     improved: &Refit,
-    actuator: &str,
 ) -> Finding {
     let effect = found.effect();
     let fitted = improved.effects[index].clone();
@@ -38,18 +32,12 @@ pub(crate) fn finding(
         Label::Named(id) => workbench.hypothesis(*id).map(|h| h.equation().to_string()).unwrap_or_default(),
         Label::Generic(rival) => formula::equation(workbench, all, index, *rival, &improved.noise),
     };
-    let others: Vec<EffectId> = found.rivals.iter().map(|(rival, _)| *rival).collect();
-    let advice = std::iter::once(effect).chain(others).map(separation).collect::<Vec<_>>().join("; ");
     let locked = prove_alone(workbench, all, index, improved).map(|proof| proof.gain_nats);
-    let of_locked = locked.map(|gain| format!("; locked rows {gain:+.1} more")).unwrap_or_default();
-    let evidence = format!(
-        "{:.1} nats in favour (held-out folds {:+.1}{of_locked}), family-wise p {}, {} rival{} within reach",
-        found.score,
-        found.fold_gain.iter().sum::<f64>(),
-        probability_text(found.family_wise),
-        found.rivals.len(),
-        if found.rivals.len() == 1 { "" } else { "s" },
-    );
+    let evidence = Evidence::Rows {
+        held_out_gain_nats: found.fold_gain.iter().sum(),
+        family_wise: found.family_wise,
+        rivals: found.rivals.len(),
+    };
     let nearest = nearest(workbench, &fitted, all, index);
     Finding {
         effect,
@@ -57,10 +45,9 @@ pub(crate) fn finding(
         alternatives: alternatives(found),
         action: effect.action(),
         equation,
-        parameters: parameters(workbench, &fitted, actuator),
+        parameters: parameters(workbench, &fitted),
         location,
         evidence,
-        separate_by: Advice { sentence: advice },
         fitted,
         score: found.score,
         margin: found.margin,
@@ -71,26 +58,13 @@ pub(crate) fn finding(
     }
 }
 
-/// A small probability; what a double cannot hold is bounded.
-fn probability_text(probability: f64) -> String {
-    if probability < 1e-99 { "below 1e-99".to_string() } else { format!("{probability:.1e}") }
-}
-
 /// Coefficients, then free shapes, with units and 95 % intervals.
-fn parameters(workbench: &Workbench, fitted: &Fitted, actuator: &str) -> Vec<Parameter> {
+fn parameters(workbench: &Workbench, fitted: &Fitted) -> Vec<Estimate> {
     let Label::Named(effect) = fitted.label else { return Vec::new() };
     let Some(hypothesis) = workbench.hypothesis(effect) else { return Vec::new() };
-    let rotary = workbench.prepared.state.rotary;
-    let parameter = |name: &str, symbol: &str, dimension: Dimension, value: f64, deviation: f64| Parameter {
-        name: name.to_string(),
-        symbol: symbol.to_string(),
-        value,
-        unit: unit_text(dimension, rotary, actuator),
-        ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
-    };
     let linear =
         hypothesis.coefficients(&fitted.shape).into_iter().zip(fitted.coefficients.iter().zip(&fitted.deviation)).map(
-            |((name, symbol, dimension), (value, deviation))| parameter(name, symbol, dimension, *value, *deviation),
+            |((name, symbol, dimension), (value, deviation))| Estimate::of(name, symbol, dimension, *value, *deviation),
         );
     let shapes = hypothesis
         .shape_names()
@@ -98,12 +72,12 @@ fn parameters(workbench: &Workbench, fitted: &Fitted, actuator: &str) -> Vec<Par
         .zip(fitted.shape.iter().zip(&fitted.shape_deviation))
         .filter(|(shape, _)| shape.name != "variant")
         .map(|(shape, (value, deviation))| {
-            parameter(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0))
+            Estimate::of(shape.name, shape.symbol, shape.dimension, *value, deviation.unwrap_or(0.0))
         });
     linear.chain(shapes).collect()
 }
 
-pub(crate) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, actuator: &str) -> Vec<Parameter> {
+pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
     let dimension = |name: &str| match name {
         "viscous_coefficient" | "viscous_coefficient_change" => Dimension::TorquePerVelocity,
         "inertia" => Dimension::Inertia,
@@ -114,21 +88,14 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit, signals: &Signals, act
         .enumerate()
         .filter(|(_, name)| !matches!(**name, "model_parameter" | "friction_knot"))
         .map(|(i, name)| {
-            let (value, deviation) = (refit.base[i], refit.base_deviation[i]);
-            Parameter {
-                name: (*name).to_string(),
-                symbol: match *name {
-                    "coulomb_torque" => "F_c",
-                    "viscous_coefficient" => "F_v",
-                    "coulomb_torque_change" => "dF_c",
-                    "viscous_coefficient_change" => "dF_v",
-                    _ => "J",
-                }
-                .to_string(),
-                value,
-                unit: unit_text(dimension(name), signals.rotary, actuator),
-                ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
-            }
+            let symbol = match *name {
+                "coulomb_torque" => "F_c",
+                "viscous_coefficient" => "F_v",
+                "coulomb_torque_change" => "dF_c",
+                "viscous_coefficient_change" => "dF_v",
+                _ => "J",
+            };
+            Estimate::of(name, symbol, dimension(name), refit.base[i], refit.base_deviation[i])
         })
         .collect()
 }
@@ -138,23 +105,17 @@ const AS_GOOD_AS_CERTAIN: f64 = 0.99;
 
 /// A fault of the measurement as a finding.
 pub(crate) fn measurement_finding(note: &HealthNote) -> Finding {
-    unfitted(note.effect, AS_GOOD_AS_CERTAIN, Action::Measurement, note.sentence.clone())
+    unfitted(note.effect, AS_GOOD_AS_CERTAIN, Action::Measurement, note.clone())
 }
 
 /// Something that happened once, in rows that were locked away.
-pub(crate) fn unexplained_event(worst: WorstLocked, actuator: &str) -> HealthNote {
-    let ([from, to], rms) = (worst.when_s.map(digits), quantity(worst.rms, actuator));
-    HealthNote {
-        effect: EffectId::TransientEvent,
-        blocking: false,
-        sentence: format!(
-            "between {from} and {to} s the model is wrong by {rms} (root mean square), which nothing in the other rows is like"
-        ),
-    }
+pub(crate) fn unexplained_event(worst: WorstLocked) -> HealthNote {
+    let observation = Observation::LockedEvent { when_s: worst.when_s, rms: worst.rms };
+    HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
 /// What happened once in rows that were locked away, where no row that might name it shows it.
-pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces, actuator: &str) -> Finding {
+pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces) -> Finding {
     let energy = |left: Vec<f64>| left.iter().map(|left| left * left).sum::<f64>();
     let [from, to] = worst.when_s;
     let rows = traces.time.iter().filter(|time| (from..=to).contains(*time)).count();
@@ -165,11 +126,10 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces, actuator:
         share_of_samples: rows as f64 / traces.len() as f64,
     };
     let effect = EffectId::Unknown;
-    let note = unexplained_event(worst, actuator);
     Finding {
         equation: "dF = c(time)".to_string(),
         location: Location { regions: vec![region], when_s: vec![worst.when_s] },
-        ..unfitted(effect, CLEARLY_NO_NOISE, effect.action(), note.sentence)
+        ..unfitted(effect, CLEARLY_NO_NOISE, effect.action(), unexplained_event(worst))
     }
 }
 
@@ -177,7 +137,7 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces, actuator:
 const CLEARLY_NO_NOISE: f64 = 0.98;
 
 /// A finding without a fitted term.
-fn unfitted(effect: EffectId, probability: f64, action: Action, evidence: String) -> Finding {
+fn unfitted(effect: EffectId, probability: f64, action: Action, note: HealthNote) -> Finding {
     Finding {
         effect,
         probability,
@@ -186,8 +146,7 @@ fn unfitted(effect: EffectId, probability: f64, action: Action, evidence: String
         equation: String::new(),
         parameters: Vec::new(),
         location: Location::default(),
-        evidence,
-        separate_by: Advice { sentence: separation(effect).to_string() },
+        evidence: Evidence::Measurement(note.observation),
         fitted: Fitted {
             label: Label::Named(effect),
             shape: Vec::new(),

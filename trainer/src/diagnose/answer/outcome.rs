@@ -2,7 +2,7 @@
 
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::traces::Traces;
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
@@ -11,8 +11,8 @@ use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::proof::rollout::Rollout;
 use crate::diagnose::search::round::Scored;
-use crate::parameter::Parameter;
-use crate::physics::{Action, EffectId};
+use crate::numerics::statistics::NORMAL_95;
+use crate::physics::{Action, Dimension, EffectId};
 use serde::Serialize;
 
 /// The overall answer.
@@ -29,11 +29,49 @@ pub enum Verdict {
     BadData,
 }
 
-/// An excitation that would separate a finding from its rivals.
+/// A parameter with its interval.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Advice {
-    /// In words.
-    pub sentence: String,
+pub struct Estimate {
+    /// The field's name, e.g. `coulomb_torque`.
+    pub name: &'static str,
+    /// Symbol in the equation.
+    pub symbol: &'static str,
+    /// The dimension, from which the unit follows.
+    pub dimension: Dimension,
+    /// Estimate in SI units, joint side.
+    pub value: f64,
+    /// 95 % confidence interval.
+    pub ci95: [f64; 2],
+}
+
+impl Estimate {
+    /// A normally distributed estimate with its standard deviation.
+    pub(crate) fn of(
+        name: &'static str,
+        symbol: &'static str,
+        dimension: Dimension,
+        value: f64,
+        deviation: f64,
+    ) -> Self {
+        let half = NORMAL_95 * deviation;
+        Self { name, symbol, dimension, value, ci95: [value - half, value + half] }
+    }
+}
+
+/// What speaks for a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Evidence {
+    /// The recorded rows.
+    Rows {
+        /// Gain in nats of the held-out folds.
+        held_out_gain_nats: f64,
+        /// Family-wise probability when nothing is missing.
+        family_wise: f64,
+        /// Named effects within reach.
+        rivals: usize,
+    },
+    /// What was seen of the measurement.
+    Measurement(Observation),
 }
 
 /// One finding.
@@ -50,13 +88,11 @@ pub struct Finding {
     /// The equation it adds.
     pub equation: String,
     /// Its parameters.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<Estimate>,
     /// Where it sits.
     pub location: Location,
-    /// One sentence of evidence.
-    pub evidence: String,
-    /// An excitation that would tell the alternatives apart.
-    pub separate_by: Advice,
+    /// What speaks for it.
+    pub evidence: Evidence,
     /// The fitted term.
     pub fitted: Fitted,
     /// Score in nats.
@@ -111,7 +147,7 @@ pub struct Diagnosis {
     pub given: Option<Given>,
     /// Names of the base's physical parameters, as far as they have one, with their refitted values; of a simulation or a model
     /// with what they have to change by.
-    pub base_parameters: Vec<Parameter>,
+    pub base_parameters: Vec<Estimate>,
     /// Root mean square of the noise that is left.
     pub noise_rmse: f64,
     /// Root mean square and R2 (against the recorded torque) of the base on all rows.

@@ -1,8 +1,7 @@
 //! A recorded torque beyond what the drive can give is its command: what the joint felt is the limit.
 
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::measurement::signals::Signals;
-use crate::figures::digits;
 use crate::physics::EffectId;
 
 /// Recorded torque over the drive's limit from which it is more than noise on top of it.
@@ -38,16 +37,9 @@ impl Command {
 
     /// What is wrong with the recording.
     pub(crate) fn note(&self) -> HealthNote {
-        let [limit, largest] = [self.limit, self.largest].map(digits);
-        HealthNote {
-            effect: EffectId::Saturation,
-            blocking: false,
-            sentence: format!(
-                "the recorded torque goes beyond the drive's limit of {limit} N m in {:.1} % of the samples, up to {largest} \
-                 N m: it is the command, and the limit is taken for what the joint felt",
-                100.0 * self.share
-            ),
-        }
+        let Self { limit, largest, share } = *self;
+        let observation = Observation::CommandBeyondLimit { limit, largest, share };
+        HealthNote { effect: EffectId::Saturation, blocking: false, observation }
     }
 }
 

@@ -1,11 +1,10 @@
 //! Measurement before physics: what is wrong with the recording itself.
 
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::checks::unit_or_sign::{contradicting_velocity, wrong_sign_or_unit};
 use crate::diagnose::comparison::reference::{Comparison, Outside};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::states::Prepared;
-use crate::figures::{digits, quantity};
 use crate::numerics::statistics::quantile;
 use crate::physics::EffectId;
 use crate::samples::spikes::{PRINTED, Spikes};
@@ -27,16 +26,16 @@ pub(crate) struct AsRecorded {
 }
 
 impl AsRecorded {
-    /// Looks at the torque of a recording, in the unit of its actuator.
-    pub fn of(signals: &Signals, actuator: &str) -> Self {
+    /// Looks at the torque of a recording.
+    pub fn of(signals: &Signals) -> Self {
         let step = torque_step(signals);
         let replaced = signals.spikes.iter().map(replaced);
-        Self { notes: replaced.chain(clipped_torque(signals, step, actuator)).collect(), step }
+        Self { notes: replaced.chain(clipped_torque(signals, step)).collect(), step }
     }
 
     /// The notes on it, beside a base that leaves some of it (root mean square).
-    pub fn notes(&self, left_by_base: f64, actuator: &str) -> impl Iterator<Item = HealthNote> {
-        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base, actuator)))
+    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
+        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base)))
     }
 }
 
@@ -55,45 +54,30 @@ fn beyond_the_model(outside: &Outside) -> Option<HealthNote> {
     if outside.channels.is_empty() {
         return None;
     }
-    let range = |(channel, [low, high], unit): &(String, [f64; 2], String)| {
-        format!("{channel} from {} to {} {unit}", digits(*low), digits(*high))
-    };
-    let ranges = outside.channels.iter().map(range).collect::<Vec<_>>().join(", ");
-    let share = 100.0 * beyond as f64 / outside.samples.len() as f64;
     Some(HealthNote {
         // Where a law ends nothing of the joint is missing.
         effect: EffectId::Unknown,
         blocking: false,
-        sentence: format!(
-            "the model was fitted on {ranges}: the {share:.1} % of the recording beyond that are not compared with it"
-        ),
+        observation: Observation::BeyondModelRange {
+            channels: outside.channels.clone(),
+            share: beyond as f64 / outside.samples.len() as f64,
+        },
     })
 }
 
 /// Rows that no motion of the joint can explain and that were replaced.
 fn replaced(spikes: &Spikes) -> HealthNote {
-    let Spikes { channel, rows, time_s, height, unit } = spikes;
-    let (height, time) = (quantity(*height, &unit.replace("Nm", "N m")), digits(*time_s));
-    let sentence = if *rows == 1 {
-        format!("one sample of the {channel} stands out alone, by {height} at {time} s: taken as a glitch and replaced")
-    } else {
-        format!(
-            "{rows} samples of the {channel} stand out alone, the largest by {height} at {time} s: taken as glitches and replaced"
-        )
-    };
-    HealthNote { effect: EffectId::TransientEvent, blocking: false, sentence }
+    let observation = Observation::Glitches(spikes.clone());
+    HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
 /// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
 /// error is as large as all that the base leaves.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64, actuator: &str) -> Option<HealthNote> {
+fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
     (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: share > COARSE_TORQUE_SHARE || step / 12f64.sqrt() >= left_by_base,
-        sentence: format!(
-            "the torque is recorded in steps of {}, coarser than its own noise",
-            quantity(step, actuator)
-        ),
+        observation: Observation::CoarseTorque { step },
     })
 }
 
@@ -118,15 +102,10 @@ fn torque_step(signals: &Signals) -> Option<TorqueStep> {
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.
 pub(crate) fn late_torque(delay: f64, period: f64) -> HealthNote {
-    let way = if delay > 0.0 { "later" } else { "earlier" };
-    let samples = digits((delay / period).abs());
     HealthNote {
         effect: EffectId::TimeMisalignment,
         blocking: false,
-        sentence: format!(
-            "the torque was recorded {} ({samples} samples) {way} than the position, as drives do: it was put back",
-            quantity(delay.abs(), "s")
-        ),
+        observation: Observation::RealignedTorque { delay_s: delay, period_s: period },
     }
 }
 
@@ -138,29 +117,21 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,
-        sentence: format!(
-            "the position is recorded in steps of {}: its grain drowns everything above {cut_off} Hz",
-            quantity(signals.position_resolution, if signals.rotary { "rad" } else { "m" })
-        ),
+        observation: Observation::CoarsePosition { step: signals.position_resolution, cut_off_hz: cut_off },
     })
 }
 
 /// A position that was sampled at other instants than the clock says.
 pub(crate) fn scattered_sampling(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
-    let periods = prepared.sampling_jitter / signals.period;
-    (periods > 0.0).then(|| HealthNote {
+    let deviation_s = prepared.sampling_jitter;
+    (deviation_s > 0.0).then(|| HealthNote {
         effect: EffectId::TimeMisalignment,
         blocking: false,
-        sentence: format!(
-            "the position is rough in proportion to the speed, as if the instants of its samples scattered by {} ({} samples), which \
-             the clock does not show: what is derived from it is as wrong",
-            quantity(prepared.sampling_jitter, "s"),
-            digits(periods)
-        ),
+        observation: Observation::SamplingJitter { deviation_s, period_s: signals.period },
     })
 }
 
-fn clipped_torque(signals: &Signals, step: Option<TorqueStep>, actuator: &str) -> Option<HealthNote> {
+fn clipped_torque(signals: &Signals, step: Option<TorqueStep>) -> Option<HealthNote> {
     let top = signals.torque.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let share_from = |level: f64| {
         let at_least = signals.torque.iter().filter(|torque| torque.abs() >= level).count();
@@ -172,11 +143,7 @@ fn clipped_torque(signals: &Signals, step: Option<TorqueStep>, actuator: &str) -
     (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then(|| HealthNote {
         effect: EffectId::Saturation,
         blocking: false,
-        sentence: format!(
-            "the torque stands at its limit of {} in {:.1} % of the samples",
-            quantity(top, actuator),
-            100.0 * share
-        ),
+        observation: Observation::ClippedTorque { limit: top, share },
     })
 }
 
@@ -194,7 +161,7 @@ mod tests {
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
         let blocking = |largest: f64| {
             torque_step(&in_steps(largest, largest))
-                .and_then(|step| coarse_torque(step, f64::INFINITY, "N m"))
+                .and_then(|step| coarse_torque(step, f64::INFINITY))
                 .map(|note| note.blocking)
         };
         assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
@@ -202,14 +169,14 @@ mod tests {
 
     #[test]
     fn fine_steps_block_where_they_are_all_that_is_left() {
-        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0), "N m");
-        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base, "N m").any(|note| note.blocking);
+        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0));
+        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
         assert!(blocks(0.25) && !blocks(0.35));
     }
 
     #[test]
     fn the_highest_step_of_a_coarse_torque_is_no_limit() {
-        let clipped = |signals: Signals| clipped_torque(&signals, torque_step(&signals), "N m");
+        let clipped = |signals: Signals| clipped_torque(&signals, torque_step(&signals));
         assert!(clipped(in_steps(5.0, 9.0)).is_none());
         assert!(clipped(in_steps(5.0, 3.0)).is_some());
         assert!(clipped(in_steps(400.0, 250.0)).is_some());

@@ -1,10 +1,9 @@
 //! Whether torque, position, velocity and the bodies that are given have one unit and one sign.
 
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation, TorquePart};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::filter::ZeroPhase;
-use crate::figures::digits;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::{least_squares, residual};
 use crate::physics::EffectId;
@@ -27,15 +26,6 @@ const AS_A_UNIT_LEAVES: std::ops::Range<f64> = 0.9..1.11;
 /// Correlation from which a recorded velocity goes with the derivative of the position, and its factor where both have one unit.
 const GOES_WITH: f64 = 0.9;
 const AS_ONE_UNIT_LEAVES: std::ops::Range<f64> = 0.8..1.25;
-/// Factors between the units of a velocity, or of a position and a velocity.
-const VELOCITY_UNITS: [(f64, &str); 6] = [
-    (1.0, "two directions"),
-    (57.295_78, "deg and rad"),
-    (9.549_297, "rpm and rad/s"),
-    (std::f64::consts::TAU, "turns and rad"),
-    (6.0, "rpm and deg/s"),
-    (1000.0, "milli-units and units"),
-];
 
 /// What a unit or a sign is seen behind: little of the encoder's grain.
 fn slow_filter(signals: &Signals) -> ZeroPhase {
@@ -59,16 +49,10 @@ pub(crate) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
     if both.powi(2) < GOES_WITH.powi(2) * recorded * derived || AS_ONE_UNIT_LEAVES.contains(&factor) || both == 0.0 {
         return None;
     }
-    let story = VELOCITY_UNITS
-        .iter()
-        .find(|(wanted, _)| {
-            [*wanted, 1.0 / wanted].iter().any(|wanted| AS_A_UNIT_LEAVES.contains(&(factor.abs() / wanted)))
-        })
-        .map_or(String::new(), |(_, story)| format!(", as between {story}"));
     Some(HealthNote {
         effect: EffectId::UnitOrSign,
         blocking: true,
-        sentence: format!("the recorded velocity is {} times the derivative of the position{story}", digits(factor)),
+        observation: Observation::ContradictingVelocity { ratio: factor },
     })
 }
 
@@ -94,18 +78,18 @@ pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> 
         .collect();
     // Inertial and static part apart where both are known: a wrong unit of position scales the inertial part alone.
     let smooth = |series: &[f64]| filter.over(series, segments);
-    let mut bodies: Vec<(&str, Vec<f64>)> = match (
+    let mut bodies: Vec<(TorquePart, Vec<f64>)> = match (
         reference.as_ref().map(|reference| &reference.torque),
         signals.rigid_body.as_ref(),
         signals.load.as_ref(),
     ) {
-        (Some(reference), _, _) => vec![("torque of the model", smooth(reference))],
+        (Some(reference), _, _) => vec![(TorquePart::Model, smooth(reference))],
         (None, Some(body), Some(load)) => {
             let inertial: Vec<f64> = body.iter().zip(load).map(|(b, l)| b - l).collect();
-            vec![("inertial torque", smooth(&inertial)), ("load torque", smooth(load))]
+            vec![(TorquePart::Inertia, smooth(&inertial)), (TorquePart::Load, smooth(load))]
         }
-        (None, Some(body), None) => vec![("rigid-body torque", smooth(body))],
-        (None, None, _) => vec![("acceleration", acceleration)],
+        (None, Some(body), None) => vec![(TorquePart::RigidBody, smooth(body))],
+        (None, None, _) => vec![(TorquePart::Acceleration, acceleration)],
     };
     bodies.retain(|(_, column)| column.iter().any(|v| *v != 0.0));
     let given = comparison.known().torque.is_some();
@@ -120,23 +104,22 @@ pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> 
         return None;
     }
     let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
-    let wrong = |sentence: String| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, sentence });
+    let wrong =
+        |observation: Observation| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, observation });
     // A reference holds friction of its own, and what it has too much of comes out negative.
     let drives = reference.is_none() && coefficients[friction] < 0.0;
     if drives && share(friction) > 0.1 {
-        return wrong("friction comes out as driving the joint: torque and motion have opposite signs".into());
+        return wrong(Observation::DrivingFriction);
     }
-    for (column, (name, _)) in bodies.iter().enumerate().filter(|(column, _)| share(*column) > 0.1) {
+    for (column, &(part, _)) in bodies.iter().enumerate().filter(|(column, _)| share(*column) > 0.1) {
         let factor = coefficients[column];
         // Hysteresis turns with the position, and so against the acceleration: alone it makes no body negative that is given.
         if given && AS_A_TURNED_SIGN_LEAVES.contains(&factor) {
-            return wrong(format!(
-                "the {name} enters with factor {factor:.3}: its sign is opposite to the recording's"
-            ));
+            return wrong(Observation::WrongFactor { part, factor, confusion: None });
         }
-        let story = UNIT_FACTORS.iter().find(|(wanted, _)| given && AS_A_UNIT_LEAVES.contains(&(factor / wanted)));
-        if let Some((_, story)) = story {
-            return wrong(format!("the {name} enters with factor {factor:.4}, as with {story}"));
+        let confusion = UNIT_FACTORS.iter().find(|(wanted, _)| given && AS_A_UNIT_LEAVES.contains(&(factor / wanted)));
+        if let Some(&(_, confusion)) = confusion {
+            return wrong(Observation::WrongFactor { part, factor, confusion: Some(confusion) });
         }
     }
     None
@@ -181,17 +164,13 @@ mod tests {
         let mut answer = |factor: f64, late: usize| {
             let recorded = (0..velocity.len()).map(|i| factor * velocity[i.saturating_sub(late)]);
             signals.velocity = Some(recorded.collect());
-            contradicting_velocity(&signals).map(|note| note.sentence)
+            contradicting_velocity(&signals).map(|note| note.observation)
         };
         assert_eq!(answer(1.0, 20), None);
-        for (factor, story) in
-            [(57.3, "deg and rad"), (0.01745, "deg and rad"), (-1.0, "two directions"), (0.001, "milli")]
-        {
-            assert!(answer(factor, 3).is_some_and(|sentence| sentence.contains(story)), "{factor}");
+        for factor in [57.3, 0.01745, -1.0, 0.001, 100.0] {
+            let Some(Observation::ContradictingVelocity { ratio }) = answer(factor, 3) else { panic!("{factor}") };
+            assert!((ratio / factor - 1.0).abs() < 0.01, "{ratio} for {factor}");
         }
-        assert!(
-            answer(100.0, 0).is_some_and(|sentence| sentence.ends_with("100 times the derivative of the position"))
-        );
         assert_eq!(answer(0.0, 0), None);
     }
 

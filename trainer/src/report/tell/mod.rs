@@ -1,10 +1,12 @@
 //! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
 
 mod certainty;
+pub mod evidence;
+pub mod measurement;
 #[cfg(test)]
 mod tests;
 
-use crate::diagnose::answer::outcome::{Diagnosis, Finding, Verdict};
+use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Finding, Verdict};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::figures::{digits, pair, quantity};
 use crate::parameter::Parameter;
@@ -12,6 +14,8 @@ use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
 use crate::report::tell::certainty::certainty;
+use evidence::{parameter, parameters};
+use measurement::observation;
 
 /// Quantile of the effect's torque that "up to" stands for.
 const UP_TO: f64 = 0.98;
@@ -61,7 +65,11 @@ pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
     Story {
         headline: headline(diagnosis, units),
         given: given(diagnosis, units),
-        health: diagnosis.health.iter().map(|note| capital(&format!("{}.", note.sentence))).collect(),
+        health: diagnosis
+            .health
+            .iter()
+            .map(|note| capital(&format!("{}.", observation(&note.observation, units))))
+            .collect(),
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
         minor: minor(diagnosis),
@@ -117,7 +125,7 @@ fn given(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
     let (as_given, refitted) = (given.score.rmse, diagnosis.baseline.rmse);
     if as_given > TELLING_CHANGE * refitted {
         let [as_given, refitted] = [as_given, refitted].map(|rmse| quantity(rmse, units.actuator));
-        let changes: Vec<String> = diagnosis.base_parameters.iter().filter_map(change).collect();
+        let changes: Vec<String> = parameters(&diagnosis.base_parameters, units).iter().filter_map(change).collect();
         let changes = if changes.is_empty() { String::new() } else { format!(": {}", changes.join(", ")) };
         sentences.push(format!(
             "As it was given, the model is wrong by {as_given}; refitting its own parameters leaves {refitted}{changes}."
@@ -144,7 +152,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let is_of_measurement = found.fitted.coefficients.is_empty() && found.effect != EffectId::Unknown;
     if is_of_measurement || found.effect == EffectId::TimeMisalignment {
         let name = capital(plain_name(found.effect));
-        return format!("{name}{}. {}{}", figures(found), certainty(found), action(found));
+        return format!("{name}{}. {}{}", figures(found, units), certainty(found), action(found));
     }
     let telling = found.location.regions.first().filter(|region| region.is_telling());
     let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
@@ -153,7 +161,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
         EffectId::Unknown => format!("{} ({})", plain_name(found.effect), found.equation),
         effect => plain_name(effect).to_string(),
     };
-    let figures = figures(found);
+    let figures = figures(found, units);
     let certainty = certainty(found);
     format!("{} {amount}: {name}{figures}. {certainty}{}", capital(&place), action(found))
 }
@@ -214,17 +222,18 @@ fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: U
 }
 
 /// The parameters that say most, at most two.
-fn figures(found: &Finding) -> String {
-    let told: Vec<String> = telling_parameters(found).into_iter().map(figure).collect();
+fn figures(found: &Finding, units: Units) -> String {
+    let told: Vec<String> =
+        telling_parameters(found).into_iter().map(|estimate| figure(&parameter(estimate, units))).collect();
     if told.is_empty() { String::new() } else { format!(", {}", told.join(", ")) }
 }
 
 /// Shapes say more than amplitudes, which the sentence has given already.
-fn telling_parameters(found: &Finding) -> Vec<&Parameter> {
+fn telling_parameters(found: &Finding) -> Vec<&Estimate> {
     let linear = found.fitted.coefficients.len().min(found.parameters.len());
     let (amplitudes, shapes) = found.parameters.split_at(linear);
     // Which joint it is says nothing of how much.
-    let shapes: Vec<&Parameter> = shapes.iter().filter(|shape| shape.name != "other_joint").take(2).collect();
+    let shapes: Vec<&Estimate> = shapes.iter().filter(|shape| shape.name != "other_joint").take(2).collect();
     if shapes.is_empty() && linear <= 3 { amplitudes.iter().take(2).collect() } else { shapes }
 }
 

@@ -1,7 +1,6 @@
 use super::*;
 use crate::diagnose::answer::location::Location;
-use crate::diagnose::answer::outcome::Advice;
-use crate::diagnose::answer::outcome::{Given, Score};
+use crate::diagnose::answer::outcome::{Evidence, Given, Score};
 use crate::diagnose::answer::traces::Traces;
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
@@ -10,6 +9,7 @@ use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::proof::refit::Refit;
+use crate::physics::Dimension;
 
 const ROTARY: Units = Units { actuator: "N m", rotary: true };
 
@@ -18,14 +18,14 @@ fn region(channel: &'static str, from: f64, to: f64) -> Region {
 }
 
 fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
-    let distance = Parameter {
-        name: "breakaway_distance".into(),
-        symbol: "delta".into(),
+    let distance = Estimate {
+        name: "breakaway_distance",
+        symbol: "delta",
         value: 1.2e-3,
-        unit: "rad".into(),
+        dimension: Dimension::Position,
         ci95: [1.1e-3, 1.3e-3],
     };
-    let torque = Parameter { name: "presliding_torque".into(), value: 3.1, unit: "N m".into(), ..distance.clone() };
+    let torque = Estimate { name: "presliding_torque", value: 3.1, dimension: Dimension::Torque, ..distance.clone() };
     let fitted = Fitted {
         label: Label::Named(EffectId::Presliding),
         shape: vec![1.2e-3],
@@ -41,8 +41,7 @@ fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
         equation: String::new(),
         parameters: vec![torque, distance],
         location: Location { regions: vec![region(channel, from, to)], when_s: Vec::new() },
-        evidence: String::new(),
-        separate_by: Advice { sentence: String::new() },
+        evidence: Evidence::Rows { held_out_gain_nats: 40.0, family_wise: 1e-9, rivals: 1 },
         fitted,
         score: 40.0,
         margin: 9.0,
@@ -129,11 +128,11 @@ fn a_finding_reads_as_a_sentence() {
 fn a_given_model_is_told_by_how_much_its_own_parameters_are_off() {
     let mut told = diagnosis(presliding("velocity", -0.05, 0.05));
     assert!(tell(&told, ROTARY).given.is_empty());
-    let parameter = |name: &str, value: f64, half: f64| Parameter {
-        name: name.into(),
-        symbol: String::new(),
+    let parameter = |name: &'static str, value: f64, half: f64| Estimate {
+        name,
+        symbol: "",
+        dimension: Dimension::Torque,
         value,
-        unit: "N m".into(),
         ci95: [value - half, value + half],
     };
     told.base_parameters =
