@@ -1,8 +1,8 @@
 //! What a network must satisfy: that its layers fit each other and its pool, and that no sum leaves its range, whatever the inputs.
 
-use super::{Layer, MAX_WIDTH, Network};
+use super::{InvalidModel, check_layout, ensure, rows, scale};
+use crate::network::{Layer, MAX_WIDTH, Network};
 use crate::table::{Cell, Symmetry, Table};
-use crate::validate::{InvalidModel, check_layout, ensure, rows, scale};
 
 /// Ranges of the sums of a layer.
 type Ranges = [(i64, i64); MAX_WIDTH];

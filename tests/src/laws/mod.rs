@@ -4,8 +4,7 @@ pub mod other;
 pub mod reference;
 pub mod simple;
 
-use frikan_trainer::law::structure::{Shape, SignForm, Structure, Term};
-use frikan_trainer::law::{Channel, ChannelRole, LawData};
+use frikan_trainer::law::{Channel, ChannelRole, LawData, Shape, SignForm, Structure, Term};
 
 use crate::paper;
 

@@ -1,7 +1,6 @@
 //! The paper's law under the paper's noise: structures found, and whether the intervals hold the truth.
 
-use frikan_trainer::law::structure::{Shape, SignForm, Structure};
-use frikan_trainer::law::{Discovery, SearchOptions, discover};
+use frikan_trainer::law::{Discovery, SearchOptions, Shape, SignForm, Structure, discover};
 
 use super::{joint, plain};
 use crate::paper::{JOINTS, NOISE, SAMPLES, SMOOTHING};

@@ -1,11 +1,9 @@
 //! What the activations of the pruned network look like: labels for its picture, starts for the search of the formula.
 
 use super::inputs::ChosenInput;
-use super::learn::{CURVE_POINTS, Learnt};
+use super::outcome::CURVE_POINTS;
 use crate::kan::{GraphEdge, GraphSummary, Network, NodeKind};
-use crate::law::Start;
-use crate::law::matching::matches;
-use crate::law::proposals::{Activation, proposals};
+use crate::law::{Activation, Start, matches, proposals};
 
 /// An activation is labelled with a function that leaves less than this share of its variance unexplained.
 const LABELLED: f64 = 1e-3;
@@ -20,8 +18,7 @@ pub fn label_activations(graph: &mut GraphSummary, network: &Network) {
 }
 
 /// Where the search may start. Only networks with at most one hidden layer say something about terms.
-pub(super) fn starts(learnt: &Learnt, inputs: &[ChosenInput]) -> Vec<Start> {
-    let (network, graph) = (&learnt.network, &learnt.graph);
+pub(super) fn starts(network: &Network, graph: &GraphSummary, inputs: &[ChosenInput]) -> Vec<Start> {
     if network.layers().len() > 2 {
         return Vec::new();
     }

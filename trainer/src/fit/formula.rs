@@ -1,17 +1,17 @@
-//! The formula: looked for on open blocks, then fitted to everything jointly with the rigid body.
+//! The formula: looked for on open blocks, then fitted to everything jointly with the rigid body; and a law in the terms of the
+//! compiler.
 
 use rayon::prelude::*;
 
 use super::gather::Material;
 use super::inputs::{ChosenInput, symbol};
-use super::outcome::{ClassicalLaw, FrontLaw, LawStory};
+use super::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use super::rigid;
+use crate::compile::formula::{Formula, Function, Operator};
 use crate::error::{Error, Result, codes};
-use crate::law::known_forms::refit;
-use crate::law::structure::Nonlinear;
 use crate::law::{
-    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, SearchOptions, Start,
-    discover, fit_form, render,
+    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nonlinear, Nuisance,
+    SearchOptions, Start, Unary, discover, fit_form, refit, render,
 };
 use crate::parameter::Parameter;
 
@@ -130,7 +130,7 @@ pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
 }
 
 /// What a report shows of the search.
-pub(super) fn story(found: &Found, inputs: &[ChosenInput]) -> LawStory {
+pub(super) fn summary(found: &Found, inputs: &[ChosenInput]) -> LawSummary {
     let front = found.discovery.front.iter().map(|entry| FrontLaw {
         expression: text(&entry.expression, inputs),
         nodes: entry.nodes,
@@ -139,7 +139,7 @@ pub(super) fn story(found: &Found, inputs: &[ChosenInput]) -> LawStory {
     });
     let expression = &found.last.law.expression;
     let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
-    LawStory {
+    LawSummary {
         expression: text(expression, inputs),
         latex: render(expression, Language::Latex, "friction", &symbols),
         nodes: expression.node_count(),
@@ -162,4 +162,53 @@ fn refused(error: &LawError) -> Error {
         _ => &codes::NOT_IDENTIFIABLE,
     };
     Error::new(code, error.to_string())
+}
+
+/// The formula of a bound expression (one without open parameters, which would read as NaN).
+#[must_use]
+pub fn formula_of(expression: &Expr) -> Formula {
+    let join = |operator, left: &Expr, right: &Expr| formula_of(left).join(operator, formula_of(right));
+    match expression {
+        Expr::Const(value) => Formula::Constant(*value),
+        Expr::Param(_) => Formula::Constant(f64::NAN),
+        Expr::Input(index) => Formula::Input(*index),
+        Expr::Add(left, right) => join(Operator::Add, left, right),
+        Expr::Sub(left, right) => join(Operator::Subtract, left, right),
+        Expr::Mul(left, right) => join(Operator::Multiply, left, right),
+        Expr::Div(left, right) => join(Operator::Divide, left, right),
+        Expr::Pow(base, exponent) => join(Operator::Power, base, exponent),
+        Expr::Unary(unary, argument) => formula_of(argument).apply(function_of(*unary)),
+    }
+}
+
+fn function_of(unary: Unary) -> Function {
+    match unary {
+        Unary::Neg => Function::Negate,
+        Unary::Abs => Function::Absolute,
+        Unary::Square => Function::Square,
+        Unary::Exp => Function::Exp,
+        Unary::Tanh => Function::Tanh,
+        Unary::Sin => Function::Sin,
+        Unary::Cos => Function::Cos,
+        Unary::Atan => Function::Atan,
+        Unary::Sqrt => Function::SquareRoot,
+        Unary::Log => Function::Log,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expression_and_formula_have_one_value() {
+        let v = || Expr::Input(0);
+        let law = (Expr::Const(22.0) + Expr::Const(8.0) * (-(v().abs() / Expr::Const(0.1))).exp())
+            * (Expr::Const(50.0) * v()).then(Unary::Tanh)
+            + Expr::Const(0.3) * v().pow(Expr::Const(1.5)) * v().then(Unary::Atan);
+        let formula = formula_of(&law);
+        for v in [-0.9, -0.01, 0.0, 0.2] {
+            assert!((formula.evaluate(&[v]) - law.value(&[v], &[])).abs() < 1e-12);
+        }
+    }
 }

@@ -1,18 +1,18 @@
-//! The joint on its bench: the closed loop over a campaign, sample by sample and step by step.
+//! Integrates the closed loop of drive and joint over a campaign, sample by sample and step by step.
 
-use super::channels::{Housing, Neighbour, NeighbourMotion};
 use super::concealed::Concealed;
-use super::control::{Controller, Target, round_to};
-use super::effects::Moment;
-use super::friction::{DryLevels, Motion1D};
+use super::effects::mechanism::Moment;
+use super::error::PlantError;
 use super::joint::Joint;
-use super::motion::Reference;
-use super::sensors::{History, encoder_step};
-use super::simulate::PlantError;
-use super::transmission::{Load, Push};
+use crate::plant::measurement::sensors::{History, encoder_step};
+use crate::plant::mechanics::channels::{Housing, Neighbour, NeighbourMotion};
+use crate::plant::mechanics::control::{Controller, Target, round_to};
+use crate::plant::mechanics::friction::{DryLevels, Motion1D};
+use crate::plant::mechanics::transmission::{Load, Push};
+use crate::plant::trajectory::reference::Reference;
 
-/// The moving joint.
-struct Bench<'a> {
+/// State of the moving joint.
+struct Integrator<'a> {
     joint: &'a Joint,
     motor: Motion1D,
     acceleration: f64,
@@ -29,15 +29,18 @@ const REST_STEP_S: f64 = 0.05;
 /// Beyond this speed the motion is taken to be unstable, rad/s.
 const RUNAWAY_RAD_S: f64 = 1e3;
 
-/// Runs the whole campaign.
-pub(crate) fn run(
+/// Integrates the whole campaign.
+///
+/// # Errors
+/// [`PlantError::Unstable`] where the motion leaves all bounds.
+pub(crate) fn integrate(
     joint: &Joint,
     references: &[(Reference, f64)],
     hidden: &mut Concealed,
     seed: u64,
 ) -> Result<History, PlantError> {
     let sample_s = 1.0 / joint.drive.rate_hz;
-    let mut bench = Bench {
+    let mut integrator = Integrator {
         joint,
         motor: Motion1D::default(),
         acceleration: 0.0,
@@ -58,11 +61,11 @@ pub(crate) fn run(
             gravity_torque: *gravity_torque,
             gravity_phase: joint.gravity_phase_rad,
         };
-        bench.rest(trajectory.pause_before_s, row as f64 / joint.drive.rate_hz + paused, &load, hidden);
+        integrator.rest(trajectory.pause_before_s, row as f64 / joint.drive.rate_hz + paused, &load, hidden);
         paused += trajectory.pause_before_s;
         for k in 0..reference.position.len() {
             let time = row as f64 / joint.drive.rate_hz + paused;
-            let reading = round_to(bench.motor.position, resolution);
+            let reading = round_to(integrator.motor.position, resolution);
             let target = Target {
                 position: reference.position[k],
                 velocity: reference.velocity[k],
@@ -76,21 +79,21 @@ pub(crate) fn run(
             history.trajectory.push(index as f64);
             history.reference.push(reference.position[k]);
             history.encoder.push(reading);
-            history.position.push(bench.motor.position);
-            history.velocity.push(bench.motor.velocity);
-            history.link_position.push(hidden.transmission.link_position(bench.motor.position));
+            history.position.push(integrator.motor.position);
+            history.velocity.push(integrator.motor.velocity);
+            history.link_position.push(hidden.transmission.link_position(integrator.motor.position));
             history.torque.push(command);
             history.gravity_torque.push(*gravity_torque);
-            history.temperature.push(bench.housing.temperature);
+            history.temperature.push(integrator.housing.temperature);
             history.other_position.push(other.position);
             history.other_velocity.push(other.velocity);
             history.other_acceleration.push(other.acceleration);
-            let before = bench.motor.velocity;
-            bench.other = other;
-            let effect = bench.sample(applied, time, &load, hidden);
+            let before = integrator.motor.velocity;
+            integrator.other = other;
+            let effect = integrator.sample(applied, time, &load, hidden);
             history.effect_torque.push(effect + command - applied);
-            history.acceleration.push((bench.motor.velocity - before) / sample_s);
-            if bench.motor.velocity.is_nan() || bench.motor.velocity.abs() > RUNAWAY_RAD_S {
+            history.acceleration.push((integrator.motor.velocity - before) / sample_s);
+            if integrator.motor.velocity.is_nan() || integrator.motor.velocity.abs() > RUNAWAY_RAD_S {
                 return Err(PlantError::Unstable(time));
             }
             row += 1;
@@ -99,7 +102,7 @@ pub(crate) fn run(
     Ok(history)
 }
 
-impl Bench<'_> {
+impl Integrator<'_> {
     fn moment(&self, start: f64, since: f64, middle: f64, load: &Load) -> Moment {
         let position = self.motor.position + middle * self.motor.velocity;
         Moment {

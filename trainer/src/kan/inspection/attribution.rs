@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
-use super::dataset::{Dataset, fold_chunks, row_count};
-use super::network::Network;
-use super::trace::Trace;
+use crate::kan::network::layers::Network;
+use crate::kan::network::trace::Trace;
+use crate::kan::training::dataset::{Dataset, fold_chunks, row_count};
 
 /// Scores of a network on a data set. The output has score one; what a sum receives it hands to its edges in
 /// proportion to their standard deviation over that of the sum; a product hands its score to both its factors.
@@ -113,7 +113,7 @@ fn add(sums: &mut [f64; 2], value: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kan::dataset::Blocks;
+    use crate::kan::Blocks;
 
     /// Two inputs; hidden sum and product; the second input reaches only the product, whose weight varies.
     fn network(weight: f64) -> Network {

@@ -1,13 +1,13 @@
-//! How far a trained network can be trusted: standard errors of its output from the penalised least-squares fit.
+//! The confidence band of a trained network: standard errors of its output from the penalised least-squares fit.
 
-use super::dataset::{Blocks, Dataset, row_count};
-use super::dense::{Cholesky, dot};
-use super::error::KanError;
-use super::gauss_newton::{SMOOTHING_LIMIT, SMOOTHING_START, penalised, ridge_of};
-use super::jacobian::{NormalEquations, derivatives};
-use super::model::{Model, Unknowns};
-use super::network::Network;
-use super::penalty::{Penalty, reestimate};
+use crate::kan::network::dense::{Cholesky, dot};
+use crate::kan::network::error::KanError;
+use crate::kan::network::layers::Network;
+use crate::kan::training::dataset::{Blocks, Dataset, row_count};
+use crate::kan::training::jacobian::{NormalEquations, derivatives};
+use crate::kan::training::model::{Model, Unknowns};
+use crate::kan::training::optimisers::gauss_newton::{SMOOTHING_LIMIT, SMOOTHING_START, penalised, ridge_of};
+use crate::kan::training::penalty::{Penalty, reestimate};
 
 /// Rounds in which the smoothing is estimated for the network as it stands.
 const ROUNDS: usize = 20;

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::attribution::Attribution;
-use super::dataset::Dataset;
-use super::network::Network;
+use crate::kan::network::layers::Network;
+use crate::kan::training::dataset::Dataset;
 
 /// What a node does with what reaches it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,7 +140,7 @@ impl Network {
     }
 
     /// Switches off every edge that leaves or reaches a node off all paths.
-    pub(super) fn drop_dead_edges(&mut self) {
+    pub(in crate::kan) fn drop_dead_edges(&mut self) {
         let live = self.live_nodes();
         for (index, layer) in self.layers.iter_mut().enumerate() {
             for node in 0..layer.nodes.count() {

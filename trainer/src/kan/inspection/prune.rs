@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::attribution::Attribution;
-use super::dataset::Dataset;
-use super::error::KanError;
-use super::fit::{FitOptions, FitResult, refit_from};
-use super::network::Network;
-use super::training::ProgressCallback;
+use crate::kan::network::error::KanError;
+use crate::kan::network::layers::Network;
+use crate::kan::training::dataset::Dataset;
+use crate::kan::training::fit::{FitOptions, FitResult, refit_from};
+use crate::kan::training::settings::ProgressCallback;
 
 /// What may be removed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +96,7 @@ pub struct Pruned {
 /// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs.
 ///
 /// # Errors
-/// As [`super::fit`].
+/// As [`crate::kan::training::fit`].
 pub fn prune(
     fitted: &FitResult,
     dataset: &Dataset,

@@ -74,12 +74,12 @@ impl Architecture {
     }
 
     /// Nodes of every layer but the inputs; the last is the output.
-    pub(super) fn layers(&self) -> impl Iterator<Item = Nodes> + '_ {
+    pub(in crate::kan) fn layers(&self) -> impl Iterator<Item = Nodes> + '_ {
         self.hidden.iter().copied().chain([Nodes { sums: 1, products: 0 }])
     }
 
     /// Resolution of the edges that leave `input`.
-    pub(super) fn resolution(&self, layer: usize, input: usize) -> Resolution {
+    pub(in crate::kan) fn resolution(&self, layer: usize, input: usize) -> Resolution {
         match self.input_resolution.len() {
             0 => self.hidden_resolution,
             n if layer == 0 => self.input_resolution[input.min(n - 1)],

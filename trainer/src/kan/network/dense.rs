@@ -1,14 +1,14 @@
 //! Cholesky factor of a dense symmetric matrix and what a penalised least squares needs from it.
 
 /// Lower Cholesky factor, row-major.
-pub(super) struct Cholesky {
+pub(in crate::kan) struct Cholesky {
     size: usize,
     factor: Vec<f64>,
 }
 
 impl Cholesky {
     /// Factors the matrix whose upper triangle is given row-major; `None` when it is not positive definite.
-    pub(super) fn new(upper: &[f64], size: usize) -> Option<Self> {
+    pub(in crate::kan) fn new(upper: &[f64], size: usize) -> Option<Self> {
         let mut factor = vec![0.0; size * size];
         for i in 0..size {
             let (above, current) = factor.split_at_mut(i * size);
@@ -27,7 +27,7 @@ impl Cholesky {
     }
 
     /// Solves for one right-hand side.
-    pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
+    pub(in crate::kan) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let n = self.size;
         let mut solution = right.to_vec();
         for i in 0..n {
@@ -46,7 +46,7 @@ impl Cholesky {
     }
 
     /// The inverse of the factor, transposed: row `c` holds column `c` of the inverse, zero before its diagonal.
-    pub(super) fn inverse_factor_transposed(&self) -> Vec<f64> {
+    pub(in crate::kan) fn inverse_factor_transposed(&self) -> Vec<f64> {
         let n = self.size;
         let mut inverse = vec![0.0; n * n];
         for c in 0..n {
@@ -63,7 +63,7 @@ impl Cholesky {
 
 /// Scalar product with a fixed association, wide enough for the compiler to vectorise.
 #[inline]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::kan) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; 8];
     let (a_wide, b_wide) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = a_wide.remainder().iter().zip(b_wide.remainder()).map(|(x, y)| x * y).sum();

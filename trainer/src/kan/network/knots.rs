@@ -5,20 +5,20 @@ use super::spline::{Grid, SplineBasis};
 
 /// Monotone map from a normalised input in `[-1, 1]` to a share of the knots in `[0, 1]`, linear between points.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Placement {
+pub(in crate::kan) struct Placement {
     /// Normalised input, ascending from -1 to 1.
-    pub(super) position: Vec<f64>,
+    pub(in crate::kan) position: Vec<f64>,
     /// Share of the knots below each position, ascending from 0 to 1.
-    pub(super) share: Vec<f64>,
+    pub(in crate::kan) share: Vec<f64>,
 }
 
 impl Placement {
-    pub(super) fn uniform() -> Self {
+    pub(in crate::kan) fn uniform() -> Self {
         Self { position: vec![-1.0, 1.0], share: vec![0.0, 1.0] }
     }
 
     /// Knots that crowd about zero: equal steps of `asinh`, the more so the larger `warp`.
-    pub(super) fn crowded(warp: f64) -> Self {
+    pub(in crate::kan) fn crowded(warp: f64) -> Self {
         let share: Vec<f64> = (0..=64).map(|i| f64::from(i) / 64.0).collect();
         let end = libm::sinh(warp);
         let mut position: Vec<f64> = share.iter().map(|s| libm::sinh(warp * (2.0 * s - 1.0)) / end).collect();
@@ -27,12 +27,12 @@ impl Placement {
     }
 
     /// Share of the knots below `x`.
-    pub(super) fn share_below(&self, x: f64) -> f64 {
+    pub(in crate::kan) fn share_below(&self, x: f64) -> f64 {
         interpolate(&self.position, &self.share, x)
     }
 
     /// The mean of a placement and its mirror image.
-    pub(super) fn symmetric(&self) -> Self {
+    pub(in crate::kan) fn symmetric(&self) -> Self {
         let mirrored = Self {
             position: self.position.iter().rev().map(|x| -x).collect(),
             share: self.share.iter().rev().map(|s| 1.0 - s).collect(),
@@ -50,7 +50,7 @@ impl Placement {
 
     /// Boundaries of `cells` cells; inner ones are drawn away from the middle, at most half a cell for a `stretch` of 1
     /// (towards it for -1).
-    pub(super) fn breaks(&self, cells: usize, stretch: f64) -> Vec<f64> {
+    pub(in crate::kan) fn breaks(&self, cells: usize, stretch: f64) -> Vec<f64> {
         let mut breaks: Vec<f64> =
             stretched(cells, stretch).map(|share| interpolate(&self.share, &self.position, share)).collect();
         // Cells never vanish, however steep the law.
@@ -62,14 +62,14 @@ impl Placement {
     }
 
     /// The basis over such cells.
-    pub(super) fn basis(&self, cells: usize, order: usize, stretch: f64) -> Result<SplineBasis, KanError> {
+    pub(in crate::kan) fn basis(&self, cells: usize, order: usize, stretch: f64) -> Result<SplineBasis, KanError> {
         SplineBasis::new(Grid { order, breaks: self.breaks(cells, stretch) })
     }
 }
 
 /// Boundaries of cells over `[0, 1]`, symmetric about its middle: equal cells, inner boundaries moved outwards by up
 /// to half a cell (`stretch` 1), or inwards (-1). The ends stay.
-pub(super) fn stretched(cells: usize, stretch: f64) -> impl Iterator<Item = f64> {
+pub(in crate::kan) fn stretched(cells: usize, stretch: f64) -> impl Iterator<Item = f64> {
     (0..=cells).map(move |i| match i {
         0 => 0.0,
         i if i == cells => 1.0,

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::architecture::{Architecture, Nodes};
 use super::error::KanError;
 use super::spline::SplineBasis;
-use super::trace::Trace;
 
 /// Affine map between a physical quantity and the unit interval or unit variance that training works in.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,22 +41,22 @@ pub struct Edge {
 
 impl Edge {
     /// Number of parameters: coefficients, spline scale, base weight.
-    pub(super) fn parameter_count(&self) -> usize {
+    pub(in crate::kan) fn parameter_count(&self) -> usize {
         self.basis.len() + 2
     }
 
     /// Where the spline coefficients lie in the parameter vector.
-    pub(super) fn coefficients(&self) -> std::ops::Range<usize> {
+    pub(in crate::kan) fn coefficients(&self) -> std::ops::Range<usize> {
         self.offset..self.offset + self.basis.len()
     }
 
     /// Where the spline scale lies.
-    pub(super) fn scale(&self) -> usize {
+    pub(in crate::kan) fn scale(&self) -> usize {
         self.offset + self.basis.len()
     }
 
     /// Where the base weight lies.
-    pub(super) fn base(&self) -> usize {
+    pub(in crate::kan) fn base(&self) -> usize {
         self.scale() + 1
     }
 }
@@ -97,8 +96,8 @@ pub struct Network {
     pub inputs: Vec<Scaling>,
     /// Physical scale of the output.
     pub output: Scaling,
-    pub(super) layers: Vec<Layer>,
-    pub(super) parameters: Vec<f64>,
+    pub(in crate::kan) layers: Vec<Layer>,
+    pub(in crate::kan) parameters: Vec<f64>,
 }
 
 impl Network {
@@ -145,7 +144,7 @@ impl Network {
     }
 
     /// Puts other bases under the edges, in the order of layers and edges; coefficients restart from zero.
-    pub(super) fn set_bases(&mut self, bases: impl IntoIterator<Item = SplineBasis>) {
+    pub(in crate::kan) fn set_bases(&mut self, bases: impl IntoIterator<Item = SplineBasis>) {
         for (edge, basis) in self.layers.iter_mut().flat_map(|layer| &mut layer.edges).zip(bases) {
             edge.basis = basis;
         }
@@ -153,7 +152,7 @@ impl Network {
     }
 
     /// Lets an edge's spline follow a curve, smoothed by the basis (Schoenberg's variation-diminishing approximation).
-    pub(super) fn set_curve(&mut self, layer: usize, position: usize, curve: impl Fn(f64) -> f64) {
+    pub(in crate::kan) fn set_curve(&mut self, layer: usize, position: usize, curve: impl Fn(f64) -> f64) {
         let edge = &self.layers[layer].edges[position];
         for (slot, x) in self.parameters[edge.coefficients()].iter_mut().zip(edge.basis.greville()) {
             *slot = curve(x);
@@ -176,62 +175,8 @@ impl Network {
         self.active_edges().map(|edge| edge.basis.len() + 1).sum()
     }
 
-    pub(super) fn active_edges(&self) -> impl Iterator<Item = &Edge> {
+    pub(in crate::kan) fn active_edges(&self) -> impl Iterator<Item = &Edge> {
         self.layers.iter().flat_map(|layer| &layer.edges).filter(|edge| edge.active)
-    }
-
-    /// Output at one point, physical units in and out. `inputs` has one value per input; missing ones count as
-    /// the centre of their range.
-    pub fn evaluate(&self, inputs: &[f64]) -> f64 {
-        let mut trace = Trace::new(self);
-        self.output.restore(trace.forward(self, |i| self.normalised(inputs, i)))
-    }
-
-    /// Output at many points; `inputs` holds one column per input, as in a [`super::Dataset`].
-    pub fn evaluate_columns(&self, inputs: &[Vec<f64>]) -> Vec<f64> {
-        let mut trace = Trace::new(self);
-        let rows = inputs.first().map_or(0, Vec::len);
-        (0..rows)
-            .map(|row| self.output.restore(trace.forward(self, |i| self.inputs[i].normalise(inputs[i][row]))))
-            .collect()
-    }
-
-    /// Partial derivatives of the output with respect to each input, physical units.
-    pub fn slopes(&self, inputs: &[f64]) -> Vec<f64> {
-        let mut trace = Trace::new(self);
-        trace.forward(self, |i| self.normalised(inputs, i));
-        trace.backward(self);
-        let slopes = trace.input_slopes();
-        slopes.iter().zip(&self.inputs).map(|(slope, scaling)| slope * self.output.width / scaling.width).collect()
-    }
-
-    fn normalised(&self, inputs: &[f64], input: usize) -> f64 {
-        inputs.get(input).map_or(0.0, |&value| self.inputs[input].normalise(value))
-    }
-
-    /// Value of one activation at `x`. In the first layer `x` is the physical input; the last layer's activations
-    /// are contributions to the output in physical units. `to` counts terminals (see [`Layer::terminals_of`]).
-    pub fn edge_activation(&self, layer: usize, from: usize, to: usize, x: f64) -> f64 {
-        self.edge_value_and_slope(layer, from, to, x).0
-    }
-
-    /// Derivative of [`Network::edge_activation`] with respect to `x`.
-    pub fn edge_slope(&self, layer: usize, from: usize, to: usize, x: f64) -> f64 {
-        self.edge_value_and_slope(layer, from, to, x).1
-    }
-
-    fn edge_value_and_slope(&self, layer: usize, from: usize, to: usize, x: f64) -> (f64, f64) {
-        let edge = self.layers[layer].edge(from, to);
-        if !edge.active {
-            return (0.0, 0.0);
-        }
-        let (x, gain_in) = match layer {
-            0 => (self.inputs[from].normalise(x), 1.0 / self.inputs[from].width),
-            _ => (x, 1.0),
-        };
-        let gain_out = if layer + 1 == self.layers.len() { self.output.width } else { 1.0 };
-        let trace = super::trace::EdgeTrace::at(edge, &self.parameters, x, false);
-        (trace.value * gain_out, trace.slope * gain_in * gain_out)
     }
 
     /// Adds a constant, in physical units, to the output.

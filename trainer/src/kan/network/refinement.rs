@@ -2,7 +2,7 @@
 
 use super::dense::Cholesky;
 use super::error::KanError;
-use super::network::Network;
+use super::layers::Network;
 use super::spline::{Grid, SplineBasis};
 
 impl Network {

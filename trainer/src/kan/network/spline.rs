@@ -8,7 +8,7 @@ use super::error::KanError;
 pub const MAX_ORDER: usize = 5;
 
 /// Largest number of basis functions that are non-zero at one point.
-pub(super) const MAX_SUPPORT: usize = MAX_ORDER + 1;
+pub(in crate::kan) const MAX_SUPPORT: usize = MAX_ORDER + 1;
 
 /// The basis functions that are non-zero at one point, with their slopes. Entries beyond the order are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

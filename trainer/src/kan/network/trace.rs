@@ -1,20 +1,20 @@
 //! One sample through the network: values forward, derivatives of the output backward.
 
-use super::network::{Edge, Layer, Network};
+use super::layers::{Edge, Layer, Network};
 use super::spline::LocalBasis;
 
 /// What one edge did with its argument.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct EdgeTrace {
-    pub(super) local: LocalBasis,
-    pub(super) silu: f64,
-    pub(super) value: f64,
-    pub(super) slope: f64,
+pub(in crate::kan) struct EdgeTrace {
+    pub(in crate::kan) local: LocalBasis,
+    pub(in crate::kan) silu: f64,
+    pub(in crate::kan) value: f64,
+    pub(in crate::kan) slope: f64,
 }
 
 impl EdgeTrace {
     #[inline]
-    pub(super) fn at(edge: &Edge, parameters: &[f64], x: f64, with_base: bool) -> Self {
+    pub(in crate::kan) fn at(edge: &Edge, parameters: &[f64], x: f64, with_base: bool) -> Self {
         let local = edge.basis.at(x);
         let coefficients = &parameters[edge.coefficients()][local.first..=local.first + edge.basis.order()];
         let (mut spline, mut spline_slope) = (0.0, 0.0);
@@ -49,7 +49,7 @@ struct LayerTrace {
 
 /// Buffers for one sample; reused from sample to sample.
 #[derive(Clone, Debug)]
-pub(super) struct Trace {
+pub(in crate::kan) struct Trace {
     layers: Vec<LayerTrace>,
     output: f64,
     /// Whether SiLU is wanted even where its weight is zero.
@@ -57,7 +57,7 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    pub(super) fn new(network: &Network) -> Self {
+    pub(in crate::kan) fn new(network: &Network) -> Self {
         let layers = network.layers.iter().map(|layer| LayerTrace {
             inputs: vec![0.0; layer.inputs],
             edges: vec![EdgeTrace::default(); layer.edges.len()],
@@ -70,13 +70,13 @@ impl Trace {
     }
 
     /// A trace for derivatives with respect to parameters, base weights among them when `with_base`.
-    pub(super) fn for_training(network: &Network, with_base: bool) -> Self {
+    pub(in crate::kan) fn for_training(network: &Network, with_base: bool) -> Self {
         Self { with_base, ..Self::new(network) }
     }
 
     /// Normalised output for normalised inputs.
     #[inline]
-    pub(super) fn forward(&mut self, network: &Network, input: impl Fn(usize) -> f64) -> f64 {
+    pub(in crate::kan) fn forward(&mut self, network: &Network, input: impl Fn(usize) -> f64) -> f64 {
         for (i, slot) in self.layers[0].inputs.iter_mut().enumerate() {
             *slot = input(i);
         }
@@ -93,7 +93,7 @@ impl Trace {
     }
 
     /// Derivatives of the normalised output, for the sample of the last [`Trace::forward`].
-    pub(super) fn backward(&mut self, network: &Network) {
+    pub(in crate::kan) fn backward(&mut self, network: &Network) {
         for index in (0..network.layers.len()).rev() {
             let (until, after) = self.layers.split_at_mut(index + 1);
             let (trace, layer) = (&mut until[index], &network.layers[index]);
@@ -114,24 +114,24 @@ impl Trace {
     }
 
     /// Derivatives with respect to the normalised inputs.
-    pub(super) fn input_slopes(&self) -> &[f64] {
+    pub(in crate::kan) fn input_slopes(&self) -> &[f64] {
         &self.layers[0].input_adjoints
     }
 
     /// Derivative of the output with respect to one edge's value, and what the edge did.
     #[inline]
-    pub(super) fn edge(&self, layer: usize, position: usize, inputs: usize) -> (f64, &EdgeTrace) {
+    pub(in crate::kan) fn edge(&self, layer: usize, position: usize, inputs: usize) -> (f64, &EdgeTrace) {
         let trace = &self.layers[layer];
         (trace.terminal_adjoints[position / inputs], &trace.edges[position])
     }
 
     /// Values of the nodes that feed a layer.
-    pub(super) fn inputs(&self, layer: usize) -> &[f64] {
+    pub(in crate::kan) fn inputs(&self, layer: usize) -> &[f64] {
         &self.layers[layer].inputs
     }
 
     /// What the edges of a layer add up to.
-    pub(super) fn sums(&self, layer: usize) -> &[f64] {
+    pub(in crate::kan) fn sums(&self, layer: usize) -> &[f64] {
         &self.layers[layer].sums
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::error::KanError;
+use crate::kan::network::error::KanError;
 
 /// Rows that one work item covers. Results of work items are combined in order, so that the number of threads
 /// does not show in a sum.
@@ -69,7 +69,7 @@ impl Dataset<'_> {
     }
 
     /// The training ranges, all other rows when none are given.
-    pub(super) fn training_rows(&self) -> Vec<Range<usize>> {
+    pub(in crate::kan) fn training_rows(&self) -> Vec<Range<usize>> {
         if !self.blocks.train.is_empty() {
             return self.blocks.train.clone();
         }
@@ -94,12 +94,12 @@ impl Dataset<'_> {
 const MINIMUM_ROWS: usize = 4;
 
 /// Number of rows in a list of ranges.
-pub(super) fn row_count(rows: &[Range<usize>]) -> usize {
+pub(in crate::kan) fn row_count(rows: &[Range<usize>]) -> usize {
     rows.iter().map(Range::len).sum()
 }
 
 /// Maps fixed chunks of rows, in parallel, and folds the results strictly in the order of the rows.
-pub(super) fn fold_chunks<T: Send, A>(
+pub(in crate::kan) fn fold_chunks<T: Send, A>(
     rows: &[Range<usize>],
     start: A,
     map: impl Fn(Range<usize>) -> T + Sync,

@@ -1,20 +1,21 @@
-//! One call from data to a trained network: pilot, independent starts, training, choice of the best.
+//! One call from data to a trained network: initial linear fit, independent starts, training, choice of the best.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::architecture::Architecture;
 use super::dataset::{Dataset, row_count};
-use super::error::KanError;
+use super::initial_linear_fit::initial_linear_fit;
+use super::initial_weights::initial_weights;
 use super::model::Model;
-use super::network::Network;
+use super::optimisers::minimise;
 use super::outcome::{Convergence, Step};
-use super::pilot::pilot;
+use super::settings::{Monitor, Optimiser, ProgressCallback, Settings, Smoothing};
 use super::sparsity::Sparsity;
-use super::start::initial;
-use super::training::{Optimiser, ProgressCallback, Settings, Smoothing, Watch, minimise};
+use crate::kan::network::architecture::Architecture;
+use crate::kan::network::error::KanError;
+use crate::kan::network::layers::Network;
 
 /// What to train, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +39,7 @@ pub struct FitOptions {
     pub tolerance: f64,
     /// How often the cells of the best start are halved and trained on, at most: as long as its criterion falls.
     pub refinements: usize,
-    /// Pull of superfluous edges towards nothing.
+    /// Penalty on superfluous edges.
     pub sparsity: Sparsity,
 }
 
@@ -101,12 +102,12 @@ impl FitResult {
 pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) -> Result<FitResult, KanError> {
     dataset.check(options.architecture.inputs)?;
     let rows = dataset.training_rows();
-    let pilot = pilot(dataset, &rows)?;
+    let linear_fit = initial_linear_fit(dataset, &rows)?;
     let train = |restart: usize| -> Result<Trained, KanError> {
-        let network = initial(&options.architecture, &pilot, options.seed, restart)?;
+        let network = initial_weights(&options.architecture, &linear_fit, options.seed, restart)?;
         let mut model = Model::scaled_to(network, dataset, &rows);
-        model.linear.copy_from_slice(pilot.linear());
-        Ok(Trained::run(model, pilot.noise_variance, dataset, options, restart, progress))
+        model.linear.copy_from_slice(linear_fit.linear());
+        Ok(Trained::run(model, linear_fit.noise_variance, dataset, options, restart, progress))
     };
     let first = train(0)?;
     let others: Vec<Trained> = (1..options.restarts).into_par_iter().map(train).collect::<Result<_, _>>()?;
@@ -120,7 +121,7 @@ pub fn fit(dataset: &Dataset, options: &FitOptions, progress: ProgressCallback) 
     for _ in 0..options.refinements {
         let linear = trained.model.linear_coefficients();
         let network = trained.model.network.refined()?;
-        let finer = refit_from(network, &linear, pilot.noise_variance, dataset, options, progress);
+        let finer = refit_from(network, &linear, linear_fit.noise_variance, dataset, options, progress);
         if finer.criterion >= trained.criterion {
             break;
         }
@@ -148,7 +149,7 @@ pub fn refit(
     Ok(trained.into_result(dataset, 0))
 }
 
-pub(super) fn refit_from(
+pub(in crate::kan) fn refit_from(
     network: Network,
     linear_coefficients: &[f64],
     noise_variance: f64,
@@ -161,11 +162,11 @@ pub(super) fn refit_from(
 }
 
 /// A model at the end of its training.
-pub(super) struct Trained {
-    pub(super) model: Model,
+pub(in crate::kan) struct Trained {
+    pub(in crate::kan) model: Model,
     /// Mean squared error, normalised: of the validation rows, without them by generalised cross-validation.
-    pub(super) criterion: f64,
-    pub(super) convergence: Convergence,
+    pub(in crate::kan) criterion: f64,
+    pub(in crate::kan) convergence: Convergence,
     history: Vec<Step>,
     snapshots: Vec<(usize, Network)>,
 }
@@ -180,7 +181,7 @@ impl Trained {
         progress: ProgressCallback,
     ) -> Self {
         let validation = &dataset.blocks.validation;
-        let mut watch = Watch::new(progress, restart, validation, options.steps);
+        let mut monitor = Monitor::new(progress, restart, validation, options.steps);
         let settings = Settings {
             optimiser: options.optimiser,
             steps: options.steps,
@@ -191,16 +192,16 @@ impl Trained {
             sparsity: options.sparsity,
         };
         let (convergence, cross_validation) =
-            minimise(&mut model, dataset, &dataset.training_rows(), &settings, &mut watch);
+            minimise(&mut model, dataset, &dataset.training_rows(), &settings, &mut monitor);
         let held_out = row_count(validation);
         let criterion = match held_out {
             0 => cross_validation,
             rows => model.residual_sum(dataset, validation) / rows as f64,
         };
-        Self { model, criterion, convergence, history: watch.history, snapshots: watch.snapshots }
+        Self { model, criterion, convergence, history: monitor.history, snapshots: monitor.snapshots }
     }
 
-    pub(super) fn into_result(self, dataset: &Dataset, restart: usize) -> FitResult {
+    pub(in crate::kan) fn into_result(self, dataset: &Dataset, restart: usize) -> FitResult {
         let rmse = |rows: &[Range<usize>]| {
             self.model.physical_loss(self.model.residual_sum(dataset, rows), row_count(rows)).sqrt()
         };

@@ -1,10 +1,10 @@
 //! The loss of a network and its gradient, as every training by gradients sees them.
 
 use super::dataset::{Dataset, row_count};
-use super::error::KanError;
 use super::jacobian::residual_sum_and_gradient;
 use super::model::{Model, Unknowns};
-use super::network::Network;
+use crate::kan::network::error::KanError;
+use crate::kan::network::layers::Network;
 
 /// Mean squared error over the training rows and its gradient with respect to the spline coefficients of all active edges
 /// and the coefficients of the linear columns, target and columns normalised.

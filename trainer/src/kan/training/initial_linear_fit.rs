@@ -1,27 +1,29 @@
-//! A pilot fit of one spline per input: main effects, noise, and knots where the law bends.
+//! The initial linear fit: one spline per input, linear in its coefficients. It gives main effects, the variance of the noise, and
+//! knots where the effects bend.
 
 use std::ops::Range;
 
-use super::architecture::Architecture;
 use super::dataset::{Dataset, row_count};
-use super::error::KanError;
-use super::knots::Placement;
 use super::model::Model;
-use super::network::Network;
+use super::optimisers::minimise;
+use super::settings::{Monitor, Optimiser, Settings, Smoothing};
 use super::sparsity::Sparsity;
-use super::spline::SplineBasis;
-use super::training::{Optimiser, Settings, Smoothing, Watch, minimise};
+use crate::kan::network::architecture::Architecture;
+use crate::kan::network::error::KanError;
+use crate::kan::network::knots::Placement;
+use crate::kan::network::layers::Network;
+use crate::kan::network::spline::SplineBasis;
 
-/// Main effect of every input, and where its knots should lie.
+/// Main effect of every input, and where its knots lie.
 #[derive(Clone, Debug)]
-pub(super) struct Pilot {
-    pub(super) placements: Vec<Placement>,
+pub(in crate::kan) struct InitialLinearFit {
+    pub(in crate::kan) placements: Vec<Placement>,
     /// Residual variance beside the main effects, by generalised cross-validation, normalised target.
-    pub(super) noise_variance: f64,
+    pub(in crate::kan) noise_variance: f64,
     model: Model,
 }
 
-impl Pilot {
+impl InitialLinearFit {
     /// Fits with given knots; takes scalings and linear columns over from `model`.
     fn with_knots(
         placements: Vec<Placement>,
@@ -42,13 +44,13 @@ impl Pilot {
         let bases: Vec<SplineBasis> = placements.iter().map(|p| p.basis(cells, 3, 0.0)).collect::<Result<_, _>>()?;
         let mut model = model.clone();
         model.network.set_bases(bases);
-        let mut watch = Watch::new(&|_| {}, 0, &[], settings.steps);
-        let (_, noise_variance) = minimise(&mut model, dataset, rows, &settings, &mut watch);
+        let mut monitor = Monitor::new(&|_| {}, 0, &[], settings.steps);
+        let (_, noise_variance) = minimise(&mut model, dataset, rows, &settings, &mut monitor);
         Ok(Self { placements, noise_variance, model })
     }
 
     /// Density of knots proportional to the fourth root of the fourth derivative of the input's effect, estimated from the
-    /// jumps of the pilot's third derivative (optimal for cubic splines; de Boor, 1973), blended with the density of the
+    /// jumps of this fit's third derivative (optimal for cubic splines; de Boor, 1973), blended with the density of the
     /// range and of the samples.
     fn equidistributed(&self, input: usize, samples: &Placement) -> Placement {
         let breaks = self.model.network.layers()[0].edge(input, 0).basis.breaks();
@@ -89,18 +91,18 @@ impl Pilot {
     }
 
     /// Contribution of one input at a normalised value, normalised target.
-    pub(super) fn effect(&self, input: usize, x: f64) -> f64 {
+    pub(in crate::kan) fn effect(&self, input: usize, x: f64) -> f64 {
         let network = &self.model.network;
         network.edge_activation(0, input, 0, network.inputs[input].restore(x)) / network.output.width
     }
 
     /// Coefficients of the linear columns beside these effects, normalised.
-    pub(super) fn linear(&self) -> &[f64] {
+    pub(in crate::kan) fn linear(&self) -> &[f64] {
         &self.model.linear
     }
 }
 
-/// Cells of the pilot per input.
+/// Cells per input.
 const CELLS: usize = 30;
 
 /// Crowding about zero that is tried for inputs that reach to both sides of it.
@@ -116,20 +118,23 @@ const MARGIN: f64 = 0.02;
 /// Share of the knots that is spread evenly over the range, and over the samples.
 const SPREAD: f64 = 0.02;
 
-/// Fits the pilot.
-pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, KanError> {
+/// Fits it from even knots, then crowded ones, then knots moved to where the last curve bends.
+pub(in crate::kan) fn initial_linear_fit(
+    dataset: &Dataset,
+    rows: &[Range<usize>],
+) -> Result<InitialLinearFit, KanError> {
     let inputs = dataset.inputs.len();
     let cells = (row_count(rows) / (4 * inputs)).clamp(3, CELLS);
     let architecture = Architecture::additive(inputs, &[]).with_resolution(cells, 3);
     let model = Model::scaled_to(Network::zeros(&architecture)?, dataset, rows);
     let samples: Vec<Placement> = (0..inputs).map(|i| quantiles(&dataset.inputs[i], &model, i, rows)).collect();
 
-    let mut best = Pilot::with_knots(vec![Placement::uniform(); inputs], cells, &model, dataset, rows)?;
+    let mut best = InitialLinearFit::with_knots(vec![Placement::uniform(); inputs], cells, &model, dataset, rows)?;
     for input in (0..inputs).filter(|&input| model.network.inputs[input].centre == 0.0) {
         for warp in WARPS {
             let mut placements = best.placements.clone();
             placements[input] = Placement::crowded(warp);
-            let crowded = Pilot::with_knots(placements, cells, &best.model, dataset, rows)?;
+            let crowded = InitialLinearFit::with_knots(placements, cells, &best.model, dataset, rows)?;
             if crowded.noise_variance < best.noise_variance {
                 best = crowded;
             }
@@ -139,7 +144,7 @@ pub(super) fn pilot(dataset: &Dataset, rows: &[Range<usize>]) -> Result<Pilot, K
     let mut least = best.noise_variance * (1.0 - MARGIN);
     for _ in 0..ROUNDS {
         let moved = (0..inputs).map(|input| last.equidistributed(input, &samples[input])).collect();
-        last = Pilot::with_knots(moved, cells, &last.model, dataset, rows)?;
+        last = InitialLinearFit::with_knots(moved, cells, &last.model, dataset, rows)?;
         if last.noise_variance < least {
             least = last.noise_variance;
             best = last.clone();

@@ -1,22 +1,22 @@
-//! Where training starts: hidden nodes that already see the main effects of the inputs, each a little differently.
+//! Initial weights: hidden nodes that already carry the main effects of the inputs, each in another blend.
 
-use super::architecture::Architecture;
-use super::error::KanError;
-use super::knots::stretched;
-use super::network::Network;
-use super::pilot::Pilot;
-use super::random::Random;
-use super::spline::{Grid, SplineBasis};
+use super::initial_linear_fit::InitialLinearFit;
+use crate::kan::network::architecture::Architecture;
+use crate::kan::network::error::KanError;
+use crate::kan::network::knots::stretched;
+use crate::kan::network::layers::Network;
+use crate::kan::network::random::Random;
+use crate::kan::network::spline::{Grid, SplineBasis};
 
 /// Hidden values start within this share of the next layer's grid.
 const FILL: f64 = 0.9;
 
 /// A network whose first layer blends each input's effect with its knot placement, and whose last layer is zero:
-/// the first step of training solves for that one. Without hidden layers it is the pilot on as many cells; further starts move
+/// the first step of training solves for that one. Without hidden layers it is the initial linear fit on as many cells; further starts move
 /// its knots.
-pub(super) fn initial(
+pub(in crate::kan) fn initial_weights(
     architecture: &Architecture,
-    pilot: &Pilot,
+    linear_fit: &InitialLinearFit,
     seed: u64,
     restart: usize,
 ) -> Result<Network, KanError> {
@@ -30,7 +30,7 @@ pub(super) fn initial(
             let alone = architecture.hidden.is_empty() && restart == 0;
             let stretch = if alone { 0.0 } else { random.uniform(-1.0, 1.0) };
             let breaks = match index {
-                0 => pilot.placements[position % layer.inputs].breaks(resolution.cells, stretch),
+                0 => linear_fit.placements[position % layer.inputs].breaks(resolution.cells, stretch),
                 _ => stretched(resolution.cells, stretch).map(|share| 2.0 * share - 1.0).collect(),
             };
             bases.push(SplineBasis::new(Grid { order: resolution.order, breaks })?);
@@ -48,10 +48,10 @@ pub(super) fn initial(
             for (from, weight) in weights.into_iter().enumerate() {
                 let position = to * inputs + from;
                 if index == 0 {
-                    let (low, high) = effect_range(pilot, from);
+                    let (low, high) = effect_range(linear_fit, from);
                     let curve = |x: f64| {
-                        let place = 2.0 * pilot.placements[from].share_below(x) - 1.0;
-                        let effect = 2.0 * (pilot.effect(from, x.clamp(-1.0, 1.0)) - low) / (high - low) - 1.0;
+                        let place = 2.0 * linear_fit.placements[from].share_below(x) - 1.0;
+                        let effect = 2.0 * (linear_fit.effect(from, x.clamp(-1.0, 1.0)) - low) / (high - low) - 1.0;
                         FILL * weight * ((1.0 - blend) * place + blend * effect)
                     };
                     network.set_curve(index, position, curve);
@@ -72,8 +72,8 @@ fn unit_weights(count: usize, random: &mut Random) -> Vec<f64> {
 }
 
 /// Least and greatest value of an input's effect; never equal.
-fn effect_range(pilot: &Pilot, input: usize) -> (f64, f64) {
-    let values = (0..=100).map(|i| pilot.effect(input, -1.0 + 0.02 * i as f64));
+fn effect_range(linear_fit: &InitialLinearFit, input: usize) -> (f64, f64) {
+    let values = (0..=100).map(|i| linear_fit.effect(input, -1.0 + 0.02 * i as f64));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     if high - low > 1e-9 { (low, high) } else { (low - 1.0, low + 1.0) }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::dataset::{Dataset, fold_chunks};
 use super::model::{Model, Unknowns};
-use super::trace::Trace;
+use crate::kan::network::trace::Trace;
 
 /// One row of the Jacobian: runs of consecutive unknowns, in ascending order.
 #[derive(Default)]
@@ -46,12 +46,12 @@ impl Row {
 
 /// Sums over samples that one Gauss-Newton step needs; the matrix is `J'J`, upper triangle, row-major.
 #[derive(Clone)]
-pub(super) struct NormalEquations {
-    pub(super) size: usize,
-    pub(super) matrix: Vec<f64>,
+pub(in crate::kan) struct NormalEquations {
+    pub(in crate::kan) size: usize,
+    pub(in crate::kan) matrix: Vec<f64>,
     /// `J'r`, half the gradient of the residual sum.
-    pub(super) gradient: Vec<f64>,
-    pub(super) residual_sum: f64,
+    pub(in crate::kan) gradient: Vec<f64>,
+    pub(in crate::kan) residual_sum: f64,
 }
 
 impl NormalEquations {
@@ -59,7 +59,7 @@ impl NormalEquations {
         Self { size, matrix: vec![0.0; size * size], gradient: vec![0.0; size], residual_sum: 0.0 }
     }
 
-    pub(super) fn of(model: &Model, unknowns: &Unknowns, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
+    pub(in crate::kan) fn of(model: &Model, unknowns: &Unknowns, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
         let chunk = |range: Range<usize>| {
             let mut sums = Self::zeros(unknowns.len());
             let mut trace = Trace::for_training(&model.network, unknowns.with_base);
@@ -107,7 +107,7 @@ impl NormalEquations {
 }
 
 /// Derivatives of the normalised output with respect to all unknowns, one dense row for each row of the data.
-pub(super) fn derivatives(model: &Model, unknowns: &Unknowns, dataset: &Dataset) -> Vec<Vec<f64>> {
+pub(in crate::kan) fn derivatives(model: &Model, unknowns: &Unknowns, dataset: &Dataset) -> Vec<Vec<f64>> {
     let (mut trace, mut row) = (Trace::for_training(&model.network, unknowns.with_base), Row::default());
     (0..dataset.rows())
         .map(|sample| {
@@ -120,7 +120,7 @@ pub(super) fn derivatives(model: &Model, unknowns: &Unknowns, dataset: &Dataset)
 }
 
 /// Sum of squared residuals and its full gradient, without a matrix.
-pub(super) fn residual_sum_and_gradient(
+pub(in crate::kan) fn residual_sum_and_gradient(
     model: &Model,
     unknowns: &Unknowns,
     dataset: &Dataset,
@@ -149,10 +149,10 @@ pub(super) fn residual_sum_and_gradient(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kan::architecture::Architecture;
-    use crate::kan::dataset::Blocks;
-    use crate::kan::network::Network;
-    use crate::kan::random::Random;
+    use crate::kan::Architecture;
+    use crate::kan::Blocks;
+    use crate::kan::Network;
+    use crate::kan::Random;
 
     fn randomised(architecture: &Architecture, dataset: &Dataset, seed: u64) -> Model {
         let mut random = Random::new(seed, 0);

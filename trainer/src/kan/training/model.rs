@@ -3,22 +3,22 @@
 use std::ops::Range;
 
 use super::dataset::{Dataset, fold_chunks};
-use super::network::{Network, Scaling};
-use super::trace::Trace;
+use crate::kan::network::layers::{Network, Scaling};
+use crate::kan::network::trace::Trace;
 
 /// Network plus linear columns.
 #[derive(Clone, Debug)]
-pub(super) struct Model {
-    pub(super) network: Network,
+pub(in crate::kan) struct Model {
+    pub(in crate::kan) network: Network,
     /// Coefficients of the linear columns, target and columns normalised.
-    pub(super) linear: Vec<f64>,
+    pub(in crate::kan) linear: Vec<f64>,
     /// Root mean square of each linear column.
-    pub(super) linear_width: Vec<f64>,
+    pub(in crate::kan) linear_width: Vec<f64>,
 }
 
 impl Model {
     /// Takes the scalings of inputs, target and linear columns from the training rows.
-    pub(super) fn scaled_to(mut network: Network, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
+    pub(in crate::kan) fn scaled_to(mut network: Network, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
         network.inputs = dataset.inputs.iter().map(|column| range_of(column, rows)).collect();
         network.output = spread_of(dataset.target, rows);
         let linear_width: Vec<f64> = dataset.linear.iter().map(|column| root_mean_square(column, rows)).collect();
@@ -26,7 +26,12 @@ impl Model {
     }
 
     /// Takes up a network that already has its scalings. Missing coefficients of linear columns start from zero.
-    pub(super) fn resumed(network: Network, coefficients: &[f64], dataset: &Dataset, rows: &[Range<usize>]) -> Self {
+    pub(in crate::kan) fn resumed(
+        network: Network,
+        coefficients: &[f64],
+        dataset: &Dataset,
+        rows: &[Range<usize>],
+    ) -> Self {
         let linear_width: Vec<f64> = dataset.linear.iter().map(|column| root_mean_square(column, rows)).collect();
         let width = network.output.width;
         let coefficient = |(i, w): (usize, &f64)| coefficients.get(i).map_or(0.0, |c| c * w / width);
@@ -34,14 +39,14 @@ impl Model {
     }
 
     /// Coefficients of the linear columns in physical units (target unit per column unit).
-    pub(super) fn linear_coefficients(&self) -> Vec<f64> {
+    pub(in crate::kan) fn linear_coefficients(&self) -> Vec<f64> {
         let width = self.network.output.width;
         self.linear.iter().zip(&self.linear_width).map(|(a, w)| a * width / w).collect()
     }
 
     /// Normalised prediction minus normalised target of one row.
     #[inline]
-    pub(super) fn residual(&self, dataset: &Dataset, row: usize, trace: &mut Trace) -> f64 {
+    pub(in crate::kan) fn residual(&self, dataset: &Dataset, row: usize, trace: &mut Trace) -> f64 {
         let network = &self.network;
         let mut value = trace.forward(network, |i| network.inputs[i].normalise(dataset.inputs[i][row]));
         for ((a, width), column) in self.linear.iter().zip(&self.linear_width).zip(dataset.linear) {
@@ -51,7 +56,7 @@ impl Model {
     }
 
     /// Sum of squared normalised residuals.
-    pub(super) fn residual_sum(&self, dataset: &Dataset, rows: &[Range<usize>]) -> f64 {
+    pub(in crate::kan) fn residual_sum(&self, dataset: &Dataset, rows: &[Range<usize>]) -> f64 {
         let chunk = |range: Range<usize>| {
             let mut trace = Trace::new(&self.network);
             range.map(|row| self.residual(dataset, row, &mut trace).powi(2)).sum::<f64>()
@@ -100,20 +105,20 @@ fn spread_of(column: &[f64], rows: &[Range<usize>]) -> Scaling {
 /// (when base weights are trained), edge after edge, then the linear columns. Spline scales are left out, being
 /// redundant with the coefficients.
 #[derive(Clone, Debug)]
-pub(super) struct Unknowns {
+pub(in crate::kan) struct Unknowns {
     /// `[layer][edge]`: first unknown of an active edge.
     starts: Vec<Vec<Option<usize>>>,
-    pub(super) with_base: bool,
+    pub(in crate::kan) with_base: bool,
     network: usize,
     linear: usize,
 }
 
 impl Unknowns {
-    pub(super) fn of(model: &Model, with_base: bool) -> Self {
+    pub(in crate::kan) fn of(model: &Model, with_base: bool) -> Self {
         let mut next = 0;
         let mut starts = Vec::new();
         for layer in model.network.layers() {
-            let start = |edge: &super::network::Edge| {
+            let start = |edge: &crate::kan::network::layers::Edge| {
                 edge.active.then(|| {
                     let start = next;
                     next += edge.basis.len() + usize::from(with_base);
@@ -125,20 +130,20 @@ impl Unknowns {
         Self { starts, with_base, network: next, linear: model.linear.len() }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::kan) fn len(&self) -> usize {
         self.network + self.linear
     }
 
     /// First unknown that belongs to a linear column.
-    pub(super) fn linear_start(&self) -> usize {
+    pub(in crate::kan) fn linear_start(&self) -> usize {
         self.network
     }
 
-    pub(super) fn start(&self, layer: usize, position: usize) -> Option<usize> {
+    pub(in crate::kan) fn start(&self, layer: usize, position: usize) -> Option<usize> {
         self.starts[layer][position]
     }
 
-    pub(super) fn read(&self, model: &Model) -> Vec<f64> {
+    pub(in crate::kan) fn read(&self, model: &Model) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.len());
         for edge in model.network.active_edges() {
             values.extend_from_slice(&model.network.parameters()[edge.coefficients()]);
@@ -150,7 +155,7 @@ impl Unknowns {
         values
     }
 
-    pub(super) fn write(&self, values: &[f64], model: &mut Model) {
+    pub(in crate::kan) fn write(&self, values: &[f64], model: &mut Model) {
         let network = &mut model.network;
         let mut next = 0;
         for edge in network.layers.iter().flat_map(|layer| &layer.edges).filter(|edge| edge.active) {

@@ -2,16 +2,16 @@
 
 use std::ops::Range;
 
-use super::dense::{Cholesky, dot};
 use super::jacobian::NormalEquations;
 use super::model::{Model, Unknowns};
+use crate::kan::network::dense::{Cholesky, dot};
 
 /// `strength * |D c|^2` over the coefficients of several edges (P-splines; Eilers and Marx, 1996).
 #[derive(Clone, Debug)]
-pub(super) struct Penalty {
+pub(in crate::kan) struct Penalty {
     /// Rows of `D`: pairs of unknown and weight, unknowns ascending.
     rows: Vec<Vec<(usize, f64)>>,
-    pub(super) strength: f64,
+    pub(in crate::kan) strength: f64,
 }
 
 /// Which part of the second differences of an activation, about the middle of its grid, a penalty acts on. The two
@@ -25,7 +25,7 @@ enum Part {
 impl Penalty {
     /// Two smoothness penalties, odd and even, per input for the first layer (inputs differ in how much they bend) and
     /// per later layer.
-    pub(super) fn smoothness(model: &Model, unknowns: &Unknowns, strength: f64) -> Vec<Self> {
+    pub(in crate::kan) fn smoothness(model: &Model, unknowns: &Unknowns, strength: f64) -> Vec<Self> {
         let mut penalties = Vec::new();
         for (index, layer) in model.network.layers().iter().enumerate() {
             let groups = if index == 0 { layer.inputs } else { 1 };
@@ -50,20 +50,20 @@ impl Penalty {
         self.rows.iter().map(|row| applied(row, values).powi(2)).sum()
     }
 
-    pub(super) fn energy(&self, values: &[f64]) -> f64 {
+    pub(in crate::kan) fn value(&self, values: &[f64]) -> f64 {
         self.strength * self.roughness(values)
     }
 
-    /// Adds `factor` times half the gradient of the energy.
-    pub(super) fn add_gradient(&self, values: &[f64], factor: f64, gradient: &mut [f64]) {
+    /// Adds `factor` times half the gradient of the penalty.
+    pub(in crate::kan) fn add_gradient(&self, values: &[f64], factor: f64, gradient: &mut [f64]) {
         for row in &self.rows {
             let applied = factor * self.strength * applied(row, values);
             row.iter().for_each(|&(i, weight)| gradient[i] += weight * applied);
         }
     }
 
-    /// Adds half the second derivative of the energy to the upper triangle of a matrix.
-    pub(super) fn add_curvature(&self, size: usize, matrix: &mut [f64]) {
+    /// Adds half the second derivative of the penalty to the upper triangle of a matrix.
+    pub(in crate::kan) fn add_curvature(&self, size: usize, matrix: &mut [f64]) {
         for row in &self.rows {
             for (k, &(i, a)) in row.iter().enumerate() {
                 for &(j, b) in &row[k..] {
@@ -124,7 +124,7 @@ fn part_of_second_differences(part: Part, start: usize, count: usize) -> Vec<Vec
 /// Re-estimates all strengths from the data by restricted maximum likelihood (generalised Fellner-Schall update;
 /// Wood and Fasiolo, 2017). Each strength may change by at most `limit`-fold. Returns the effective degrees of freedom,
 /// the trace of the influence matrix.
-pub(super) fn reestimate(
+pub(in crate::kan) fn reestimate(
     penalties: &mut [Penalty],
     normal: &NormalEquations,
     factor: &Cholesky,

@@ -1,4 +1,4 @@
-//! Settings that all optimisers share, and the watch that records, reports, stops early and keeps the best.
+//! Settings that all optimisers share, and the monitor that records steps, reports them, stops early and keeps the best model.
 
 use std::ops::Range;
 
@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::dataset::{Dataset, row_count};
 use super::model::Model;
-use super::network::Network;
-use super::outcome::{Convergence, Step};
+use super::outcome::Step;
 use super::sparsity::Sparsity;
-use super::{first_order, gauss_newton};
+use crate::kan::network::layers::Network;
 
 /// How strongly neighbouring spline coefficients are tied.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,30 +40,16 @@ pub enum Optimiser {
 
 /// Settings of one optimisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settings {
-    pub(super) optimiser: Optimiser,
-    pub(super) steps: usize,
-    pub(super) smoothing: Smoothing,
+pub(in crate::kan) struct Settings {
+    pub(in crate::kan) optimiser: Optimiser,
+    pub(in crate::kan) steps: usize,
+    pub(in crate::kan) smoothing: Smoothing,
     /// First guess of the residual variance, normalised target; where estimated smoothing starts from.
-    pub(super) noise_variance: f64,
+    pub(in crate::kan) noise_variance: f64,
     /// Relative fall of the penalised loss below which a step counts as no progress.
-    pub(super) tolerance: f64,
-    pub(super) with_base: bool,
-    pub(super) sparsity: Sparsity,
-}
-
-/// Trains the model with whichever optimiser is asked for; also returns the criterion by which fits are compared.
-pub(super) fn minimise(
-    model: &mut Model,
-    dataset: &Dataset,
-    rows: &[Range<usize>],
-    settings: &Settings,
-    watch: &mut Watch,
-) -> (Convergence, f64) {
-    match settings.optimiser {
-        Optimiser::GaussNewton => gauss_newton::minimise(model, dataset, rows, settings, watch),
-        Optimiser::Lbfgs | Optimiser::Adam { .. } => first_order::minimise(model, dataset, rows, settings, watch),
-    }
+    pub(in crate::kan) tolerance: f64,
+    pub(in crate::kan) with_base: bool,
+    pub(in crate::kan) sparsity: Sparsity,
 }
 
 /// What a progress callback is told.
@@ -87,20 +72,20 @@ const SNAPSHOTS: usize = 32;
 const VALIDATION_PATIENCE: usize = 8;
 const PATIENCE_SHARE: usize = 10;
 
-/// Watches one optimisation.
-pub(super) struct Watch<'a> {
+/// Follows one optimisation.
+pub(in crate::kan) struct Monitor<'a> {
     progress: ProgressCallback<'a>,
     restart: usize,
     validation: Vec<Range<usize>>,
     patience: usize,
-    pub(super) history: Vec<Step>,
-    pub(super) snapshots: Vec<(usize, Network)>,
+    pub(in crate::kan) history: Vec<Step>,
+    pub(in crate::kan) snapshots: Vec<(usize, Network)>,
     stride: usize,
     best: Option<(f64, usize, Model)>,
 }
 
-impl<'a> Watch<'a> {
-    pub(super) fn new(
+impl<'a> Monitor<'a> {
+    pub(in crate::kan) fn new(
         progress: ProgressCallback<'a>,
         restart: usize,
         validation: &[Range<usize>],
@@ -119,7 +104,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Records a step; true when training should end because the validation loss no longer falls.
-    pub(super) fn observe(&mut self, mut step: Step, model: &Model, dataset: &Dataset) -> bool {
+    pub(in crate::kan) fn observe(&mut self, mut step: Step, model: &Model, dataset: &Dataset) -> bool {
         if !self.validation.is_empty() {
             let rows = row_count(&self.validation);
             step.validation_loss = Some(model.physical_loss(model.residual_sum(dataset, &self.validation), rows));
@@ -144,7 +129,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Puts back the model with the lowest validation loss.
-    pub(super) fn restore_best(&mut self, model: &mut Model) {
+    pub(in crate::kan) fn restore_best(&mut self, model: &mut Model) {
         if let Some((_, _, best)) = self.best.take() {
             *model = best;
         }
@@ -153,7 +138,7 @@ impl<'a> Watch<'a> {
 
 impl Model {
     /// Mean squared error in squared target units from a sum over `rows` normalised residuals.
-    pub(super) fn physical_loss(&self, residual_sum: f64, rows: usize) -> f64 {
+    pub(in crate::kan) fn physical_loss(&self, residual_sum: f64, rows: usize) -> f64 {
         residual_sum / rows.max(1) as f64 * self.network.output.width.powi(2)
     }
 }

@@ -1,4 +1,4 @@
-//! Pulls superfluous edges towards nothing: the sizes of all edges are summed (l1), and their distribution over the network
+//! A penalty that shrinks superfluous edges towards zero: the sizes of all edges are summed (l1), and their distribution over the network
 //! is made uneven (entropy), after Liu et al. (2024).
 
 use serde::{Deserialize, Serialize};
@@ -16,25 +16,30 @@ pub struct Sparsity {
 }
 
 impl Sparsity {
-    /// No pull.
+    /// No penalty.
     pub const NONE: Self = Self { l1: 0.0, entropy: 0.0 };
 }
 
 /// Keeps the size of an edge smooth where it vanishes.
 const SMALLEST: f64 = 1e-3;
 
-/// The energy of a pull over the coefficients of a model. The size of an edge is the deviation of its coefficients from
+/// The value of the penalty over the coefficients of a model. The size of an edge is the deviation of its coefficients from
 /// their mean, so that a constant costs nothing.
 #[derive(Clone, Debug)]
-pub(super) struct Pull {
+pub(in crate::kan) struct SparsityPenalty {
     sparsity: Sparsity,
     /// Coefficients of each active edge among the unknowns.
     edges: Vec<std::ops::Range<usize>>,
 }
 
-impl Pull {
-    /// `scale` times the pull on the active edges of a model.
-    pub(super) fn of(model: &Model, unknowns: &Unknowns, Sparsity { l1, entropy }: Sparsity, scale: f64) -> Self {
+impl SparsityPenalty {
+    /// `scale` times the penalty of the active edges of a model.
+    pub(in crate::kan) fn of(
+        model: &Model,
+        unknowns: &Unknowns,
+        Sparsity { l1, entropy }: Sparsity,
+        scale: f64,
+    ) -> Self {
         let layers = model.network.layers().iter().enumerate();
         let edges = layers.flat_map(|(index, layer)| {
             layer.edges.iter().enumerate().filter_map(move |(position, edge)| {
@@ -56,13 +61,13 @@ impl Pull {
         self.edges.iter().map(size).collect()
     }
 
-    pub(super) fn energy(&self, values: &[f64]) -> f64 {
+    pub(in crate::kan) fn value(&self, values: &[f64]) -> f64 {
         let sizes = self.sizes(values);
         let (total, entropy) = total_and_entropy(&sizes);
         self.sparsity.l1 * total + self.sparsity.entropy * entropy
     }
 
-    /// Change of the energy with the mean square of each edge.
+    /// Derivative of the penalty with respect to the mean square of each edge.
     fn weights(&self, values: &[f64]) -> Vec<f64> {
         let sizes = self.sizes(values);
         let (total, entropy) = total_and_entropy(&sizes);
@@ -70,8 +75,8 @@ impl Pull {
         sizes.iter().map(|&size| 0.5 * slope(size) / size).collect()
     }
 
-    /// Adds `factor` times half the gradient of the energy.
-    pub(super) fn add_gradient(&self, values: &[f64], factor: f64, gradient: &mut [f64]) {
+    /// Adds `factor` times half the gradient of the penalty.
+    pub(in crate::kan) fn add_gradient(&self, values: &[f64], factor: f64, gradient: &mut [f64]) {
         for (edge, weight) in self.edges.iter().zip(self.weights(values)) {
             let coefficients = &values[edge.clone()];
             let (mean, weight) = (mean(coefficients), factor * weight / coefficients.len() as f64);
@@ -81,9 +86,9 @@ impl Pull {
         }
     }
 
-    /// Adds half the second derivative of a parabola that lies above the energy to the upper triangle of a matrix. Where the
+    /// Adds half the second derivative of a parabola that lies above the penalty to the upper triangle of a matrix. Where the
     /// entropy favours an edge, it adds nothing.
-    pub(super) fn add_curvature(&self, values: &[f64], size: usize, matrix: &mut [f64]) {
+    pub(in crate::kan) fn add_curvature(&self, values: &[f64], size: usize, matrix: &mut [f64]) {
         for (edge, weight) in self.edges.iter().zip(self.weights(values)) {
             let count = edge.len() as f64;
             let weight = weight.max(0.0) / count;
@@ -107,25 +112,25 @@ mod tests {
     use super::*;
     use crate::kan::{Architecture, Network};
 
-    fn pull(sparsity: Sparsity) -> (Pull, Vec<f64>) {
+    fn penalty(sparsity: Sparsity) -> (SparsityPenalty, Vec<f64>) {
         let network = Network::zeros(&Architecture::additive(1, &[3])).unwrap();
         let model = Model { network, linear: Vec::new(), linear_width: Vec::new() };
         let unknowns = Unknowns::of(&model, false);
         let values = (0..unknowns.len()).map(|i| (1.3 * i as f64).sin() * (1.0 + 0.1 * i as f64)).collect();
-        (Pull::of(&model, &unknowns, sparsity, 2.0), values)
+        (SparsityPenalty::of(&model, &unknowns, sparsity, 2.0), values)
     }
 
     #[test]
-    fn the_gradient_is_that_of_the_energy() {
+    fn the_gradient_is_that_of_the_penalty() {
         for sparsity in [Sparsity { l1: 0.7, entropy: 0.0 }, Sparsity { l1: 0.0, entropy: 0.4 }] {
-            let (pull, values) = pull(sparsity);
+            let (penalty, values) = penalty(sparsity);
             let mut gradient = vec![0.0; values.len()];
-            pull.add_gradient(&values, 2.0, &mut gradient);
+            penalty.add_gradient(&values, 2.0, &mut gradient);
             for i in 0..values.len() {
                 let moved = |by: f64| {
                     let mut moved = values.clone();
                     moved[i] += by;
-                    pull.energy(&moved)
+                    penalty.value(&moved)
                 };
                 let numeric = (moved(1e-6) - moved(-1e-6)) / 2e-6;
                 assert!((numeric - gradient[i]).abs() < 1e-7, "{i}: {numeric} and {}", gradient[i]);
@@ -135,9 +140,9 @@ mod tests {
 
     #[test]
     fn one_large_edge_has_less_entropy_than_many_alike() {
-        let (pull, mut values) = pull(Sparsity { l1: 0.0, entropy: 1.0 });
-        let before = pull.energy(&values);
+        let (penalty, mut values) = penalty(Sparsity { l1: 0.0, entropy: 1.0 });
+        let before = penalty.value(&values);
         values[13..].iter_mut().for_each(|v| *v *= 0.001);
-        assert!(pull.energy(&values) < 0.3 * before);
+        assert!(penalty.value(&values) < 0.3 * before);
     }
 }

@@ -4,11 +4,11 @@
 mod grid;
 mod values;
 
-use super::data::LawData;
 use super::projection::{Basis, dot};
-use super::ranges::{Extents, Range};
-use super::structure::{Nonlinear, Structure};
-use super::tape::Tape;
+use crate::law::model::data::LawData;
+use crate::law::model::ranges::{Extents, Range};
+use crate::law::model::structure::{Nonlinear, Structure};
+use crate::law::model::tape::Tape;
 
 /// Data prepared for many fits: what the nuisance columns explain is projected out once.
 #[derive(Debug)]
@@ -97,19 +97,15 @@ impl<'a> Problem<'a> {
         dot(&self.target, &self.target)
     }
 
-    /// Basis of the nuisance columns.
-    pub fn nuisance(&self) -> &Basis {
-        &self.nuisance
+    /// The fit optimised until rounding stops it, the constants in `held` being left where they are.
+    pub fn polish(&self, fit: &Fit, held: &[Nonlinear]) -> Fit {
+        let psi = &fit.params[..fit.structure.nonlinear().len()];
+        self.fit_from(&fit.structure, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL)
     }
 
     /// Channels as slices.
     pub fn channels(&self) -> &[&'a [f64]] {
         &self.channels
-    }
-
-    /// Target with the nuisance columns projected out.
-    pub fn projected_target(&self) -> &[f64] {
-        &self.target
     }
 
     fn tape(&self, structure: &Structure) -> Tape {

@@ -1,11 +1,12 @@
 //! Which of the explored laws is taken: scored on held-out blocks, and no richer than it is worth.
 
-use super::canonical::canonical;
-use super::expression::Expr;
-use super::fit::{Effort, Fit, Held, Problem};
-use super::price::Evidence;
-use super::search::{Explored, best};
-use super::structure::Structure;
+use std::collections::BTreeMap;
+
+use super::criterion::Evidence;
+use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
+use crate::law::model::canonical::canonical;
+use crate::law::model::expression::Expr;
+use crate::law::model::structure::{Nonlinear, Structure};
 
 /// Candidates of best score that are examined on held-out blocks.
 const BEST: usize = 10;
@@ -14,6 +15,9 @@ const SIMPLER: usize = 6;
 
 /// A law beyond the budget of nodes must be better by this factor of the held-out mean square.
 const MATERIAL: f64 = 1.15;
+
+/// Every structure that was fitted, by structure.
+pub type Explored = BTreeMap<Structure, Fit>;
 
 /// A law on the front of error against complexity.
 #[derive(Clone, Debug)]
@@ -33,8 +37,8 @@ pub struct FrontEntry {
 }
 
 /// A polished law with its held-out error.
-pub(super) struct Candidate {
-    pub(super) fit: Fit,
+pub(in crate::law) struct Candidate {
+    pub(in crate::law) fit: Fit,
     expression: Expr,
     nodes: usize,
     rmse: f64,
@@ -43,7 +47,7 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    pub(super) fn new(problem: &Problem<'_>, fit: Fit, evidence: Evidence, folds: usize) -> Self {
+    pub(in crate::law) fn new(problem: &Problem<'_>, fit: Fit, evidence: Evidence, folds: usize) -> Self {
         let held_out = held_out_mean_square(problem, &fit, Held::default(), folds);
         let expression = canonical(&fit.structure.template(problem.extents().layout()).bind(&fit.params));
         Self {
@@ -57,8 +61,24 @@ impl Candidate {
     }
 }
 
+/// The structures of best score, best first.
+pub fn best<'a>(problem: &Problem<'_>, explored: &'a Explored, evidence: Evidence, count: usize) -> Vec<&'a Fit> {
+    let mut ranked: Vec<(f64, &Fit)> =
+        explored.values().filter(|f| usable(problem, f)).map(|f| (evidence.score(f), f)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.structure.cmp(&b.1.structure)));
+    ranked.into_iter().take(count).map(|(_, f)| f).collect()
+}
+
+/// Whether every term adds something, every number is finite and no constant has run to the end of its range (the
+/// smoothing of the sign may: then it is a step).
+fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
+    let ranges = problem.ranges(&fit.structure);
+    let inside = fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x));
+    inside && fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
+}
+
 /// The laws of best score, and the best of each smaller complexity.
-pub(super) fn finalists(problem: &Problem<'_>, explored: &Explored, evidence: Evidence) -> Vec<Fit> {
+pub(in crate::law) fn finalists(problem: &Problem<'_>, explored: &Explored, evidence: Evidence) -> Vec<Fit> {
     let layout = problem.extents().layout();
     let ranked = best(problem, explored, evidence, explored.len());
     let mut chosen: Vec<Fit> = ranked.iter().take(BEST).map(|f| (*f).clone()).collect();
@@ -77,7 +97,7 @@ pub(super) fn finalists(problem: &Problem<'_>, explored: &Explored, evidence: Ev
 }
 
 /// The best score within the budget of nodes; beyond it only where that reduces the held-out mean square materially.
-pub(super) fn choose<'a>(candidates: &'a [Candidate], max_nodes: usize) -> &'a Candidate {
+pub(in crate::law) fn choose<'a>(candidates: &'a [Candidate], max_nodes: usize) -> &'a Candidate {
     let leading = |within: &dyn Fn(&Candidate) -> bool| -> Option<&'a Candidate> {
         candidates
             .iter()
@@ -90,7 +110,7 @@ pub(super) fn choose<'a>(candidates: &'a [Candidate], max_nodes: usize) -> &'a C
 }
 
 /// Those that are better than every simpler one.
-pub(super) fn front(candidates: &[Candidate]) -> Vec<FrontEntry> {
+pub(in crate::law) fn front(candidates: &[Candidate]) -> Vec<FrontEntry> {
     let mut sorted: Vec<&Candidate> = candidates.iter().collect();
     sorted.sort_by(|a, b| a.nodes.cmp(&b.nodes).then(a.held_out.total_cmp(&b.held_out)));
     let mut least = f64::INFINITY;
@@ -112,7 +132,7 @@ pub(super) fn front(candidates: &[Candidate]) -> Vec<FrontEntry> {
 
 /// Mean square over all samples, each predicted from constants fitted without its block; the mean square of the fit itself
 /// where there is but one block. Constants in `held` stay where they are.
-pub(super) fn held_out_mean_square(problem: &Problem<'_>, fit: &Fit, held: Held<'_>, folds: usize) -> f64 {
+pub(in crate::law) fn held_out_mean_square(problem: &Problem<'_>, fit: &Fit, held: Held<'_>, folds: usize) -> f64 {
     let (data, extents) = (problem.data(), problem.extents());
     let mut labels = data.blocks.clone();
     labels.sort_unstable();

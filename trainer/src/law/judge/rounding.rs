@@ -1,8 +1,8 @@
 //! Constants rounded to the digits that the data support: the law that is printed is the law that is exported and scored.
 
-use super::fit::{Fit, Problem};
-use super::projection::dot;
 use super::uncertainty::Uncertainty;
+use crate::law::fitting::problem::{Fit, Problem};
+use crate::law::fitting::projection::dot;
 
 /// What rounding may add to the sum of squares, in variances of the noise; a 95 % interval spans 3.84.
 const RISE: f64 = 0.1;
@@ -15,7 +15,7 @@ const FIXED_DIGITS: i32 = 4;
 const MOST_DIGITS: i32 = 17;
 
 /// The fit with the fewest digits that leave the sum of squares as it is for all that the data can tell.
-pub(super) fn rounded(problem: &Problem<'_>, fit: &Fit, uncertainty: &Uncertainty) -> Fit {
+pub(in crate::law) fn rounded(problem: &Problem<'_>, fit: &Fit, uncertainty: &Uncertainty) -> Fit {
     let allowed = fit.rss + RISE * uncertainty.noise.powi(2) * uncertainty.correlation_length;
     let decimals: Vec<i32> =
         fit.params.iter().zip(&uncertainty.standard_errors).map(|(x, se)| supported(*x, *se)).collect();

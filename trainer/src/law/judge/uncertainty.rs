@@ -1,13 +1,13 @@
 //! How well the constants of a fitted law are determined: linearised covariance, profile-likelihood intervals (Bates &
 //! Watts 1988, chapter 6), condition, correlations.
 
-use super::fit::{Effort, Fit, Held, Problem};
-use super::price::{EXACT, correlation_length};
-use super::structure::Nonlinear;
-use super::tape::Tape;
+use super::criterion::{EXACT, correlation_length};
+use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
+use crate::law::model::structure::Nonlinear;
+use crate::law::model::tape::Tape;
 
 /// Two-sided 95 % point of the normal distribution.
-pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
+pub(in crate::law) const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// A non-linear constant whose standard error exceeds this share of it may have other optima that are nearly as good.
 const VAGUE: f64 = 0.15;
@@ -123,7 +123,7 @@ struct Linearised {
 
 fn linearised(jacobian: &[&[f64]], rows: usize) -> Linearised {
     let n = jacobian.len();
-    let norms: Vec<f64> = jacobian.iter().map(|c| super::projection::dot(c, c).sqrt()).collect();
+    let norms: Vec<f64> = jacobian.iter().map(|c| crate::law::fitting::projection::dot(c, c).sqrt()).collect();
     let live: Vec<usize> = (0..n).filter(|&j| norms[j] > 0.0 && norms[j].is_finite()).collect();
     let mut errors = vec![f64::INFINITY; n];
     if live.is_empty() || rows < live.len() {

@@ -161,7 +161,7 @@ impl LawData {
         }
     }
 
-    pub(super) fn columns(&self) -> Vec<&[f64]> {
+    pub(in crate::law) fn columns(&self) -> Vec<&[f64]> {
         self.channels.iter().map(|c| c.values.as_slice()).collect()
     }
 }

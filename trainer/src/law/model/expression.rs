@@ -100,12 +100,12 @@ impl Unary {
 }
 
 /// -1, 0 or 1.
-pub(super) fn sign(x: f64) -> f64 {
+pub(in crate::law) fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
 /// `|x|^p` as `exp(p ln |x|)`; zero for `x = 0` and positive `p`.
-pub(super) fn power(x: f64, p: f64) -> f64 {
+pub(in crate::law) fn power(x: f64, p: f64) -> f64 {
     libm::exp(p * libm::log(x.abs()))
 }
 

@@ -105,6 +105,30 @@ pub struct Structure {
     terms: Vec<Term>,
 }
 
+impl SignForm {
+    /// Velocity at which the slope at zero would reach 1.
+    pub fn width(self, constant: f64) -> f64 {
+        match self {
+            Self::Tanh => 1.0 / constant,
+            Self::Arctan => std::f64::consts::FRAC_PI_2 / constant,
+            Self::Algebraic => constant,
+            Self::Parabolic => 0.5 * constant,
+            Self::Cubic => constant / 1.5,
+        }
+    }
+
+    /// The constant that gives such a width.
+    pub fn from_width(self, width: f64) -> f64 {
+        match self {
+            Self::Tanh => 1.0 / width,
+            Self::Arctan => std::f64::consts::FRAC_PI_2 / width,
+            Self::Algebraic => width,
+            Self::Parabolic => 2.0 * width,
+            Self::Cubic => 1.5 * width,
+        }
+    }
+}
+
 impl Shape {
     /// Whether the smoothed sign is a factor, so that the term belongs into the bracket that it multiplies.
     pub fn has_sign(self) -> bool {

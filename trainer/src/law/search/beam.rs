@@ -1,14 +1,13 @@
 //! Beam search over structures. Every constant is refitted jointly for every candidate; the score pays for constants.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 
-use super::fit::{Effort, Fit, Held, Problem};
 use super::library::{self, Move};
-use super::price::Evidence;
 use super::proposals::Start;
-use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
+use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
+use crate::law::judge::choice::{Explored, best};
+use crate::law::judge::criterion::Evidence;
+use crate::law::model::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// How far the search goes.
 #[derive(Clone, Copy, Debug)]
@@ -20,9 +19,6 @@ pub struct Beam {
     /// Additions and exchanges of a structure that are refitted, the most promising first.
     pub refits: usize,
 }
-
-/// Every structure that was fitted, by structure.
-pub type Explored = BTreeMap<Structure, Fit>;
 
 fn seeds() -> Vec<Structure> {
     let of = |shapes: &[Shape]| Structure::new(SignForm::Tanh, shapes.iter().copied().map(Term::plain));
@@ -87,22 +83,6 @@ pub fn explore(problem: &Problem<'_>, beam: Beam, evidence: Evidence, extra: &[S
     explored
 }
 
-/// The structures of best score, best first.
-pub fn best<'a>(problem: &Problem<'_>, explored: &'a Explored, evidence: Evidence, count: usize) -> Vec<&'a Fit> {
-    let mut ranked: Vec<(f64, &Fit)> =
-        explored.values().filter(|f| usable(problem, f)).map(|f| (evidence.score(f), f)).collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.structure.cmp(&b.1.structure)));
-    ranked.into_iter().take(count).map(|(_, f)| f).collect()
-}
-
-/// Whether every term adds something, every number is finite and no constant has run to the end of its range (the
-/// smoothing of the sign may: then it is a step).
-fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
-    let ranges = problem.ranges(&fit.structure);
-    let inside = fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x));
-    inside && fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
-}
-
 struct Child {
     structure: Structure,
     start: Vec<(Nonlinear, f64)>,
@@ -131,7 +111,7 @@ fn promising(
         let base = reduced(parent, &change);
         let (found, rss) = problem.screen(&base, &change.added);
         start.extend(found.into_iter().filter(|(n, _)| parent.nonlinear().iter().all(|(k, _)| k != n)));
-        let cost = super::price::constants(&structure) as f64;
+        let cost = crate::law::judge::criterion::constants(&structure) as f64;
         let score = evidence.misfit(rss / problem.rows() as f64) + 0.5 * libm::log(evidence.effective) * cost;
         screened.push((score, Child { structure, start, rss }));
     }

@@ -2,15 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::choice::held_out_mean_square;
-use super::data::{LawData, LawError};
-use super::discover::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
-use super::fit::{Effort, Fit, Held, Problem};
-use super::price::constants;
-use super::ranges::Extents;
-use super::rounding::rounded;
-use super::structure::{Nonlinear, Shape, SignForm, Structure, Term};
-use super::uncertainty::{Interval, Uncertainty, analyse};
+use crate::law::fitting::problem::{Effort, Held, Problem};
+use crate::law::judge::choice::held_out_mean_square;
+use crate::law::judge::criterion::constants;
+use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
+use crate::law::judge::rounding::rounded;
+use crate::law::judge::uncertainty::{Interval, Uncertainty, analyse};
+use crate::law::model::data::{LawData, LawError};
+use crate::law::model::ranges::Extents;
+use crate::law::model::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Parts into which the blocks are grouped for holding out.
 const FOLDS: usize = 5;
@@ -163,7 +163,7 @@ fn fit_from_starts(
     let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
     let holding = Held { nonlinear: &held, coefficient: None };
     let rough = problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH);
-    let mut fit = polish(&problem, &rough, &held);
+    let mut fit = problem.polish(&rough, &held);
     if let Some(law) = start {
         let psi: Vec<f64> = law.parameters.iter().take(structure.nonlinear().len()).map(|p| p.value).collect();
         let resumed = problem.fit_from(structure, &psi, holding, Effort::FINAL);
@@ -204,10 +204,4 @@ pub fn rank_forms(data: &LawData) -> Result<Vec<(KnownForm, FormFit)>, LawError>
     let mut ranked: Vec<(f64, (KnownForm, FormFit))> = fits.into_iter().map(|f| (score(&f), f)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(ranked.into_iter().map(|(_, f)| f).collect())
-}
-
-/// The fit optimised until rounding stops it.
-pub(super) fn polish(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear]) -> Fit {
-    let psi = &fit.params[..fit.structure.nonlinear().len()];
-    problem.fit_from(&fit.structure, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL)
 }

@@ -1,8 +1,9 @@
 //! Which terms the data allow and which change of a structure is one move of the search.
 
-use super::data::{ChannelRole, LawData};
-use super::fit::{Fit, Problem};
-use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+use crate::law::fitting::problem::{Fit, Problem};
+use crate::law::model::admissible::admissible;
+use crate::law::model::data::{ChannelRole, LawData};
+use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Most terms of a law.
 pub const MOST_TERMS: usize = 6;
@@ -60,24 +61,6 @@ pub fn terms(data: &LawData, problem: &Problem<'_>) -> Vec<Vec<Term>> {
         }
     }
     all
-}
-
-/// Whether a structure is one that a person would write down: no two terms for the same thing.
-pub fn admissible(structure: &Structure) -> bool {
-    let count = |f: &dyn Fn(&Term) -> bool| structure.terms().iter().filter(|t| f(t)).count();
-    let plain = |t: &Term| t.modulation == Modulation::Plain;
-    let one_stribeck = count(&|t| plain(t) && t.shape.is_stribeck()) <= 1;
-    let stribeck_shapes: Vec<Shape> = structure.terms().iter().map(|t| t.shape).filter(|s| s.is_stribeck()).collect();
-    let one_shape = stribeck_shapes.windows(2).all(|w| w[0] == w[1]);
-    let one_power = count(&|t| t.shape.is_power() || t.shape == Shape::Quadratic) <= 1;
-    let decays = |shape| count(&|t| t.shape == shape && matches!(t.modulation, Modulation::Decay(_)));
-    let plains = |shape| count(&|t| t.shape == shape && plain(t));
-    // A decay already holds its value at the reference temperature.
-    let one_decay = [Shape::Sign, Shape::Viscous].into_iter().all(|s| decays(s) == 0 || plains(s) == 0);
-    // What declines from the static to the Coulomb level, and what differs between directions, needs a Coulomb level.
-    let based =
-        count(&|t| t.shape == Shape::Sign) > 0 || count(&|t| t.shape.is_stribeck() || t.shape == Shape::AbsSign) == 0;
-    one_stribeck && one_shape && one_power && one_decay && based
 }
 
 /// All moves from a structure.
@@ -141,29 +124,5 @@ impl Move {
     pub fn carry_over(&self, fit: &Fit) -> Vec<(Nonlinear, f64)> {
         let kept = |n: &Nonlinear| *n != Nonlinear::Smoothing || fit.structure.sign() == self.sign;
         fit.nonlinear().into_iter().filter(|(n, _)| kept(n)).collect()
-    }
-}
-
-impl SignForm {
-    /// Velocity at which the slope at zero would reach 1.
-    pub fn width(self, constant: f64) -> f64 {
-        match self {
-            Self::Tanh => 1.0 / constant,
-            Self::Arctan => std::f64::consts::FRAC_PI_2 / constant,
-            Self::Algebraic => constant,
-            Self::Parabolic => 0.5 * constant,
-            Self::Cubic => constant / 1.5,
-        }
-    }
-
-    /// The constant that gives such a width.
-    pub fn from_width(self, width: f64) -> f64 {
-        match self {
-            Self::Tanh => 1.0 / width,
-            Self::Arctan => std::f64::consts::FRAC_PI_2 / width,
-            Self::Algebraic => width,
-            Self::Parabolic => 2.0 * width,
-            Self::Cubic => 1.5 * width,
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! An activation of a network matched against a library of functions: `c f(a x + b) + d`, the simplest that fits.
 
-use super::projection::dot;
+use crate::law::fitting::projection::dot;
 
 /// What an activation can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,7 +41,7 @@ pub struct Match {
 }
 
 /// Natural logarithm of the unexplained variance that one unit of complexity has to save.
-const PRICE: f64 = 0.5;
+const PENALTY: f64 = 0.5;
 /// Unexplained share that counts as none: splines follow their law no closer.
 const NEGLIGIBLE: f64 = 1e-5;
 /// Inner slopes that are tried first, for an argument scaled to `[-1, 1]`: this many, up to the steepest.
@@ -131,7 +131,7 @@ impl Match {
     }
 
     fn score(&self) -> f64 {
-        libm::log(self.unexplained + NEGLIGIBLE) + PRICE * self.function.complexity()
+        libm::log(self.unexplained + NEGLIGIBLE) + PENALTY * self.function.complexity()
     }
 }
 

@@ -1,9 +1,10 @@
 //! Structures to start a search from, read off the activations of a pruned network.
 
-use super::data::ChannelRole;
-use super::library::{MOST_TERMS, admissible};
+use super::library::MOST_TERMS;
 use super::matching::{Function, Match, matches};
-use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+use crate::law::model::admissible::admissible;
+use crate::law::model::data::ChannelRole;
+use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Activations whose best function leaves more unexplained than this propose nothing.
 const RECOGNISED: f64 = 0.02;

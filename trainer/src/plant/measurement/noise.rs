@@ -1,7 +1,7 @@
 //! Noise of the torque signal: white, coloured, state-dependent, and a vibrating base.
 
-use super::joint::{Joint, NoiseKind};
-use super::random::{Draws, Purpose};
+use crate::plant::joint::{Joint, NoiseKind};
+use crate::plant::random::{Draws, Purpose};
 use std::f64::consts::TAU;
 
 /// Noise at the sample instants, N m. `velocity`, `acceleration` and `torque` are the true ones.

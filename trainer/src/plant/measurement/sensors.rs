@@ -1,10 +1,10 @@
 //! From the truth to the columns: encoder, torque signal, temperature, and what can go wrong in the measurement chain.
 
-use super::control::round_to;
-use super::joint::{Joint, LoadChannel, NoiseKind};
 use super::noise::torque_noise;
-use super::random::{Draws, Purpose};
 use super::recording::{Column, SimulatedRecording, Truth, root_mean_square};
+use crate::plant::joint::{Joint, LoadChannel, NoiseKind};
+use crate::plant::mechanics::control::round_to;
+use crate::plant::random::{Draws, Purpose};
 use std::f64::consts::TAU;
 
 /// A fault between the joint and the file.

@@ -1,7 +1,7 @@
 //! The slow and foreign channels of a recording: temperature of the housing and the neighbouring joint.
 
-use super::joint::{OtherJoint, Thermal};
-use super::random::{Draws, Purpose};
+use crate::plant::joint::{OtherJoint, Thermal};
+use crate::plant::random::{Draws, Purpose};
 use std::f64::consts::TAU;
 
 /// Temperature of the housing, first order.

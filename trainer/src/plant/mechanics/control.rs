@@ -1,6 +1,6 @@
 //! The drive's position loop: proportional-derivative control with feed-forward, once a sample.
 
-use super::joint::Joint;
+use crate::plant::joint::Joint;
 use std::f64::consts::TAU;
 
 /// One reference sample with the payload the drive believes in.

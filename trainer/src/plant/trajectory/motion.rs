@@ -1,7 +1,8 @@
 //! Reference motions: position, velocity and acceleration at the sample instants, from rest at zero to rest at zero.
 
 use super::moves::{follow, plateaus, small_reversals, stop_and_go, trapezoids, triangles};
-use super::random::Draws;
+use super::reference::{REST_S, Reference};
+use crate::plant::random::Draws;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -96,21 +97,8 @@ pub enum Motion {
     Rest,
 }
 
-/// A reference at the sample instants.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Reference {
-    /// Position, rad.
-    pub position: Vec<f64>,
-    /// Velocity, rad/s.
-    pub velocity: Vec<f64>,
-    /// Acceleration, rad/s2.
-    pub acceleration: Vec<f64>,
-}
-
 /// Time over which a periodic motion fades in and out, s.
 const FADE_S: f64 = 0.4;
-/// Rest at both ends of a trajectory, s.
-pub(super) const REST_S: f64 = 0.1;
 
 impl Motion {
     /// Samples the motion: `duration_s` seconds at `rate_hz`.

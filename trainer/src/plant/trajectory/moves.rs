@@ -1,7 +1,7 @@
 //! Motions that are lists of trapezoidal moves: planning, sampling, and rounding of the corners.
 
-use super::motion::{REST_S, Reference};
-use super::random::Draws;
+use super::reference::{REST_S, Reference};
+use crate::plant::random::Draws;
 
 /// Length of the moving average that makes trapezoidal profiles finite in jerk, s.
 const ROUNDING_S: f64 = 0.04;

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::dataset::{Dataset, row_count};
-use super::jacobian::residual_sum_and_gradient;
 use super::lbfgs::{End, Iterate};
-use super::model::{Model, Unknowns};
-use super::outcome::{Convergence, Status, Step};
-use super::penalty::Penalty;
-use super::sparsity::Pull;
-use super::training::{Optimiser, Settings, Smoothing, Watch};
 use super::{adam, lbfgs};
+use crate::kan::training::dataset::{Dataset, row_count};
+use crate::kan::training::jacobian::residual_sum_and_gradient;
+use crate::kan::training::model::{Model, Unknowns};
+use crate::kan::training::outcome::{Convergence, Status, Step};
+use crate::kan::training::penalty::Penalty;
+use crate::kan::training::settings::{Monitor, Optimiser, Settings, Smoothing};
+use crate::kan::training::sparsity::SparsityPenalty;
 
 /// Minimises mean squared error plus penalties; leaves the last point, or the best on validation rows, in the model.
 /// Returns the mean squared normalised residual beside the convergence.
@@ -19,7 +19,7 @@ pub(super) fn minimise(
     dataset: &Dataset,
     rows: &[Range<usize>],
     settings: &Settings,
-    watch: &mut Watch,
+    monitor: &mut Monitor,
 ) -> (Convergence, f64) {
     let unknowns = Unknowns::of(model, settings.with_base);
     let samples = row_count(rows) as f64;
@@ -28,7 +28,7 @@ pub(super) fn minimise(
         Smoothing::None | Smoothing::Estimated => 0.0,
     };
     let penalties = Penalty::smoothness(model, &unknowns, strength);
-    let pull = Pull::of(model, &unknowns, settings.sparsity, 1.0);
+    let sparsity = SparsityPenalty::of(model, &unknowns, settings.sparsity, 1.0);
     let mut values = unknowns.read(model);
     let mut scratch = model.clone();
     let (mut evaluations, mut steps, mut gradient_norm) = (0, 0, f64::NAN);
@@ -40,18 +40,18 @@ pub(super) fn minimise(
         let mut gradient: Vec<f64> = gradient.into_iter().map(|g| g / samples).collect();
         let mut loss = sum / samples;
         for penalty in &penalties {
-            loss += penalty.energy(values);
+            loss += penalty.value(values);
             penalty.add_gradient(values, 2.0, &mut gradient);
         }
-        loss += pull.energy(values);
-        pull.add_gradient(values, 2.0, &mut gradient);
+        loss += sparsity.value(values);
+        sparsity.add_gradient(values, 2.0, &mut gradient);
         (loss, gradient)
     };
     let mut observe = |iterate: &Iterate| {
         unknowns.write(iterate.values, model);
         gradient_norm = iterate.gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-        let smooth: f64 = penalties.iter().map(|penalty| penalty.energy(iterate.values)).sum();
-        let penalty = smooth + pull.energy(iterate.values);
+        let smooth: f64 = penalties.iter().map(|penalty| penalty.value(iterate.values)).sum();
+        let penalty = smooth + sparsity.value(iterate.values);
         let step = Step {
             step: steps,
             loss: (iterate.loss - penalty) * model.network.output.width.powi(2),
@@ -60,14 +60,14 @@ pub(super) fn minimise(
             degrees_of_freedom: None,
         };
         steps += 1;
-        watch.observe(step, model, dataset)
+        monitor.observe(step, model, dataset)
     };
     let end = match settings.optimiser {
         Optimiser::Adam { rate } => adam::minimise(&mut values, settings.steps, rate, &mut objective, &mut observe),
         _ => lbfgs::minimise(&mut values, settings.steps, settings.tolerance, &mut objective, &mut observe),
     };
     unknowns.write(&values, model);
-    watch.restore_best(model);
+    monitor.restore_best(model);
     let status = match end {
         End::Flat => Status::Converged,
         End::NoDescent => Status::Stalled,

@@ -5,16 +5,16 @@
 
 use std::ops::Range;
 
-use super::dataset::{Dataset, row_count};
-use super::dense::Cholesky;
-use super::jacobian::NormalEquations;
-use super::model::{Model, Unknowns};
-use super::outcome::{Convergence, Status, Step};
-use super::penalty::{Penalty, reestimate};
-use super::sparsity::Pull;
-use super::training::{Settings, Smoothing, Watch};
+use crate::kan::network::dense::Cholesky;
+use crate::kan::training::dataset::{Dataset, row_count};
+use crate::kan::training::jacobian::NormalEquations;
+use crate::kan::training::model::{Model, Unknowns};
+use crate::kan::training::outcome::{Convergence, Status, Step};
+use crate::kan::training::penalty::{Penalty, reestimate};
+use crate::kan::training::settings::{Monitor, Settings, Smoothing};
+use crate::kan::training::sparsity::SparsityPenalty;
 
-/// Pull towards zero, relative to the mean curvature, that decides between equivalent parameters.
+/// SparsityPenalty towards zero, relative to the mean curvature, that decides between equivalent parameters.
 const RIDGE: f64 = 1e-9;
 
 /// Trials of one step, each ten times more damped at the end, before giving up.
@@ -25,18 +25,18 @@ const PATIENCE: usize = 3;
 
 /// First strength of estimated smoothing per residual variance: smoother than most data turn out to need, since it is
 /// easier to let activations bend than to straighten them out again.
-pub(super) const SMOOTHING_START: f64 = 100.0;
+pub(in crate::kan) const SMOOTHING_START: f64 = 100.0;
 
 /// Factor by which smoothing may change per step.
-pub(super) const SMOOTHING_LIMIT: f64 = 100.0;
+pub(in crate::kan) const SMOOTHING_LIMIT: f64 = 100.0;
 
 /// Minimises over all trained parameters of the model; leaves the best found in it.
-pub(super) fn minimise(
+pub(in crate::kan) fn minimise(
     model: &mut Model,
     dataset: &Dataset,
     rows: &[Range<usize>],
     settings: &Settings,
-    watch: &mut Watch,
+    monitor: &mut Monitor,
 ) -> (Convergence, f64) {
     let unknowns = Unknowns::of(model, settings.with_base);
     let samples = row_count(rows);
@@ -46,7 +46,7 @@ pub(super) fn minimise(
         Smoothing::Estimated => SMOOTHING_START * settings.noise_variance,
     };
     let mut penalties = Penalty::smoothness(model, &unknowns, start);
-    let pull = Pull::of(model, &unknowns, settings.sparsity, samples as f64);
+    let sparsity = SparsityPenalty::of(model, &unknowns, settings.sparsity, samples as f64);
     let mut values = unknowns.read(model);
     let mut normal = NormalEquations::of(model, &unknowns, dataset, rows);
     let mut damping = 1e-3;
@@ -68,8 +68,8 @@ pub(super) fn minimise(
             degrees_of_freedom = Some(found);
             (matrix, gradient) = penalised(&normal, &penalties, ridge, &values);
         }
-        pull.add_gradient(&values, 1.0, &mut gradient);
-        pull.add_curvature(&values, normal.size, &mut matrix);
+        sparsity.add_gradient(&values, 1.0, &mut gradient);
+        sparsity.add_curvature(&values, normal.size, &mut matrix);
         report.gradient_norm = 2.0 * norm(&gradient) / samples as f64;
         let step = Step {
             step: report.steps,
@@ -78,7 +78,7 @@ pub(super) fn minimise(
             gradient_norm: report.gradient_norm,
             degrees_of_freedom,
         };
-        if watch.observe(step, model, dataset) {
+        if monitor.observe(step, model, dataset) {
             report.status = Status::ValidationRose;
             break;
         }
@@ -90,11 +90,11 @@ pub(super) fn minimise(
             break;
         }
 
-        let energy = |values: &[f64]| {
-            let smooth: f64 = penalties.iter().map(|penalty| penalty.energy(values)).sum();
-            smooth + pull.energy(values) + ridge * values.iter().map(|v| v * v).sum::<f64>()
+        let penalty = |values: &[f64]| {
+            let smooth: f64 = penalties.iter().map(|penalty| penalty.value(values)).sum();
+            smooth + sparsity.value(values) + ridge * values.iter().map(|v| v * v).sum::<f64>()
         };
-        let before = normal.residual_sum + energy(&values);
+        let before = normal.residual_sum + penalty(&values);
         let mut accepted = None;
         for _ in 0..TRIALS {
             let mut damped = matrix.clone();
@@ -110,7 +110,7 @@ pub(super) fn minimise(
             let step = factor.solve(&gradient);
             let candidate: Vec<f64> = values.iter().zip(&step).map(|(value, s)| value - s).collect();
             unknowns.write(&candidate, model);
-            let after = model.residual_sum(dataset, rows) + energy(&candidate);
+            let after = model.residual_sum(dataset, rows) + penalty(&candidate);
             report.evaluations += 1;
             let promised = promised_fall(&matrix, &gradient, &step);
             if after.is_finite() && after <= before {
@@ -139,12 +139,12 @@ pub(super) fn minimise(
         normal = NormalEquations::of(model, &unknowns, dataset, rows);
         idle = if fall < settings.tolerance { idle + 1 } else { 0 };
     }
-    watch.restore_best(model);
+    monitor.restore_best(model);
     (report, score)
 }
 
 /// Matrix (upper triangle) and half gradient of residuals, penalties and ridge together.
-pub(super) fn penalised(
+pub(in crate::kan) fn penalised(
     normal: &NormalEquations,
     penalties: &[Penalty],
     ridge: f64,
@@ -174,8 +174,8 @@ fn promised_fall(matrix: &[f64], gradient: &[f64], step: &[f64]) -> f64 {
     2.0 * gradient.iter().zip(step).map(|(g, s)| g * s).sum::<f64>() - quadratic
 }
 
-/// Weight of the pull towards zero.
-pub(super) fn ridge_of(normal: &NormalEquations) -> f64 {
+/// Weight of the penalty on the size of the coefficients.
+pub(in crate::kan) fn ridge_of(normal: &NormalEquations) -> f64 {
     RIDGE * mean_diagonal(normal).max(f64::MIN_POSITIVE)
 }
 

@@ -138,7 +138,7 @@ fn search(
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    super::dense::dot(a, b)
+    crate::kan::network::dense::dot(a, b)
 }
 
 fn norm(a: &[f64]) -> f64 {

@@ -1,9 +1,9 @@
 //! Where an optimisation starts: grids over the non-linear constants, for one structure or for terms added to a fit.
 
 use super::{Effort, Fit, Held, Problem};
-use crate::law::projection::{Basis, dot};
-use crate::law::structure::{Nonlinear, Structure, Term};
-use crate::law::tape::Tape;
+use crate::law::fitting::projection::{Basis, dot};
+use crate::law::model::structure::{Nonlinear, Structure, Term};
+use crate::law::model::tape::Tape;
 
 impl Problem<'_> {
     /// Adds terms to a fitted law without moving its constants: the values of the newly needed constants that serve best

@@ -1,8 +1,8 @@
 //! What a fit says about the samples: the law, the residuals, the nuisance columns beside it.
 
 use super::{Fit, Problem};
-use crate::law::projection::Basis;
-use crate::law::tape::Tape;
+use crate::law::fitting::projection::Basis;
+use crate::law::model::tape::Tape;
 
 impl Problem<'_> {
     /// Coefficients of the nuisance columns beside a fitted law.

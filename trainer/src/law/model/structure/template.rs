@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::{Layout, Modulation, Nonlinear, Shape, SignForm, Structure, Term};
-use crate::law::expression::{Expr, Unary};
+use crate::law::model::expression::{Expr, Unary};
 
 /// Keeps a power of the speed with a negative exponent finite at rest, velocity unit.
 const OFF_ZERO: f64 = 1e-9;

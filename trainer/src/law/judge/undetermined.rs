@@ -1,20 +1,19 @@
 //! What the data do not determine: left out, fixed, or allowed for in the intervals, and said in a sentence.
 
-use super::fit::{Effort, Fit, Held, Problem};
-use super::known_forms::polish;
-use super::library::admissible;
-use super::naming::name_all;
-use super::price::{EXACT, Evidence};
-use super::render::significant;
-use super::structure::{Nonlinear, Shape, SignForm, Term};
+use super::criterion::{EXACT, Evidence};
 use super::uncertainty::{Interval, NORMAL_95, Uncertainty, analyse};
+use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
+use crate::law::model::admissible::admissible;
+use crate::law::model::naming::name_all;
+use crate::law::model::structure::{Nonlinear, Shape, SignForm, Term};
+use crate::law::render::significant;
 
 /// Half the rise of twice the negative log likelihood at which a constant is distinguished from zero with 95 %.
 const DISTINGUISHED: f64 = 0.5 * NORMAL_95 * NORMAL_95;
 
 /// Takes out, one by one, terms that may as well be zero once the correlation of the residuals is counted: by their standard
 /// error, and by what leaving them out, all else refitted, does to the likelihood.
-pub(super) fn drop_undetermined(
+pub(in crate::law) fn drop_undetermined(
     problem: &Problem<'_>,
     mut fit: Fit,
     evidence: Evidence,
@@ -31,7 +30,7 @@ pub(super) fn drop_undetermined(
         let Some(weakest) = weakest else { return fit };
         let simpler = fit.structure.without(fit.structure.terms()[weakest]);
         let rough = problem.fit_grid(&simpler, &fit.nonlinear(), Held::default(), 1, Effort::SEARCH);
-        let without = polish(problem, &rough, &[]);
+        let without = problem.polish(&rough, &[]);
         if misfit(&without) - misfit(&fit) > DISTINGUISHED {
             return fit;
         }
@@ -49,7 +48,7 @@ pub(super) fn drop_undetermined(
 }
 
 /// Fixes the smoothing of the sign where the data cannot tell it from a step.
-pub(super) fn settle_smoothing(
+pub(in crate::law) fn fix_smoothing(
     problem: &Problem<'_>,
     fit: Fit,
     evidence: Evidence,
@@ -78,7 +77,7 @@ pub(super) fn settle_smoothing(
         let middle = (good * bad).sqrt();
         if with_width(middle).1 < 1.0 { good = middle } else { bad = middle }
     }
-    let fixed = polish(problem, &with_width(good).0, &held);
+    let fixed = problem.polish(&with_width(good).0, &held);
     let bound = sign.from_width(good);
     let constant = match sign {
         SignForm::Tanh | SignForm::Arctan => "slope",
@@ -93,7 +92,7 @@ pub(super) fn settle_smoothing(
 }
 
 /// Every joint has some viscous friction. Where it cannot be seen, the intervals of the other constants allow for it.
-pub(super) fn allow_for_viscous(
+pub(in crate::law) fn allow_for_viscous(
     problem: &Problem<'_>,
     fit: &Fit,
     held: &[Nonlinear],

@@ -1,8 +1,8 @@
-//! What a law costs: half the logarithm of the (effective) number of samples for each constant (Schwarz 1978), and how
+//! The criterion by which laws are compared, in nats: misfit and penalties. A penalty is half the logarithm of the (effective) number of samples for each constant (Schwarz 1978), and how
 //! many like it there are to try or how far it is from what friction usually does (Chen & Chen 2008).
 
-use super::fit::Fit;
-use super::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+use crate::law::fitting::problem::Fit;
+use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Nats for each term: the library offers about this many (in the logarithm) equally likely ones.
 const CHOICE: f64 = 2.5;
@@ -92,14 +92,14 @@ impl Evidence {
 /// that is not clearly positive (Sokal 1997), at least 1.
 pub fn correlation_length(residuals: &[f64]) -> f64 {
     let n = residuals.len();
-    let power = super::projection::dot(residuals, residuals);
+    let power = crate::law::fitting::projection::dot(residuals, residuals);
     if power <= 0.0 || n < 8 {
         return 1.0;
     }
     let noise = 2.0 / (n as f64).sqrt();
     let mut length = 1.0;
     for lag in 1..n / 4 {
-        let rho = super::projection::dot(&residuals[lag..], &residuals[..n - lag]) / power;
+        let rho = crate::law::fitting::projection::dot(&residuals[lag..], &residuals[..n - lag]) / power;
         if rho < noise {
             break;
         }

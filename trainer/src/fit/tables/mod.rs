@@ -1,14 +1,17 @@
 //! A trained network as the tables of a drive: one certified table for one input, a network of tables for several.
 
+mod piecewise;
+
 use frikan_shared::model::Law;
 use frikan_shared::network::{MAX_WIDTH, Network as TableNetwork};
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 
-use super::piecewise::{NetworkCurve, Piecewise};
 use crate::compile::formula::Curve;
 use crate::compile::networks::{COORDINATE_ERROR, Edge, Edges, Nodes, assemble, node_ranges};
 use crate::compile::tables::{self, compile_table};
 use crate::kan::{GraphSummary, Network};
+
+use piecewise::{NetworkCurve, Piecewise};
 
 /// A law as tables.
 #[derive(Clone, Debug)]
