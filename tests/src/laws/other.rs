@@ -8,7 +8,7 @@ use frikan_trainer::law::{
 };
 
 use super::{channel, data, plain, velocity};
-use crate::paper::{SAMPLES, with_noise};
+use crate::published::{SAMPLES, with_noise};
 
 /// A generated law, its channels and the structures that are right answers.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use frikan_trainer::law::{Discovery, SearchOptions, Shape, SignForm, Structure, discover};
 
 use super::{joint, plain};
-use crate::paper::{JOINTS, NOISE, SAMPLES, SMOOTHING};
+use crate::published::{JOINTS, NOISE, SAMPLES, SMOOTHING};
 
 /// Constants of the law that can be identified under the paper's noise, with their true values for a joint.
 #[must_use]

@@ -4,7 +4,7 @@ use frikan_trainer::kan::Random;
 use frikan_trainer::law::{ChannelRole, LawData, SearchOptions, Shape, SignForm, Structure, discover};
 
 use super::{channel, data, plain, velocity};
-use crate::paper::with_noise;
+use crate::published::with_noise;
 
 /// What a set of samples was made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
