@@ -6,14 +6,14 @@ use crate::kan::{GraphEdge, GraphSummary, Network, NodeKind};
 use crate::law::{Activation, Start, matches, proposals};
 
 /// An activation is labelled with a function that leaves less than this share of its variance unexplained.
-const LABELLED: f64 = 1e-3;
+const LABEL_THRESHOLD: f64 = 1e-3;
 
 /// Writes into the graph which function each activation follows, where it follows one.
 pub fn label_activations(graph: &mut GraphSummary, network: &Network) {
     for index in (0..graph.edges.len()).filter(|&index| graph.edges[index].active).collect::<Vec<_>>() {
         let found = matches(&graph.curve(network, index, CURVE_POINTS)).into_iter().next();
         graph.edges[index].symbolic =
-            found.filter(|best| best.unexplained < LABELLED).map(|best| best.function.label().to_owned());
+            found.filter(|best| best.unexplained < LABEL_THRESHOLD).map(|best| best.function.label().to_owned());
     }
 }
 

@@ -22,7 +22,7 @@ const MOST_SAMPLES: usize = 12_000;
 const MOST_CLASSICAL_SAMPLES: usize = 4_000;
 
 /// Difference of the criterion (Schwarz 1978) that counts as clear (Kass & Raftery 1995).
-const CLEARLY_BETTER: f64 = 6.0;
+const BIC_DIFFERENCE_THRESHOLD: f64 = 6.0;
 
 /// The formula with what led to it.
 pub(super) struct Found {
@@ -79,7 +79,7 @@ pub(super) fn search(material: &Material, data: &LawData, starts: Vec<Start>) ->
         let constants = fit.law.parameters.len() as f64;
         2.0 * effective * fit.rmse.max(f64::MIN_POSITIVE).ln() + effective.ln() * constants
     };
-    let limit = criterion(&own) - CLEARLY_BETTER;
+    let limit = criterion(&own) - BIC_DIFFERENCE_THRESHOLD;
     let better = rivals.into_iter().filter(|rival| rival.converged && criterion(rival) < limit);
     let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
     discovery.law = best.law;

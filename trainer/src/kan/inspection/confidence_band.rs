@@ -6,7 +6,7 @@ use crate::kan::network::layers::Network;
 use crate::kan::training::dataset::{Blocks, Dataset, row_count};
 use crate::kan::training::jacobian::{NormalEquations, derivatives};
 use crate::kan::training::model::{Model, Unknowns};
-use crate::kan::training::optimisers::gauss_newton::{SMOOTHING_LIMIT, SMOOTHING_START, penalised, ridge_of};
+use crate::kan::training::optimisers::gauss_newton::{SMOOTHING_START, penalised, ridge_of};
 use crate::kan::training::penalty::{Penalty, reestimate};
 
 /// Rounds in which the smoothing is estimated for the network as it stands.
@@ -39,7 +39,7 @@ pub fn standard_errors(
     for _ in 0..ROUNDS {
         factor = Cholesky::new(&penalised(&normal, &penalties, ridge, &values).0, normal.size);
         let Some(factor) = &factor else { break };
-        freedom = reestimate(&mut penalties, &normal, factor, ridge, &values, samples, SMOOTHING_LIMIT);
+        freedom = reestimate(&mut penalties, &normal, factor, ridge, &values, samples);
     }
     let count = points.first().map_or(0, Vec::len);
     let Some(factor) = factor else { return Ok(vec![f64::INFINITY; count]) };

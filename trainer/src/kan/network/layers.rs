@@ -1,4 +1,4 @@
-//! The network itself: layers of edges over one contiguous parameter vector, evaluated in physical units.
+//! The network itself: layers of edges over one contiguous parameter vector.
 
 use serde::{Deserialize, Serialize};
 

@@ -81,7 +81,7 @@ impl InitialLinearFit {
             let even = 0.5 * (breaks[i] - breaks[i - 1]);
             let sampled = samples.share_below(breaks[i]) - samples.share_below(breaks[i - 1]);
             let bent = if total > 0.0 { bend[i - 1] / total } else { even };
-            sum += (1.0 - 2.0 * SPREAD) * bent + SPREAD * (even + sampled);
+            sum += (1.0 - 2.0 * EVEN_KNOT_SHARE) * bent + EVEN_KNOT_SHARE * (even + sampled);
             share.push(sum);
         }
         let all = sum.max(f64::MIN_POSITIVE);
@@ -106,17 +106,17 @@ impl InitialLinearFit {
 const CELLS: usize = 30;
 
 /// Crowding about zero that is tried for inputs that reach to both sides of it.
-const WARPS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
+const CROWDINGS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
 
 /// Rounds of moving knots to where the last round's curve bends.
 const ROUNDS: usize = 8;
 
 /// Relative improvement that free knots must bring over crowded ones: under noise their many degrees of freedom find
 /// bends that are not there.
-const MARGIN: f64 = 0.02;
+const LEAST_IMPROVEMENT: f64 = 0.02;
 
 /// Share of the knots that is spread evenly over the range, and over the samples.
-const SPREAD: f64 = 0.02;
+const EVEN_KNOT_SHARE: f64 = 0.02;
 
 /// Fits it from even knots, then crowded ones, then knots moved to where the last curve bends.
 pub(in crate::kan) fn initial_linear_fit(
@@ -131,7 +131,7 @@ pub(in crate::kan) fn initial_linear_fit(
 
     let mut best = InitialLinearFit::with_knots(vec![Placement::uniform(); inputs], cells, &model, dataset, rows)?;
     for input in (0..inputs).filter(|&input| model.network.inputs[input].centre == 0.0) {
-        for warp in WARPS {
+        for warp in CROWDINGS {
             let mut placements = best.placements.clone();
             placements[input] = Placement::crowded(warp);
             let crowded = InitialLinearFit::with_knots(placements, cells, &best.model, dataset, rows)?;
@@ -141,7 +141,7 @@ pub(in crate::kan) fn initial_linear_fit(
         }
     }
     let mut last = best.clone();
-    let mut least = best.noise_variance * (1.0 - MARGIN);
+    let mut least = best.noise_variance * (1.0 - LEAST_IMPROVEMENT);
     for _ in 0..ROUNDS {
         let moved = (0..inputs).map(|input| last.equidistributed(input, &samples[input])).collect();
         last = InitialLinearFit::with_knots(moved, cells, &last.model, dataset, rows)?;

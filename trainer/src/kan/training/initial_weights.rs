@@ -9,7 +9,7 @@ use crate::kan::network::random::Random;
 use crate::kan::network::spline::{Grid, SplineBasis};
 
 /// Hidden values start within this share of the next layer's grid.
-const FILL: f64 = 0.9;
+const GRID_SHARE: f64 = 0.9;
 
 /// A network whose first layer blends each input's effect with its knot placement, and whose last layer is zero:
 /// the first step of training solves for that one. Without hidden layers it is the initial linear fit on as many cells; further starts move
@@ -52,11 +52,11 @@ pub(in crate::kan) fn initial_weights(
                     let curve = |x: f64| {
                         let place = 2.0 * linear_fit.placements[from].share_below(x) - 1.0;
                         let effect = 2.0 * (linear_fit.effect(from, x.clamp(-1.0, 1.0)) - low) / (high - low) - 1.0;
-                        FILL * weight * ((1.0 - blend) * place + blend * effect)
+                        GRID_SHARE * weight * ((1.0 - blend) * place + blend * effect)
                     };
                     network.set_curve(index, position, curve);
                 } else {
-                    network.set_curve(index, position, |x| FILL * weight * x);
+                    network.set_curve(index, position, |x| GRID_SHARE * weight * x);
                 }
             }
         }

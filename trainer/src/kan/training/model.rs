@@ -84,14 +84,14 @@ fn positive(width: f64) -> f64 {
 fn range_of(column: &[f64], rows: &[Range<usize>]) -> Scaling {
     let (low, high) = over(column, rows).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let reach = low.abs().max(high.abs());
-    if low < 0.0 && high > 0.0 && low.abs().min(high) > BALANCE * reach {
+    if low < 0.0 && high > 0.0 && low.abs().min(high) > SYMMETRY_RATIO * reach {
         return Scaling { centre: 0.0, width: reach };
     }
     Scaling { centre: 0.5 * low + 0.5 * high, width: positive(0.5 * high - 0.5 * low) }
 }
 
 /// How far the shorter side of a range must reach, relative to the longer one, for zero to be its middle.
-const BALANCE: f64 = 0.6;
+const SYMMETRY_RATIO: f64 = 0.6;
 
 /// Maps a column to zero mean and unit variance.
 fn spread_of(column: &[f64], rows: &[Range<usize>]) -> Scaling {

@@ -121,8 +121,11 @@ fn part_of_second_differences(part: Part, start: usize, count: usize) -> Vec<Vec
         .collect()
 }
 
+/// Factor by which smoothing may change per step.
+const SMOOTHING_LIMIT: f64 = 100.0;
+
 /// Re-estimates all strengths from the data by restricted maximum likelihood (generalised Fellner-Schall update;
-/// Wood and Fasiolo, 2017). Each strength may change by at most `limit`-fold. Returns the effective degrees of freedom,
+/// Wood and Fasiolo, 2017). Each strength may change by at most [`SMOOTHING_LIMIT`]-fold. Returns the effective degrees of freedom,
 /// the trace of the influence matrix.
 pub(in crate::kan) fn reestimate(
     penalties: &mut [Penalty],
@@ -131,7 +134,6 @@ pub(in crate::kan) fn reestimate(
     ridge: f64,
     values: &[f64],
     samples: usize,
-    limit: f64,
 ) -> f64 {
     let size = normal.size;
     let inverse = factor.inverse_factor_transposed();
@@ -145,7 +147,7 @@ pub(in crate::kan) fn reestimate(
         let rank = penalty.rows.len() as f64;
         let wanted =
             noise_variance * (rank - penalty.strength * trace).max(1e-6) / penalty.roughness(values).max(1e-30);
-        let strength = wanted.clamp(penalty.strength / limit, penalty.strength * limit);
+        let strength = wanted.clamp(penalty.strength / SMOOTHING_LIMIT, penalty.strength * SMOOTHING_LIMIT);
         penalty.strength = strength.clamp(STRENGTH_RANGE.start, STRENGTH_RANGE.end);
     }
     degrees_of_freedom

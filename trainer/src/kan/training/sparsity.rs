@@ -21,7 +21,7 @@ impl Sparsity {
 }
 
 /// Keeps the size of an edge smooth where it vanishes.
-const SMALLEST: f64 = 1e-3;
+const SIZE_FLOOR: f64 = 1e-3;
 
 /// The value of the penalty over the coefficients of a model. The size of an edge is the deviation of its coefficients from
 /// their mean, so that a constant costs nothing.
@@ -56,7 +56,7 @@ impl SparsityPenalty {
             let coefficients = &values[edge.clone()];
             let mean = mean(coefficients);
             let square = coefficients.iter().map(|c| (c - mean).powi(2)).sum::<f64>() / coefficients.len() as f64;
-            (square + SMALLEST * SMALLEST).sqrt()
+            (square + SIZE_FLOOR * SIZE_FLOOR).sqrt()
         };
         self.edges.iter().map(size).collect()
     }

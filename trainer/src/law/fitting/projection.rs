@@ -2,7 +2,7 @@
 //! 2005), which keeps full accuracy and shows which columns the others already hold.
 
 /// Columns whose part outside the span of the earlier ones is smaller than this share of their norm carry nothing new.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENCE_THRESHOLD: f64 = 1e-9;
 
 /// An orthonormal basis grown column by column, with the triangular factor that leads back to the columns.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ impl Basis {
             }
         }
         let left = dot(&rest, &rest).sqrt();
-        let independent = left.is_finite() && left > DEPENDENT * norm;
+        let independent = left.is_finite() && left > DEPENDENCE_THRESHOLD * norm;
         if independent {
             rest.iter_mut().for_each(|x| *x /= left);
             r.push(left);

@@ -9,12 +9,12 @@ use crate::law::model::expression::Expr;
 use crate::law::model::structure::{Nonlinear, Structure};
 
 /// Candidates of best score that are examined on held-out blocks.
-const BEST: usize = 10;
+const FINALISTS_BY_SCORE: usize = 10;
 /// Candidates that are the best of their complexity.
-const SIMPLER: usize = 6;
+const FINALISTS_BY_COMPLEXITY: usize = 6;
 
 /// A law beyond the budget of nodes must be better by this factor of the held-out mean square.
-const MATERIAL: f64 = 1.15;
+const HELD_OUT_RATIO_THRESHOLD: f64 = 1.15;
 
 /// Every structure that was fitted, by structure.
 pub type Explored = BTreeMap<Structure, Fit>;
@@ -81,11 +81,11 @@ fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
 pub(in crate::law) fn finalists(problem: &Problem<'_>, explored: &Explored, evidence: Evidence) -> Vec<Fit> {
     let layout = problem.extents().layout();
     let ranked = best(problem, explored, evidence, explored.len());
-    let mut chosen: Vec<Fit> = ranked.iter().take(BEST).map(|f| (*f).clone()).collect();
+    let mut chosen: Vec<Fit> = ranked.iter().take(FINALISTS_BY_SCORE).map(|f| (*f).clone()).collect();
     let nodes = |f: &Fit| f.structure.template(layout).node_count();
     let mut least = chosen.iter().map(&nodes).min().unwrap_or(0);
-    for fit in ranked.into_iter().skip(BEST) {
-        if chosen.len() == BEST + SIMPLER {
+    for fit in ranked.into_iter().skip(FINALISTS_BY_SCORE) {
+        if chosen.len() == FINALISTS_BY_SCORE + FINALISTS_BY_COMPLEXITY {
             break;
         }
         if nodes(fit) < least {
@@ -106,7 +106,7 @@ pub(in crate::law) fn choose<'a>(candidates: &'a [Candidate], max_nodes: usize) 
     };
     let free = leading(&|_| true).expect("the empty law is always a candidate");
     let within = leading(&|c| c.nodes <= max_nodes);
-    within.filter(|c| c.held_out <= MATERIAL * free.held_out).unwrap_or(free)
+    within.filter(|c| c.held_out <= HELD_OUT_RATIO_THRESHOLD * free.held_out).unwrap_or(free)
 }
 
 /// Those that are better than every simpler one.

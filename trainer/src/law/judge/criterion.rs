@@ -5,12 +5,12 @@ use crate::law::fitting::problem::Fit;
 use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Nats for each term: the library offers about this many (in the logarithm) equally likely ones.
-const CHOICE: f64 = 2.5;
+const TERM_PENALTY_NATS: f64 = 2.5;
 /// Nats for a coefficient whose sign friction does not have: Coulomb, viscous and Stribeck parts dissipate.
-const WRONG_SIGN: f64 = 5.0;
+const SIGN_PENALTY_NATS: f64 = 5.0;
 
 /// Residuals below this share of the target's root mean square count as exact.
-pub const EXACT: f64 = 1e-7;
+pub const EXACT_RESIDUAL_RATIO: f64 = 1e-7;
 
 fn of_sign(sign: SignForm) -> f64 {
     match sign {
@@ -35,7 +35,7 @@ fn of_term(term: Term) -> f64 {
         // The order of a ripple is looked for over hundreds of values.
         Modulation::Sine(_) | Modulation::Cosine(_) => 2.0,
     };
-    CHOICE + shape + modulation
+    TERM_PENALTY_NATS + shape + modulation
 }
 
 fn dissipates(term: Term) -> bool {
@@ -47,7 +47,7 @@ fn dissipates(term: Term) -> bool {
 pub fn prior(fit: &Fit) -> f64 {
     let terms: f64 = fit.structure.terms().iter().map(|t| of_term(*t)).sum();
     let wrong = fit.structure.terms().iter().zip(fit.coefficients()).filter(|(t, c)| dissipates(**t) && **c < 0.0);
-    of_sign(fit.structure.sign()) + terms + WRONG_SIGN * wrong.count() as f64
+    of_sign(fit.structure.sign()) + terms + SIGN_PENALTY_NATS * wrong.count() as f64
 }
 
 /// Number of fitted constants.

@@ -5,9 +5,9 @@ use crate::law::fitting::problem::{Fit, Problem};
 use crate::law::fitting::projection::dot;
 
 /// What rounding may add to the sum of squares, in variances of the noise; a 95 % interval spans 3.84.
-const RISE: f64 = 0.1;
+const RSS_RISE_VARIANCES: f64 = 0.1;
 /// A constant is rounded to this share of its standard error at most.
-const SHARE: f64 = 0.1;
+const STANDARD_ERROR_SHARE: f64 = 0.1;
 /// Significant digits that every constant keeps, and that a constant without a standard error is rounded to.
 const LEAST_DIGITS: i32 = 2;
 const FIXED_DIGITS: i32 = 4;
@@ -16,7 +16,7 @@ const MOST_DIGITS: i32 = 17;
 
 /// The fit with the fewest digits that leave the sum of squares as it is for all that the data can tell.
 pub(in crate::law) fn rounded(problem: &Problem<'_>, fit: &Fit, uncertainty: &Uncertainty) -> Fit {
-    let allowed = fit.rss + RISE * uncertainty.noise.powi(2) * uncertainty.correlation_length;
+    let allowed = fit.rss + RSS_RISE_VARIANCES * uncertainty.noise.powi(2) * uncertainty.correlation_length;
     let decimals: Vec<i32> =
         fit.params.iter().zip(&uncertainty.standard_errors).map(|(x, se)| supported(*x, *se)).collect();
     for more in 0..MOST_DIGITS {
@@ -35,7 +35,7 @@ pub(in crate::law) fn rounded(problem: &Problem<'_>, fit: &Fit, uncertainty: &Un
 fn supported(value: f64, standard_error: f64) -> i32 {
     let leading = exponent(value);
     if standard_error > 0.0 && standard_error.is_finite() {
-        (-exponent(SHARE * standard_error)).max(LEAST_DIGITS - 1 - leading)
+        (-exponent(STANDARD_ERROR_SHARE * standard_error)).max(LEAST_DIGITS - 1 - leading)
     } else {
         FIXED_DIGITS - 1 - leading
     }

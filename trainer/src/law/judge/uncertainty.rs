@@ -1,7 +1,7 @@
 //! How well the constants of a fitted law are determined: linearised covariance, profile-likelihood intervals (Bates &
 //! Watts 1988, chapter 6), condition, correlations.
 
-use super::criterion::{EXACT, correlation_length};
+use super::criterion::{EXACT_RESIDUAL_RATIO, correlation_length};
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::model::structure::Nonlinear;
 use crate::law::model::tape::Tape;
@@ -10,12 +10,12 @@ use crate::law::model::tape::Tape;
 pub(in crate::law) const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// A non-linear constant whose standard error exceeds this share of it may have other optima that are nearly as good.
-const VAGUE: f64 = 0.15;
+const MULTISTART_RELATIVE_ERROR: f64 = 0.15;
 /// Values of such a constant that are tried over its range.
-const TRIED: usize = 24;
+const MULTISTART_VALUES: usize = 24;
 
 /// How hard the refits of an interval try.
-const REFIT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
+const REFIT_EFFORT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
 
 /// What the data say about the constants of a law, in the order of [`Fit::params`].
 #[derive(Clone, Debug)]
@@ -78,7 +78,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         .filter(|(i, j, _)| *i >= nuisance.len() && *j >= nuisance.len())
         .map(|&(i, j, r)| (free[i - nuisance.len()], free[j - nuisance.len()], r))
         .collect();
-    let exact = noise <= EXACT * (problem.total() / rows as f64).sqrt();
+    let exact = noise <= EXACT_RESIDUAL_RATIO * (problem.total() / rows as f64).sqrt();
     let profiled = kind == Interval::Profile && !exact;
     let mut intervals: Vec<[f64; 2]> = (0..count)
         .map(|k| {
@@ -91,7 +91,8 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         })
         .collect();
     if profiled {
-        let vague = |k: &usize| *k < names.len() && standard_errors[*k] > VAGUE * fit.params[*k].abs();
+        let vague =
+            |k: &usize| *k < names.len() && standard_errors[*k] > MULTISTART_RELATIVE_ERROR * fit.params[*k].abs();
         for k in free.iter().copied().filter(vague) {
             other_optima(problem, fit, held, k, spread, &mut intervals);
         }
@@ -172,14 +173,14 @@ fn other_optima(
     let mut kept = held.to_vec();
     kept.push(names[k]);
     let mut psi = fit.params[..names.len()].to_vec();
-    for i in 0..TRIED {
-        let share = (i as f64 + 0.5) / TRIED as f64;
+    for i in 0..MULTISTART_VALUES {
+        let share = (i as f64 + 0.5) / MULTISTART_VALUES as f64;
         psi[k] = if range.logarithmic {
             range.lower * libm::pow(range.upper / range.lower, share)
         } else {
             range.lower + share * (range.upper - range.lower)
         };
-        let tried = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient: None }, REFIT);
+        let tried = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient: None }, REFIT_EFFORT);
         let room = NORMAL_95 * NORMAL_95 - (tried.rss - fit.rss) / (spread * spread);
         if room <= 0.0 {
             continue;
@@ -210,7 +211,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f
             }
             None => Some((k - names.len(), value)),
         };
-        problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient }, REFIT)
+        problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient }, REFIT_EFFORT)
     };
     let end = |direction: f64| -> f64 {
         let first = if se.is_finite() && se > 0.0 { NORMAL_95 * se } else { best.abs().max(1e-3) };

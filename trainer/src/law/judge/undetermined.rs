@@ -1,6 +1,6 @@
 //! What the data do not determine: left out, fixed, or allowed for in the intervals, and said in a sentence.
 
-use super::criterion::{EXACT, Evidence};
+use super::criterion::{EXACT_RESIDUAL_RATIO, Evidence};
 use super::uncertainty::{Interval, NORMAL_95, Uncertainty, analyse};
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::model::admissible::admissible;
@@ -9,7 +9,7 @@ use crate::law::model::structure::{Nonlinear, Shape, SignForm, Term};
 use crate::law::render::significant;
 
 /// Half the rise of twice the negative log likelihood at which a constant is distinguished from zero with 95 %.
-const DISTINGUISHED: f64 = 0.5 * NORMAL_95 * NORMAL_95;
+const DROP_THRESHOLD_NATS: f64 = 0.5 * NORMAL_95 * NORMAL_95;
 
 /// Takes out, one by one, terms that may as well be zero once the correlation of the residuals is counted: by their standard
 /// error, and by what leaving them out, all else refitted, does to the likelihood.
@@ -31,7 +31,7 @@ pub(in crate::law) fn drop_undetermined(
         let simpler = fit.structure.without(fit.structure.terms()[weakest]);
         let rough = problem.fit_grid(&simpler, &fit.nonlinear(), Held::default(), 1, Effort::SEARCH);
         let without = problem.polish(&rough, &[]);
-        if misfit(&without) - misfit(&fit) > DISTINGUISHED {
+        if misfit(&without) - misfit(&fit) > DROP_THRESHOLD_NATS {
             return fit;
         }
         let naming =
@@ -102,7 +102,7 @@ pub(in crate::law) fn allow_for_viscous(
     let sees_speed = |t: &Term| {
         matches!(t.shape, Shape::Viscous | Shape::Quadratic | Shape::OddPower | Shape::OddRoot | Shape::SignPower)
     };
-    let exact = uncertainty.noise <= EXACT * (problem.total() / problem.rows() as f64).sqrt();
+    let exact = uncertainty.noise <= EXACT_RESIDUAL_RATIO * (problem.total() / problem.rows() as f64).sqrt();
     if exact || fit.structure.terms().is_empty() || fit.structure.terms().iter().any(sees_speed) {
         return;
     }

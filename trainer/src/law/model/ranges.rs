@@ -7,7 +7,7 @@ use super::structure::{Layout, Nonlinear, SignForm};
 const SAMPLES_IN_TRANSITION: usize = 5;
 
 /// Speeds below this share of the fastest are rest.
-const REST: f64 = 1e-3;
+const REST_SPEED_RATIO: f64 = 1e-3;
 
 /// Most starting orders of a ripple that are tried.
 const MOST_ORDERS: usize = 400;
@@ -67,8 +67,8 @@ impl Extents {
             data.channels[velocity].values.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
         speeds.sort_by(f64::total_cmp);
         let fastest = speeds[speeds.len() - 1];
-        let slow = speeds[SAMPLES_IN_TRANSITION.min(speeds.len() - 1)].max(REST * fastest);
-        let slowest = speeds[0].max(0.1 * REST * fastest);
+        let slow = speeds[SAMPLES_IN_TRANSITION.min(speeds.len() - 1)].max(REST_SPEED_RATIO * fastest);
+        let slowest = speeds[0].max(0.1 * REST_SPEED_RATIO * fastest);
         let mut references = Vec::new();
         let mut spans = Vec::new();
         for channel in &data.channels {

@@ -1,4 +1,4 @@
-//! A law as text: for the terminal, for papers, and as source code that evaluates to it.
+//! A law as text: for the terminal, for papers, and as source code that evaluates to it. Knows no data and no fit.
 
 mod code;
 mod latex;

@@ -6,7 +6,7 @@ use super::beam::{Beam, explore};
 use super::proposals::Start;
 use crate::law::fitting::problem::{Fit, Problem};
 use crate::law::judge::choice::{Candidate, FrontEntry, best, choose, finalists, front};
-use crate::law::judge::criterion::{EXACT, Evidence, correlation_length};
+use crate::law::judge::criterion::{EXACT_RESIDUAL_RATIO, Evidence, correlation_length};
 use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
 use crate::law::judge::rounding::rounded;
 use crate::law::judge::uncertainty::{Interval, analyse};
@@ -106,6 +106,6 @@ fn evidence_of(problem: &Problem<'_>, fit: Option<&Fit>) -> Evidence {
     Evidence {
         rows,
         effective: (rows as f64 / length).max(LEAST_EFFECTIVE.min(rows as f64)),
-        exact: EXACT * EXACT * problem.total() / rows as f64,
+        exact: EXACT_RESIDUAL_RATIO * EXACT_RESIDUAL_RATIO * problem.total() / rows as f64,
     }
 }

@@ -41,17 +41,17 @@ pub struct Match {
 }
 
 /// Natural logarithm of the unexplained variance that one unit of complexity has to save.
-const PENALTY: f64 = 0.5;
+const COMPLEXITY_PENALTY: f64 = 0.5;
 /// Unexplained share that counts as none: splines follow their law no closer.
-const NEGLIGIBLE: f64 = 1e-5;
+const UNEXPLAINED_FLOOR: f64 = 1e-5;
 /// Inner slopes that are tried first, for an argument scaled to `[-1, 1]`: this many, up to the steepest.
-const SLOPES: usize = 14;
-const GENTLEST: f64 = 0.3;
-const STEEPEST: f64 = 80.0;
+const SLOPE_COUNT: usize = 14;
+const LOWEST_SLOPE: f64 = 0.3;
+const HIGHEST_SLOPE: f64 = 80.0;
 /// Shifts of the argument that are tried first.
 const SHIFTS: [f64; 9] = [0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75, -1.0, 1.0];
 /// Rounds of the pattern search that refines slope and shift (Hooke & Jeeves 1961).
-const ROUNDS: usize = 40;
+const REFINEMENT_ROUNDS: usize = 40;
 
 impl Function {
     const ALL: [Self; 10] = [
@@ -131,7 +131,7 @@ impl Match {
     }
 
     fn score(&self) -> f64 {
-        libm::log(self.unexplained + NEGLIGIBLE) + PENALTY * self.function.complexity()
+        libm::log(self.unexplained + UNEXPLAINED_FLOOR) + COMPLEXITY_PENALTY * self.function.complexity()
     }
 }
 
@@ -199,9 +199,9 @@ impl Curve {
 
     fn best(&self, function: Function) -> Match {
         let (stretches, shifts) = function.shapes();
-        let ratio = libm::log(STEEPEST / GENTLEST) / (SLOPES - 1) as f64;
+        let ratio = libm::log(HIGHEST_SLOPE / LOWEST_SLOPE) / (SLOPE_COUNT - 1) as f64;
         let slopes: Vec<f64> = match stretches {
-            true => (0..SLOPES).map(|i| GENTLEST * libm::exp(ratio * i as f64)).collect(),
+            true => (0..SLOPE_COUNT).map(|i| LOWEST_SLOPE * libm::exp(ratio * i as f64)).collect(),
             false => vec![1.0],
         };
         // An exponential falls as well as it rises; all others are odd or even.
@@ -217,7 +217,7 @@ impl Curve {
             }
         }
         let (mut stretch, mut move_by) = (if stretches { 0.5 * ratio } else { 0.0 }, if shifts { 0.1 } else { 0.0 });
-        for _ in 0..ROUNDS {
+        for _ in 0..REFINEMENT_ROUNDS {
             let before = best.unexplained;
             let steps = [[stretch, 0.0], [-stretch, 0.0], [0.0, move_by], [0.0, -move_by]];
             for [by, shift] in steps {

@@ -7,7 +7,7 @@ use crate::law::model::data::ChannelRole;
 use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Activations whose best function leaves more unexplained than this propose nothing.
-const RECOGNISED: f64 = 0.02;
+const RECOGNITION_THRESHOLD: f64 = 0.02;
 
 /// A structure with some of its non-linear constants.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,7 +102,7 @@ pub fn proposals(sums: &[Activation], products: &[[Activation; 2]]) -> Vec<Start
 }
 
 fn recognised(activation: &Activation) -> Option<(Factor, Vec<(Nonlinear, f64)>)> {
-    let best = matches(&activation.points).into_iter().next().filter(|m| m.unexplained < RECOGNISED)?;
+    let best = matches(&activation.points).into_iter().next().filter(|m| m.unexplained < RECOGNITION_THRESHOLD)?;
     let channel = activation.channel;
     let slope = best.inner[0].abs();
     match activation.role {

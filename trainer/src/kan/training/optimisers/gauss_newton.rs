@@ -27,9 +27,6 @@ const PATIENCE: usize = 3;
 /// easier to let activations bend than to straighten them out again.
 pub(in crate::kan) const SMOOTHING_START: f64 = 100.0;
 
-/// Factor by which smoothing may change per step.
-pub(in crate::kan) const SMOOTHING_LIMIT: f64 = 100.0;
-
 /// Minimises over all trained parameters of the model; leaves the best found in it.
 pub(in crate::kan) fn minimise(
     model: &mut Model,
@@ -62,7 +59,7 @@ pub(in crate::kan) fn minimise(
         if settings.smoothing == Smoothing::Estimated
             && let Some(factor) = Cholesky::new(&matrix, normal.size)
         {
-            let found = reestimate(&mut penalties, &normal, &factor, ridge, &values, samples, SMOOTHING_LIMIT);
+            let found = reestimate(&mut penalties, &normal, &factor, ridge, &values, samples);
             // Generalised cross-validation (Craven and Wahba, 1979).
             score /= (1.0 - found / samples as f64).max(0.1).powi(2);
             degrees_of_freedom = Some(found);

@@ -1,4 +1,4 @@
-//! The optimisers. Each takes a model, the rows to learn from and the settings; none knows another but by name here.
+//! The optimisers: each takes a model, the rows to learn from and the settings. Knows no restart and no choice between networks.
 
 mod adam;
 mod first_order;

@@ -6,7 +6,7 @@ use super::{Layout, Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 use crate::law::model::expression::{Expr, Unary};
 
 /// Keeps a power of the speed with a negative exponent finite at rest, velocity unit.
-const OFF_ZERO: f64 = 1e-9;
+const SPEED_FLOOR: f64 = 1e-9;
 
 impl Structure {
     /// The terms as expressions of the non-linear parameters, without their coefficients.
@@ -103,7 +103,7 @@ impl Builder<'_> {
             Shape::Quadratic => Some(self.v() * self.v().abs()),
             Shape::OddPower => Some(self.v() * self.v().pow(self.param(Nonlinear::Exponent))),
             Shape::OddRoot => {
-                let speed = self.v().abs() + Expr::Const(OFF_ZERO);
+                let speed = self.v().abs() + Expr::Const(SPEED_FLOOR);
                 Some(self.v() / speed.pow(self.param(Nonlinear::RootExponent)))
             }
             Shape::AbsSign => Some(self.sign().abs()),
