@@ -1,7 +1,7 @@
 //! Symbolic laws of friction, found in samples alone: what a law is, how it is fitted, which one the data support. Knows no
 //! files, no networks, no recordings.
 //!
-//! [`discover()`] searches the structures that [`model`] can say, fits each with all its constants at once, judges it by its
+//! [`discover()`] searches the structures that `model` can say, fits each with all its constants at once, judges it by its
 //! evidence and names what it finds. The rooms know each other in one direction: `model`, then `fitting` and `render`, then
 //! `judge`, then `search`.
 

@@ -11,7 +11,7 @@ use crate::kan::training::dataset::{Dataset, fold_chunks, row_count};
 /// proportion to their standard deviation over that of the sum; a product hands its score to both its factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribution {
-    /// `[layer][edge]`, edges as in [`super::Layer::edges`]; pruned edges score zero.
+    /// `[layer][edge]`, edges as in [`crate::kan::Layer::edges`]; pruned edges score zero.
     pub edges: Vec<Vec<f64>>,
     /// `[layer][node]`: nodes that feed the layer; `nodes[0]` are the inputs.
     pub nodes: Vec<Vec<f64>>,

@@ -96,7 +96,7 @@ pub struct Pruned {
 /// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs.
 ///
 /// # Errors
-/// As [`crate::kan::training::fit`].
+/// As [`crate::kan::fit`].
 pub fn prune(
     fitted: &FitResult,
     dataset: &Dataset,

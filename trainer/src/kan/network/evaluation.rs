@@ -34,7 +34,7 @@ impl Network {
     }
 
     /// Value of one activation at `x`. In the first layer `x` is the physical input; the last layer's activations
-    /// are contributions to the output in physical units. `to` counts terminals (see [`Layer::terminals_of`]).
+    /// are contributions to the output in physical units. `to` counts terminals (see [`crate::kan::Layer::terminals_of`]).
     pub fn edge_activation(&self, layer: usize, from: usize, to: usize, x: f64) -> f64 {
         self.edge_value_and_slope(layer, from, to, x).0
     }

@@ -17,7 +17,7 @@ const MULTISTART_VALUES: usize = 24;
 /// How hard the refits of an interval try.
 const REFIT_EFFORT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
 
-/// What the data say about the constants of a law, in the order of [`Fit::params`].
+/// What the data say about the constants of a law, in the order of its parameters: non-linear ones, then the coefficients of the terms.
 #[derive(Clone, Debug)]
 pub struct Uncertainty {
     /// Standard errors: from the linearised covariance or the wider side of the profile interval, whichever is larger;

@@ -1,6 +1,6 @@
 //! Everything that can be hidden in a joint: the catalogue, structures outside it, and how each is drawn from a seed.
 //!
-//! An effect is drawn once, off any grid, and multiplied by an amplitude. [`mechanism`] says where it acts. Knows no
+//! An effect is drawn once, off any grid, and multiplied by an amplitude. `mechanism` says where it acts. Knows no
 //! recording and no way in which an effect is looked for.
 
 mod dependence;
