@@ -13,6 +13,7 @@ pub mod effect;
 pub mod elementary;
 pub mod expression;
 pub mod image;
+pub mod input;
 pub mod integer_table;
 pub mod model;
 pub mod network;

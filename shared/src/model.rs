@@ -4,33 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::effect::{Effect, MAX_EFFECTS};
 use crate::expression::Program;
+pub use crate::input::{Input, MAX_INPUTS};
 use crate::integer_table::IntegerTable;
 use crate::network::Network;
 use crate::pool::Pool;
 use crate::table::{Geometric, Table, Uniform};
-use crate::units::{Quantity, Unit};
-
-/// Most inputs of a model; a power of two, so that an input index is a mask.
-pub const MAX_INPUTS: usize = 4;
+use crate::units::Unit;
 
 /// Longest joint name, in bytes.
 pub const JOINT_NAME_BYTES: usize = 32;
 
 /// Longest trainer version, in bytes.
 pub const VERSION_BYTES: usize = 24;
-
-/// An input channel. Outside `[low, high]` the model holds the value that it has at the nearer end.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Input {
-    /// What it measures.
-    pub quantity: Quantity,
-    /// Its unit.
-    pub unit: Unit,
-    /// Smallest trained value, finite.
-    pub low: f32,
-    /// Largest trained value, finite, above `low`.
-    pub high: f32,
-}
 
 /// The rigid-body part of the actuator torque, as it stood when the model was made:
 /// `inertia a + gravity_sin sin q + gravity_cos cos q + offset + given_scale * given`, where `given` is a rigid-body torque

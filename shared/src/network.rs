@@ -18,10 +18,9 @@
 //! multiplicative node has two sums `s` and `t` of either sign, and its position is `high(s t)` from the middle of its rows. The last sum
 //! is the output in steps. That the sums of a network keep to the rows of their nodes is validated, for every input there can be.
 
-mod check;
-
 use serde::{Deserialize, Serialize};
 
+use crate::input::MAX_INPUTS;
 use crate::table::{Cell, Table};
 
 /// Most layers of edges of a network.
@@ -102,7 +101,7 @@ impl Layer {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NetworkShape {
     /// The model's inputs in their order.
-    pub sources: heapless::Vec<Source, { crate::model::MAX_INPUTS }>,
+    pub sources: heapless::Vec<Source, MAX_INPUTS>,
     /// Hidden layers from input to output.
     pub layers: heapless::Vec<Layer, { MAX_LAYERS - 1 }>,
     /// Unit of the output for each step of the last sum, positive and finite.

@@ -1,6 +1,8 @@
 //! What a model has to satisfy before it may be evaluated. A model that passes cannot fail: no index leaves its pool, no
 //! program runs out of operands, no coefficient is infinite, NaN or subnormal (so that flush-to-zero changes nothing).
 
+mod network;
+
 use crate::effect::{Effect, Kind};
 use crate::expression::ProgramFault;
 use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_SEGMENT_CELLS};
@@ -45,7 +47,7 @@ pub enum InvalidModel {
 /// Largest magnitude of a trained range and of a coefficient: keeps every sum of a table and of a state finite.
 const LARGEST: f32 = 1.0e9;
 
-pub(crate) fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
+fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
 
@@ -54,7 +56,7 @@ fn bounded(x: f32) -> bool {
 }
 
 /// A scale by which something is divided.
-pub(crate) fn scale(x: f32) -> bool {
+fn scale(x: f32) -> bool {
     (1.0 / LARGEST..=LARGEST).contains(&x)
 }
 
@@ -116,7 +118,7 @@ fn check_inputs(inputs: &[Input]) -> Result<(), InvalidModel> {
     Ok(())
 }
 
-pub(crate) fn check_layout(table: &Table) -> Result<(), InvalidModel> {
+fn check_layout(table: &Table) -> Result<(), InvalidModel> {
     let holds = match table {
         Table::Geometric(layout) => {
             let shape = layout.shape();
@@ -142,7 +144,7 @@ fn check_table(table: &Table, cells: &[Cell]) -> Result<(), InvalidModel> {
 }
 
 /// The cells of `count` rows of `columns` cells.
-pub(crate) fn rows(cells: &[Cell], first: u32, count: u32, columns: usize) -> Result<&[Cell], InvalidModel> {
+fn rows(cells: &[Cell], first: u32, count: u32, columns: usize) -> Result<&[Cell], InvalidModel> {
     let first = first as usize;
     cells.get(first..first.saturating_add(count as usize * columns)).ok_or(InvalidModel::CellOutOfPool)
 }

@@ -8,6 +8,7 @@ pub mod fixtures;
 pub mod laws;
 pub mod models;
 pub mod paper;
+pub mod published;
 pub mod second_opinion;
 pub mod training_cost;
 pub mod vectors;

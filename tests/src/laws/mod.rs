@@ -4,10 +4,9 @@ pub mod other;
 pub mod reference;
 pub mod simple;
 
-use frikan_trainer::law::structure::{Shape, SignForm, Structure, Term};
-use frikan_trainer::law::{Channel, ChannelRole, LawData};
+use frikan_trainer::law::{Channel, ChannelRole, LawData, Shape, SignForm, Structure, Term};
 
-use crate::paper;
+use crate::published::samples;
 
 /// Parts into which the samples are cut for holding out.
 const BLOCKS: usize = 10;
@@ -40,6 +39,6 @@ pub fn plain(sign: SignForm, shapes: &[Shape]) -> Structure {
 /// Samples of one of the paper's joints, noise as a share of the range; `seed` names the draw.
 #[must_use]
 pub fn joint(k: [f64; 4], n: usize, share: f64, seed: u64) -> LawData {
-    let samples = paper::samples(k, n, share, &mut frikan_trainer::kan::Random::new(seed, 0));
+    let samples = samples(k, n, share, &mut frikan_trainer::kan::Random::new(seed, 0));
     data(vec![velocity(samples.velocity)], samples.noisy)
 }

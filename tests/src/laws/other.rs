@@ -3,11 +3,12 @@
 use std::f64::consts::FRAC_2_PI;
 
 use frikan_trainer::kan::Random;
-use frikan_trainer::law::structure::{Modulation, Shape, SignForm, Structure, Term};
-use frikan_trainer::law::{Channel, ChannelRole, SearchOptions, discover};
+use frikan_trainer::law::{
+    Channel, ChannelRole, Modulation, SearchOptions, Shape, SignForm, Structure, Term, discover,
+};
 
 use super::{channel, data, plain, velocity};
-use crate::paper::{SAMPLES, with_noise};
+use crate::published::{SAMPLES, with_noise};
 
 /// A generated law, its channels and the structures that are right answers.
 #[derive(Clone, Debug)]

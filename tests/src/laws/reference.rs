@@ -1,10 +1,9 @@
 //! The paper's law under the paper's noise: structures found, and whether the intervals hold the truth.
 
-use frikan_trainer::law::structure::{Shape, SignForm, Structure};
-use frikan_trainer::law::{Discovery, SearchOptions, discover};
+use frikan_trainer::law::{Discovery, SearchOptions, Shape, SignForm, Structure, discover};
 
 use super::{joint, plain};
-use crate::paper::{JOINTS, NOISE, SAMPLES, SMOOTHING};
+use crate::published::{JOINTS, NOISE, SAMPLES, SMOOTHING};
 
 /// Constants of the law that can be identified under the paper's noise, with their true values for a joint.
 #[must_use]

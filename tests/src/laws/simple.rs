@@ -1,11 +1,10 @@
 //! Data with little in them: noise alone, and Coulomb-viscous friction with two channels that do not matter.
 
 use frikan_trainer::kan::Random;
-use frikan_trainer::law::structure::{Shape, SignForm, Structure};
-use frikan_trainer::law::{ChannelRole, LawData, SearchOptions, discover};
+use frikan_trainer::law::{ChannelRole, LawData, SearchOptions, Shape, SignForm, Structure, discover};
 
 use super::{channel, data, plain, velocity};
-use crate::paper::with_noise;
+use crate::published::with_noise;
 
 /// What a set of samples was made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

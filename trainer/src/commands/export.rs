@@ -14,9 +14,7 @@ use crate::export::flashing::{Addressing, commands};
 use crate::export::{c, c_array, hex, readable, simulator, title, uf2};
 use crate::fit::{CELLS, model};
 use crate::key;
-use crate::law::canonical::canonical;
-use crate::law::program::expression_of;
-use crate::law::{Language, render};
+use crate::law::{Language, canonical, expression_of, render};
 
 /// Export an image for a build tool, a flash tool or a simulator, and print the commands that flash it.
 #[derive(Args, Clone, Debug)]

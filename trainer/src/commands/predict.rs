@@ -87,5 +87,5 @@ fn table(recording: &Recording, model: &HostModel, predicted: &[f64]) -> Result<
 
 /// Nine significant digits, as a recording's own numbers.
 fn number(value: f64) -> String {
-    crate::law::render::significant(value, 9)
+    crate::law::significant(value, 9)
 }

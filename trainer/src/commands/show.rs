@@ -13,10 +13,7 @@ use crate::export::dump::{Found, images, in_use};
 use crate::files::read_whole;
 use crate::fit::{CELLS, model};
 use crate::key;
-use crate::law::canonical::canonical;
-use crate::law::program::expression_of;
-use crate::law::render::significant;
-use crate::law::{Language, render};
+use crate::law::{Language, canonical, expression_of, render, significant};
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 6;

@@ -1,27 +1,24 @@
 //! What the activations of the pruned network look like: labels for its picture, starts for the search of the formula.
 
 use super::inputs::ChosenInput;
-use super::learn::{CURVE_POINTS, Learnt};
+use super::outcome::CURVE_POINTS;
 use crate::kan::{GraphEdge, GraphSummary, Network, NodeKind};
-use crate::law::Start;
-use crate::law::matching::matches;
-use crate::law::proposals::{Activation, proposals};
+use crate::law::{Activation, Start, matches, proposals};
 
 /// An activation is labelled with a function that leaves less than this share of its variance unexplained.
-const LABELLED: f64 = 1e-3;
+const LABEL_THRESHOLD: f64 = 1e-3;
 
 /// Writes into the graph which function each activation follows, where it follows one.
 pub fn label_activations(graph: &mut GraphSummary, network: &Network) {
     for index in (0..graph.edges.len()).filter(|&index| graph.edges[index].active).collect::<Vec<_>>() {
         let found = matches(&graph.curve(network, index, CURVE_POINTS)).into_iter().next();
         graph.edges[index].symbolic =
-            found.filter(|best| best.unexplained < LABELLED).map(|best| best.function.label().to_owned());
+            found.filter(|best| best.unexplained < LABEL_THRESHOLD).map(|best| best.function.label().to_owned());
     }
 }
 
 /// Where the search may start. Only networks with at most one hidden layer say something about terms.
-pub(super) fn starts(learnt: &Learnt, inputs: &[ChosenInput]) -> Vec<Start> {
-    let (network, graph) = (&learnt.network, &learnt.graph);
+pub(super) fn starts(network: &Network, graph: &GraphSummary, inputs: &[ChosenInput]) -> Vec<Start> {
     if network.layers().len() > 2 {
         return Vec::new();
     }

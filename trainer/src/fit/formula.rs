@@ -1,7 +1,168 @@
-//! A law in the terms of the compiler.
+//! The formula: looked for on open blocks, then fitted to everything jointly with the rigid body; and a law in the terms of the
+//! compiler.
 
+use rayon::prelude::*;
+
+use super::gather::Material;
+use super::inputs::{ChosenInput, symbol};
+use super::outcome::{ClassicalLaw, FrontLaw, LawSummary};
+use super::rigid;
 use crate::compile::formula::{Formula, Function, Operator};
-use crate::law::expression::{Expr, Unary};
+use crate::error::{Error, Result, codes};
+use crate::law::{
+    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nonlinear, Nuisance,
+    SearchOptions, Start, Unary, discover, fit_form, refit, render,
+};
+use crate::parameter::Parameter;
+
+/// Most samples that constants are fitted to; more would change no digit that is printed.
+const MOST_SAMPLES: usize = 12_000;
+
+/// Most samples that the classical laws are fitted to.
+const MOST_CLASSICAL_SAMPLES: usize = 4_000;
+
+/// Difference of the criterion (Schwarz 1978) that counts as clear (Kass & Raftery 1995).
+const BIC_DIFFERENCE_THRESHOLD: f64 = 6.0;
+
+/// The formula with what led to it.
+pub(super) struct Found {
+    pub(super) discovery: Discovery,
+    /// Fitted to the open blocks only; what candidates are compared by.
+    pub(super) open: FormFit,
+    /// Fitted to all samples.
+    pub(super) last: FormFit,
+}
+
+/// Samples as the law room takes them.
+pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
+    let axis = material.samples.axis;
+    let actuator = material.samples.actuator_unit;
+    let channel = |input: &ChosenInput| Channel {
+        name: input.name.clone(),
+        unit: input.unit.symbol().to_owned(),
+        role: input.role,
+        values: input.values.clone(),
+    };
+    let nuisance = material.columns.iter().map(|column| Nuisance {
+        name: column.kind.name().to_owned(),
+        unit: rigid::unit(column.kind, axis, actuator),
+        values: material.pick(&column.values),
+    });
+    LawData {
+        channels: inputs.iter().map(channel).collect(),
+        target: material.pick(&material.target),
+        target_unit: rigid::printed(actuator).to_owned(),
+        nuisance: nuisance.collect(),
+        blocks: material.labels.clone(),
+    }
+}
+
+/// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
+/// constants paid for, takes its place.
+pub(super) fn search(material: &Material, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+    let open_data = data.select(&material.open());
+    let options = SearchOptions { starts, ..SearchOptions::default() };
+    let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
+    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
+    let fixed = fixed_smoothing(&discovery);
+    let own = refit(&discovery.law, &few, fixed).map_err(|error| refused(&error))?;
+    let rivals: Vec<FormFit> = KnownForm::ALL
+        .par_iter()
+        .map(|form| fit_form(*form, &few, fixed).ok())
+        .collect::<Vec<_>>()
+        .into_iter()
+        .flatten()
+        .collect();
+    // One effective number of samples for all, or their criteria would not compare.
+    let effective = few.rows() as f64 / own.uncertainty.correlation_length;
+    let criterion = |fit: &FormFit| {
+        let constants = fit.law.parameters.len() as f64;
+        2.0 * effective * fit.rmse.max(f64::MIN_POSITIVE).ln() + effective.ln() * constants
+    };
+    let limit = criterion(&own) - BIC_DIFFERENCE_THRESHOLD;
+    let better = rivals.into_iter().filter(|rival| rival.converged && criterion(rival) < limit);
+    let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
+    discovery.law = best.law;
+    let fixed = fixed_smoothing(&discovery);
+    let settled =
+        |data: &LawData| refit(&discovery.law, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error));
+    let (open, last) = (settled(&open_data)?, settled(data)?);
+    Ok(Found { open, last, discovery })
+}
+
+/// The smoothing of the sign, where the search had to fix it.
+fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
+    let nonlinear = discovery.law.structure.nonlinear();
+    let at = nonlinear.iter().position(|n| *n == Nonlinear::Smoothing)?;
+    let parameter = &discovery.law.parameters[at];
+    (!parameter.determined).then_some(parameter.value)
+}
+
+/// Every `k`-th sample, so that at most `most` are left.
+fn thinned(data: &LawData, most: usize) -> LawData {
+    let stride = data.rows().div_ceil(most).max(1);
+    data.select(&(0..data.rows()).step_by(stride).collect::<Vec<_>>())
+}
+
+/// The laws of the literature on the same samples, those that can be fitted.
+pub(super) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw> {
+    let mut over_velocity = thinned(data, MOST_CLASSICAL_SAMPLES);
+    over_velocity.channels.truncate(1);
+    let fit = |form: &KnownForm| {
+        let fit = fit_form(*form, &over_velocity, None).ok()?;
+        let mut parameters = law_parameters(&fit.law.parameters);
+        parameters.extend(rigid::parameters(material, &fit.uncertainty.nuisance));
+        Some(ClassicalLaw { name: form.name(), rmse: fit.rmse, bic: fit.bic, parameters })
+    };
+    KnownForm::ALL.par_iter().map(fit).collect::<Vec<_>>().into_iter().flatten().collect()
+}
+
+/// Constants of a law as results carry them.
+pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
+    let carried = parameters.iter().map(|p| Parameter {
+        name: p.name.clone(),
+        symbol: p.symbol.clone(),
+        value: p.value,
+        unit: p.unit.clone(),
+        ci95: p.ci95,
+    });
+    carried.collect()
+}
+
+/// What a report shows of the search.
+pub(super) fn summary(found: &Found, inputs: &[ChosenInput]) -> LawSummary {
+    let front = found.discovery.front.iter().map(|entry| FrontLaw {
+        expression: text(&entry.expression, inputs),
+        nodes: entry.nodes,
+        rmse: entry.rmse,
+        held_out_rmse: entry.held_out_rmse,
+    });
+    let expression = &found.last.law.expression;
+    let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
+    LawSummary {
+        expression: text(expression, inputs),
+        latex: render(expression, Language::Latex, "friction", &symbols),
+        nodes: expression.node_count(),
+        rmse: found.last.rmse,
+        front: front.collect(),
+        explored: found.discovery.explored,
+    }
+}
+
+fn text(expression: &Expr, inputs: &[ChosenInput]) -> String {
+    let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
+    render(expression, Language::Unicode, "friction", &symbols)
+}
+
+fn refused(error: &LawError) -> Error {
+    let code = match error {
+        LawError::TooFewSamples { .. } => &codes::TOO_FEW_ROWS,
+        LawError::NotFinite { .. } => &codes::NOT_FINITE,
+        LawError::ConstantVelocity => &codes::NO_MOTION,
+        _ => &codes::NOT_IDENTIFIABLE,
+    };
+    Error::new(code, error.to_string())
+}
 
 /// The formula of a bound expression (one without open parameters, which would read as NaN).
 #[must_use]

@@ -4,20 +4,17 @@ use super::activations::label_activations;
 use super::gather::Material;
 use super::inputs::ChosenInput;
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::NetworkStory;
+use super::outcome::{CURVE_POINTS, NetworkSummary};
 use crate::error::{Error, Result, codes};
 use crate::kan;
 use crate::kan::{Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
 use crate::samples::rigid_body::TermKind;
 
-/// Points of a drawn curve.
-pub(super) const CURVE_POINTS: usize = 241;
-
 /// Two-sided 95 % point of the normal distribution.
 const NORMAL_95: f64 = 1.96;
 
 /// The columns that a network learns from, at the rows of the material.
-pub(super) struct Lesson {
+pub(super) struct TrainingData {
     inputs: Vec<Vec<f64>>,
     target: Vec<f64>,
     linear: Vec<Vec<f64>>,
@@ -27,7 +24,7 @@ pub(super) struct Lesson {
 }
 
 /// A network with the rigid body that was identified along with it.
-pub(super) struct Learnt {
+pub(super) struct TrainedNetwork {
     pub(super) network: Network,
     pub(super) graph: GraphSummary,
     /// One coefficient for each column of the material.
@@ -35,7 +32,7 @@ pub(super) struct Learnt {
     pub(super) settled: bool,
 }
 
-impl Lesson {
+impl TrainingData {
     /// # Errors
     /// `FRK-U001` where the network that is asked for has another number of inputs.
     pub(super) fn new(material: &Material, inputs: &[ChosenInput], options: &Options) -> Result<Self> {
@@ -88,11 +85,11 @@ impl Lesson {
     }
 
     /// A network with its scores and its rigid body.
-    pub(super) fn learnt(&self, result: &FitResult) -> Learnt {
+    pub(super) fn learnt(&self, result: &FitResult) -> TrainedNetwork {
         let blocks = Blocks::default();
         let mut coefficients = result.linear_coefficients.clone();
         coefficients.extend(self.offset);
-        Learnt {
+        TrainedNetwork {
             graph: GraphSummary::of(&result.network, &self.dataset(&blocks)),
             network: result.network.clone(),
             coefficients,
@@ -101,7 +98,7 @@ impl Lesson {
     }
 
     /// What a report shows of the training.
-    pub(super) fn story(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkStory {
+    pub(super) fn summary(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkSummary {
         let blocks = Blocks::default();
         let dataset = self.dataset(&blocks);
         let mut after = GraphSummary::of(&last.network, &dataset);
@@ -111,7 +108,7 @@ impl Lesson {
         };
         let activations = after.edges.iter().enumerate().map(|(index, edge)| curve(index, edge.active)).collect();
         let stages = [1.0 / 3.0, 2.0 / 3.0, 1.0].map(|share| (share, self.over_velocity(fitted.network_at(share))));
-        NetworkStory {
+        NetworkSummary {
             architecture: self.options.architecture.to_string(),
             before: GraphSummary::of(&fitted.network, &dataset),
             activations,

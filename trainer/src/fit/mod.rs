@@ -5,14 +5,12 @@
 mod activations;
 mod choose;
 mod formula;
-mod formula_search;
 mod gather;
 mod inputs;
 mod learn;
 pub mod model;
 mod options;
 pub mod outcome;
-mod piecewise;
 pub mod predict;
 mod rigid;
 mod rivals;

@@ -32,7 +32,7 @@ pub struct Training {
     pub steps: Option<usize>,
     /// How often the cells of the network are halved at most.
     pub refinements: Option<usize>,
-    /// Pull of superfluous edges towards nothing.
+    /// Penalty on superfluous edges.
     pub sparsity: Option<Sparsity>,
 }
 

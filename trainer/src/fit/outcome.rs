@@ -5,6 +5,9 @@ use crate::parameter::Parameter;
 use crate::recording::Axis;
 use crate::samples::relevance::Relevance;
 
+/// Points of a drawn curve.
+pub(super) const CURVE_POINTS: usize = 241;
+
 /// The form in which a law goes into the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Representation {
@@ -43,9 +46,9 @@ pub struct Outcome {
     /// Relevance of every input that was offered, strongest first.
     pub relevance: Vec<Relevance>,
     /// The network and how it came about.
-    pub network: NetworkStory,
+    pub network: NetworkSummary,
     /// The formula that was found.
-    pub law: LawStory,
+    pub law: LawSummary,
     /// Classical friction laws fitted to the same samples, rigid body identified along with each.
     pub classical: Vec<ClassicalLaw>,
     /// Constants of the formula, then those of the rigid body as it is in the image.
@@ -102,7 +105,7 @@ pub struct InputRange {
 
 /// The network, before and after pruning.
 #[derive(Clone, Debug)]
-pub struct NetworkStory {
+pub struct NetworkSummary {
     /// Shape that was trained, such as `[1,5,1]`.
     pub architecture: String,
     /// Nodes and edges with their attribution scores, as trained.
@@ -123,7 +126,7 @@ pub struct NetworkStory {
 
 /// The formula.
 #[derive(Clone, Debug)]
-pub struct LawStory {
+pub struct LawSummary {
     /// As text.
     pub expression: String,
     /// As LaTeX.

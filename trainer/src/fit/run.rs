@@ -5,14 +5,13 @@ use frikan_shared::image::Image;
 use frikan_shared::model::{Law, MAX_INPUTS};
 
 use super::activations;
-use super::formula::formula_of;
-use super::formula_search::{self, Found, classical, law_data, law_parameters, search};
+use super::formula::{self, Found, classical, formula_of, law_data, law_parameters, search};
 use super::gather::{Material, gather};
 use super::inputs::{ChosenInput, choose, output_unit};
-use super::learn::{CURVE_POINTS, Learnt, Lesson};
+use super::learn::{TrainedNetwork, TrainingData};
 use super::model::{HostModel, Parts, assemble, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{InputRange, Outcome, Representation, Score, Soundness};
+use super::outcome::{CURVE_POINTS, InputRange, Outcome, Representation, Score, Soundness};
 use super::predict::trace;
 use super::rivals::{Rivals, no_image};
 use super::{rigid, tables};
@@ -79,21 +78,20 @@ fn fit_once(
     let builder = Builder { material: &material, inputs: &inputs, joint, cells: options.budget.cells() };
 
     tell(Stage::Training);
-    let lesson = Lesson::new(&material, &inputs, options)?;
-    let (fitted, pruned) = lesson.train(&material, progress)?;
+    let training = TrainingData::new(&material, &inputs, options)?;
+    let (fitted, pruned) = training.train(&material, progress)?;
     tell(Stage::Searching);
     let data = law_data(&material, &inputs);
-    let found = search(&material, &data, activations::starts(&lesson.learnt(&pruned.result), &inputs))?;
+    let open = training.learnt(&pruned.result);
+    let found = search(&material, &data, activations::starts(&open.network, &open.graph, &inputs))?;
     tell(Stage::Comparing);
     let classical = classical(&material, &data);
 
     tell(Stage::Compiling);
-    let refitted = lesson.refit(&pruned.result)?;
-    let learnt = lesson.learnt(&refitted);
-    let rivals = Rivals {
-        table: builder.table(&lesson.learnt(&pruned.result), pruned.result.train_rmse),
-        expression: builder.expression(&found.open),
-    };
+    let refitted = training.refit(&pruned.result)?;
+    let learnt = training.learnt(&refitted);
+    let rivals =
+        Rivals { table: builder.table(&open, pruned.result.train_rmse), expression: builder.expression(&found.open) };
     let verdict = rivals.judge(&material, options.representation, &options.budget)?;
     let (last, compared) = match verdict.representation {
         Representation::Table => (builder.table(&learnt, refitted.train_rmse), rivals.table),
@@ -119,8 +117,8 @@ fn fit_once(
         filter: material.samples.filter.clone(),
         inputs: input_ranges(&model, &inputs),
         relevance,
-        network: lesson.story(&fitted, &pruned, &refitted),
-        law: formula_search::story(&found, &inputs),
+        network: training.summary(&fitted, &pruned, &refitted),
+        law: formula::summary(&found, &inputs),
         classical,
         parameters: parameters(&material, &found, &learnt, by_expression),
         candidates: verdict.candidates,
@@ -133,7 +131,7 @@ fn fit_once(
         tests,
         cloud: cloud(&material),
         law_curve: law_curve(&model, &inputs),
-        band: lesson.band(&refitted, found.last.uncertainty.correlation_length)?,
+        band: training.band(&refitted, found.last.uncertainty.correlation_length)?,
         image,
     })
 }
@@ -163,7 +161,7 @@ impl Builder<'_> {
     }
 
     /// The tightest table that fits into the budget and the smallest drive, else the tightest of all.
-    fn table(&self, learnt: &Learnt, rmse: f64) -> Option<Box<HostModel>> {
+    fn table(&self, learnt: &TrainedNetwork, rmse: f64) -> Option<Box<HostModel>> {
         let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
         let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();
         let mut tightest = None;
@@ -188,7 +186,7 @@ impl Builder<'_> {
     }
 
     /// Root mean square of what a model's law differs from its network by, on some of the samples.
-    fn deviation(&self, model: &HostModel, learnt: &Learnt) -> f64 {
+    fn deviation(&self, model: &HostModel, learnt: &TrainedNetwork) -> f64 {
         let rows = self.material.rows.len();
         let stride = rows.div_ceil(COMPARED_SAMPLES).max(1);
         let (mut sum, mut count) = (0.0, 0.0);
@@ -254,7 +252,7 @@ fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
 }
 
 /// Constants of the formula, then the rigid body as it is in the image.
-fn parameters(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Vec<Parameter> {
+fn parameters(material: &Material, found: &Found, learnt: &TrainedNetwork, by_expression: bool) -> Vec<Parameter> {
     let nuisance = &found.last.uncertainty.nuisance;
     // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
     // formula stand for them.
@@ -272,7 +270,7 @@ fn remarks(material: &Material, found: &Found, recordings: &[Recording]) -> Vec<
     if material.stride > 1 {
         let (stride, learnt) = (material.stride, material.rows.len());
         remarks.push(format!(
-            "Learnt from one in {stride} of the samples in motion, {learnt} in all; scored on every row."
+            "TrainedNetwork from one in {stride} of the samples in motion, {learnt} in all; scored on every row."
         ));
     }
     for recording in recordings {
@@ -282,7 +280,7 @@ fn remarks(material: &Material, found: &Found, recordings: &[Recording]) -> Vec<
     remarks
 }
 
-fn soundness(material: &Material, found: &Found, learnt: &Learnt, by_expression: bool) -> Soundness {
+fn soundness(material: &Material, found: &Found, learnt: &TrainedNetwork, by_expression: bool) -> Soundness {
     if let Some(name) = rigid::collinear(material) {
         return Soundness::NotIdentifiable(format!(
             "{name} cannot be told from the other terms on this motion; drive several speeds and accelerations"

@@ -1,49 +1,26 @@
-//! The Kolmogorov-Arnold network: splines, loss and gradient, optimisers, attribution, pruning. Knows no files.
+//! The Kolmogorov-Arnold network (Liu et al., 2024). Knows no files, no laws, no recordings.
+//!
+//! The rooms know each other in one direction: `network` (what it is), `training` (how it is fitted), `inspection` (what it holds).
 
-mod adam;
-mod architecture;
-mod attribution;
-mod band;
-mod dataset;
-mod dense;
-mod error;
-mod first_order;
-mod fit;
-mod gauss_newton;
-mod gradient;
-mod graph;
-mod jacobian;
-mod knots;
-mod lbfgs;
-mod model;
+mod inspection;
 mod network;
-mod outcome;
-mod penalty;
-mod pilot;
-mod prune;
-mod random;
-mod refinement;
-mod sparsity;
-mod spline;
-mod start;
-mod trace;
 mod training;
 
-pub use architecture::{Architecture, Nodes, Resolution};
-pub use attribution::Attribution;
-pub use band::standard_errors;
-pub use dataset::{Blocks, Dataset};
-pub use error::KanError;
-pub use fit::{FitOptions, FitResult, fit, refit};
-pub use gradient::loss_and_gradient;
-pub use graph::{GraphEdge, GraphNode, GraphSummary, NodeKind};
-pub use network::{Edge, Layer, Network, Scaling};
-pub use outcome::{Convergence, Status, Step};
-pub use prune::{PruneOptions, Pruned, Removed, prune};
-pub use random::Random;
-pub use sparsity::Sparsity;
-pub use spline::{Grid, LocalBasis, MAX_ORDER, SplineBasis};
-pub use training::{Optimiser, Progress, ProgressCallback, Smoothing};
+pub use inspection::attribution::Attribution;
+pub use inspection::confidence_band::standard_errors;
+pub use inspection::graph::{GraphEdge, GraphNode, GraphSummary, NodeKind};
+pub use inspection::prune::{PruneOptions, Pruned, Removed, prune};
+pub use network::architecture::{Architecture, Nodes, Resolution};
+pub use network::error::KanError;
+pub use network::layers::{Edge, Layer, Network, Scaling};
+pub use network::random::Random;
+pub use network::spline::{Grid, LocalBasis, MAX_ORDER, SplineBasis};
+pub use training::dataset::{Blocks, Dataset};
+pub use training::fit::{FitOptions, FitResult, fit, refit};
+pub use training::gradient::loss_and_gradient;
+pub use training::outcome::{Convergence, Status, Step};
+pub use training::settings::{Optimiser, Progress, ProgressCallback, Smoothing};
+pub use training::sparsity::Sparsity;
 
 #[cfg(test)]
 mod tests;

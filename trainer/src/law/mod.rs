@@ -1,35 +1,26 @@
-//! Symbolic laws: known forms, function library, search, simplification, names, rendering. Knows no files.
+//! Symbolic laws of friction, found in samples alone: what a law is, how it is fitted, which one the data support. Knows no
+//! files, no networks, no recordings.
 //!
-//! A law is looked for in samples alone: [`discover()`] searches the structures that [`structure`] can say, fits each with
-//! all its constants at once ([`mod@fit`]), prices it ([`price`]) and names what it finds ([`naming`]).
+//! [`discover()`] searches the structures that `model` can say, fits each with all its constants at once, judges it by its
+//! evidence and names what it finds. The rooms know each other in one direction: `model`, then `fitting` and `render`, then
+//! `judge`, then `search`.
 
-pub mod canonical;
-pub mod choice;
-pub mod data;
-pub mod discover;
-pub mod expression;
-pub mod fit;
-pub mod known_forms;
-pub mod library;
-pub mod matching;
-pub mod naming;
-pub mod price;
-pub mod program;
-pub mod projection;
-pub mod proposals;
-pub mod ranges;
-pub mod render;
-mod rounding;
-pub mod search;
-mod settle;
-pub mod structure;
-pub mod tape;
-pub mod uncertainty;
+mod fitting;
+mod judge;
+mod model;
+mod render;
+mod search;
 
-pub use choice::FrontEntry;
-pub use data::{Channel, ChannelRole, LawData, LawError, Nuisance};
-pub use discover::{Discovery, Law, NuisanceCoefficient, Parameter, SearchOptions, discover};
-pub use expression::{Expr, Step, Unary};
-pub use known_forms::{FormFit, KnownForm, fit_form, rank_forms};
-pub use proposals::Start;
-pub use render::{Language, render};
+pub use judge::choice::FrontEntry;
+pub use judge::description::{Law, NuisanceCoefficient, Parameter};
+pub use judge::uncertainty::Uncertainty;
+pub use model::canonical::canonical;
+pub use model::data::{Channel, ChannelRole, LawData, LawError, Nuisance};
+pub use model::expression::{Expr, Step, Unary};
+pub use model::program::expression_of;
+pub use model::structure::{Layout, Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+pub use render::{Language, latex, render, significant};
+pub use search::discover::{Discovery, SearchOptions, discover};
+pub use search::known_forms::{FormFit, KnownForm, fit_form, fit_structure, rank_forms, refit};
+pub use search::matching::{Function, Match, matches};
+pub use search::proposals::{Activation, Start, proposals};

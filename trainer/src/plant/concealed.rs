@@ -1,12 +1,13 @@
 //! What is hidden in a joint: every effect drawn from the seed and sorted by where it acts.
 
-use super::effects::{Mechanism, Moment, Resistance, Setting, TorqueEffect, find};
+use super::effects::find;
+use super::effects::mechanism::{Mechanism, Moment, Resistance, Setting, TorqueEffect};
+use super::error::PlantError;
 use super::joint::Joint;
-use super::motion::Reference;
 use super::random::{Draws, Purpose};
-use super::sensors::SensorFault;
-use super::simulate::PlantError;
-use super::transmission::Transmission;
+use crate::plant::measurement::sensors::SensorFault;
+use crate::plant::mechanics::transmission::Transmission;
+use crate::plant::trajectory::reference::Reference;
 
 /// Every hidden effect, sorted by where it acts.
 pub(crate) struct Concealed {

@@ -1,6 +1,6 @@
 //! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
 
-use super::campaign::Campaign;
+use crate::plant::trajectory::campaign::Campaign;
 use serde::{Deserialize, Serialize};
 
 /// A joint, its drive, its sensors and what is hidden in it.

@@ -1,33 +1,30 @@
-//! The simulator of a joint: continuous-time truth under a sampled drive, with effects to hide in it.
+//! The simulator of a joint: continuous-time truth under a sampled drive, with effects to conceal in it. Knows no diagnosis and no
+//! hypothesis of one.
 //!
-//! Users rehearse with it; the proof on concealed data draws its recordings from it. It knows neither `physics` nor
-//! `diagnose`, and they do not know it: a proof in which both sides share equations would prove nothing.
+//! Users rehearse with it; the proof on concealed data draws its recordings from it. Simulator and diagnosis are independent
+//! code from the same literature: neither imports the other, so that a slip in one is not repeated in the other.
 //!
-//! A recording is made in one direction: a [`Campaign`] of motions becomes a reference, the drive (`control`) turns it
-//! into torque held over each sample, the joint (`bench`, `friction`, `transmission`, `effects`) moves in continuous time, and the
-//! sensors (`noise`, `sensors`) write down what a drive would have seen.
+//! A recording is made in one direction: a [`Campaign`] of motions becomes a reference (`trajectory`), the drive turns it into
+//! torque held over each sample, the joint (`mechanics`, `effects`) moves in continuous time (`integrator`), and the sensors
+//! (`measurement`) write down what a drive would have recorded.
 
-mod bench;
-mod campaign;
-mod channels;
 mod concealed;
-mod control;
 mod description;
 pub mod effects;
-mod friction;
+mod error;
+mod integrator;
 mod joint;
-mod motion;
-mod moves;
-mod noise;
+mod measurement;
+mod mechanics;
 mod random;
-mod recording;
-mod sensors;
 mod simulate;
-mod transmission;
+mod trajectory;
 
-pub use campaign::{Campaign, Trajectory};
 pub use effects::{CATALOGUE, Entry, OUTSIDE, find};
+pub use error::PlantError;
 pub use joint::{Base, Control, Drive, Friction, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
-pub use motion::{Motion, Reference};
-pub use recording::{Column, SimulatedRecording, Truth};
-pub use simulate::{PlantError, conceal, simulate};
+pub use measurement::recording::{Column, SimulatedRecording, Truth};
+pub use simulate::{conceal, simulate};
+pub use trajectory::campaign::{Campaign, Trajectory};
+pub use trajectory::motion::Motion;
+pub use trajectory::reference::Reference;

@@ -1,36 +1,13 @@
 //! From a joint and a seed to a recording.
 
-use super::bench::run;
 use super::concealed::Concealed;
+use super::error::PlantError;
+use super::integrator::integrate;
 use super::joint::{Hidden, Joint};
-use super::motion::Reference;
 use super::random::{Draws, Purpose};
-use super::recording::SimulatedRecording;
-use super::sensors::record;
-
-/// What keeps a joint from being simulated.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlantError {
-    /// No effect has this name.
-    #[error("no effect is called `{0}`; see docs/simulate.md for the names")]
-    UnknownEffect(String),
-    /// A value is outside its range.
-    #[error("`{key}` must be {range}, not {value}")]
-    OutOfRange {
-        /// Key in the `[plant]` section.
-        key: &'static str,
-        /// Its range in words.
-        range: &'static str,
-        /// The value found.
-        value: f64,
-    },
-    /// Two hidden effects each need a transmission of their own.
-    #[error("`{0}` cannot be combined with another compliant or inexact transmission")]
-    TwoTransmissions(String),
-    /// The motion left all bounds: the effects are too strong for the controller.
-    #[error("the joint became unstable {0} s into the recording; lower the amplitudes")]
-    Unstable(f64),
-}
+use crate::plant::measurement::recording::SimulatedRecording;
+use crate::plant::measurement::sensors::record;
+use crate::plant::trajectory::reference::Reference;
 
 /// Simulates a recording of `joint` with its own hidden effects.
 ///
@@ -40,7 +17,7 @@ pub fn simulate(joint: &Joint, seed: u64) -> Result<SimulatedRecording, PlantErr
     validate(joint)?;
     let references = references(joint, seed);
     let mut hidden = Concealed::draw(joint, &references, seed)?;
-    let history = run(joint, &references, &mut hidden, seed)?;
+    let history = integrate(joint, &references, &mut hidden, seed)?;
     Ok(record(joint, history, &hidden.faults, hidden.parameters, seed))
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Trace};
-use crate::law::render::significant;
+use crate::law::significant;
 use crate::parameter::Parameter;
 
 /// Significant digits of printed figures.

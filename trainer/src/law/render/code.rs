@@ -1,7 +1,7 @@
 //! The notations of programming languages. Numbers are written so that they read back to the same bits.
 
 use super::text::Notation;
-use crate::law::expression::Unary;
+use crate::law::model::expression::Unary;
 
 fn exact(x: f64) -> String {
     format!("{x:?}")

@@ -1,7 +1,7 @@
 //! LaTeX: fractions, functions upright.
 
-use super::significant;
-use crate::law::expression::{Expr, Unary};
+use super::number::significant;
+use crate::law::model::expression::{Expr, Unary};
 
 /// The law as LaTeX mathematics (without delimiters), six significant digits; `inputs` are symbols.
 ///

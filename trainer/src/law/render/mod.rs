@@ -1,12 +1,14 @@
-//! A law as text: for the terminal, for papers, and as source code that evaluates to it.
+//! A law as text: for the terminal, for papers, and as source code that evaluates to it. Knows no data and no fit.
 
 mod code;
 mod latex;
+mod number;
 mod text;
 
 pub use latex::latex;
+pub use number::significant;
 
-use super::expression::Expr;
+use crate::law::model::expression::Expr;
 
 /// What the text is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,34 +51,6 @@ pub fn render(expression: &Expr, language: Language, name: &str, inputs: &[&str]
             let body = text::infix(expression, inputs, &code::Python);
             format!("import numpy as np\n\n\ndef {name}({}):\n    return {body}\n", inputs.join(", "))
         }
-    }
-}
-
-/// A number with at most `digits` significant digits and no trailing zeros; powers of ten beyond 10⁶ and below 10⁻⁴.
-pub fn significant(x: f64, digits: usize) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    if !x.is_finite() {
-        return if x.is_nan() {
-            "NaN".into()
-        } else if x > 0.0 {
-            "∞".into()
-        } else {
-            "-∞".into()
-        };
-    }
-    let scientific = format!("{:.*e}", digits.saturating_sub(1), x);
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let trimmed = |s: &str| -> String {
-        if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.').into() } else { s.into() }
-    };
-    if (-4..6).contains(&exponent) {
-        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
-        trimmed(&format!("{x:.decimals$}"))
-    } else {
-        format!("{}e{exponent}", trimmed(mantissa))
     }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
-use crate::law::canonical::canonical;
-use crate::law::expression::Unary;
+use crate::law::model::canonical::canonical;
+use crate::law::model::expression::Unary;
 
 fn reference() -> Expr {
     let v = || Expr::Input(0);

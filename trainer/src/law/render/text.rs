@@ -1,7 +1,7 @@
 //! Infix notation with as few brackets as precedence allows; a notation says how each language spells the leaves and functions.
 
-use super::significant;
-use crate::law::expression::{Expr, Unary};
+use super::number::significant;
+use crate::law::model::expression::{Expr, Unary};
 
 /// How a language spells things.
 pub(super) trait Notation {

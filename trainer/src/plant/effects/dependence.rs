@@ -1,6 +1,6 @@
 //! Friction that depends on temperature, work done, load and time.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 
 /// Friction over housing temperature: dry part linear, viscous part exponential (Bittencourt & Gunnarsson 2012).

@@ -1,6 +1,6 @@
 //! Limits and events: saturation, contact, a bump in time, a fault at an angle.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 use std::f64::consts::TAU;
 

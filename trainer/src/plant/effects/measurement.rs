@@ -1,8 +1,8 @@
 //! Faults of the measurement chain.
 
-use super::{Mechanism, Setting};
+use super::mechanism::{Mechanism, Setting};
+use crate::plant::measurement::sensors::SensorFault;
 use crate::plant::random::Draws;
-use crate::plant::sensors::SensorFault;
 
 /// A current sensor that does not read zero at zero.
 pub(super) fn torque_offset(draws: &mut Draws, setting: &Setting) -> Mechanism {

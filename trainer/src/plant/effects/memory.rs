@@ -1,6 +1,6 @@
 //! Memory of the contact: presliding, lag and dwell.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 
 /// Dry friction that builds up over a distance after a reversal.

@@ -1,6 +1,6 @@
 //! Structures outside the catalogue: real enough to move the joint, with no name to find.
 
-use super::{Entry, Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Entry, Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 use std::f64::consts::TAU;
 

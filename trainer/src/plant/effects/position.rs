@@ -1,6 +1,6 @@
 //! Dependence on position: ripple and friction along the way.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 use std::f64::consts::TAU;
 

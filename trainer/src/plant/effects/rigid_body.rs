@@ -1,6 +1,6 @@
 //! Rigid-body parameters, the torque constant, springs and the neighbouring joint.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 
 /// A payload whose mass or centre is not what the model says.

@@ -1,6 +1,6 @@
 //! Signatures: each effect is where its physics says it is, and nowhere else.
 
-use crate::plant::recording::root_mean_square;
+use crate::plant::measurement::recording::root_mean_square;
 use crate::plant::{Campaign, Joint, Motion, OUTSIDE, SimulatedRecording, Trajectory, conceal};
 
 /// The default joint without noise and rounding.

@@ -1,8 +1,8 @@
 //! Gears that are not rigid: kinematic error, elasticity, backlash, hysteretic wind-up.
 
-use super::{Mechanism, Setting};
+use super::mechanism::{Mechanism, Setting};
+use crate::plant::mechanics::transmission::{Compliant, KinematicError, Transmission};
 use crate::plant::random::Draws;
-use crate::plant::transmission::{Compliant, KinematicError, Transmission};
 use std::f64::consts::TAU;
 
 /// Two waves a turn of the wave generator and a slow one of the output (Tuttle & Seering 1996).

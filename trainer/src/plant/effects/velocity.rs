@@ -1,6 +1,6 @@
 //! Shapes of the velocity characteristic.
 
-use super::{Mechanism, Moment, Resistance, Setting};
+use super::mechanism::{Mechanism, Moment, Resistance, Setting};
 use crate::plant::random::Draws;
 
 /// Friction that falls with speed near rest (Stribeck 1902; Bo & Pavelescu 1982).

@@ -1,5 +1,5 @@
 use super::*;
-use crate::plant::recording::root_mean_square;
+use crate::plant::measurement::recording::root_mean_square;
 use crate::plant::{CATALOGUE, Campaign, Motion, NoiseKind, OUTSIDE, Trajectory};
 
 /// The default joint without noise and rounding.

@@ -1,0 +1,207 @@
+//! The classical friction laws, fitted as they stand.
+
+use rayon::prelude::*;
+
+use crate::law::fitting::problem::{Effort, Held, Problem};
+use crate::law::judge::choice::held_out_mean_square;
+use crate::law::judge::criterion::constants;
+use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
+use crate::law::judge::rounding::rounded;
+use crate::law::judge::uncertainty::{Interval, Uncertainty, analyse};
+use crate::law::model::data::{LawData, LawError};
+use crate::law::model::ranges::Extents;
+use crate::law::model::structure::{Nonlinear, Shape, SignForm, Structure, Term};
+
+/// Parts into which the blocks are grouped for holding out.
+const FOLDS: usize = 5;
+
+/// A friction law of the literature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum KnownForm {
+    /// Coulomb (1785).
+    Coulomb,
+    /// Coulomb with static friction below a breakaway velocity.
+    CoulombStatic,
+    /// Coulomb and viscous friction.
+    CoulombViscous,
+    /// Stribeck effect (Tustin 1947) without viscous friction.
+    StribeckDry,
+    /// Bengisu & Akay (1994).
+    BengisuAkay,
+    /// Awrejcewicz, Grzelczyk & Pyryev (2008), as its envelope over velocity.
+    Awrejcewicz,
+    /// Stribeck effect with exponential decline and viscous friction: the reference law.
+    Stribeck,
+    /// Stribeck effect with Gaussian decline and viscous friction (Armstrong-Hélouvry 1991).
+    StribeckGaussian,
+    /// Stribeck effect with a free exponent and viscous friction (Bo & Pavelescu 1982).
+    StribeckExponent,
+    /// Coulomb and viscous friction that differ between the directions.
+    AsymmetricCoulombViscous,
+    /// Coulomb friction and a power of the speed.
+    PowerLaw,
+    /// Coulomb friction smoothed by the arc tangent, with viscous friction.
+    ArctanCoulombViscous,
+}
+
+impl KnownForm {
+    /// All of them, the paper's six first.
+    pub const ALL: [Self; 12] = [
+        Self::Coulomb,
+        Self::CoulombStatic,
+        Self::CoulombViscous,
+        Self::StribeckDry,
+        Self::BengisuAkay,
+        Self::Awrejcewicz,
+        Self::Stribeck,
+        Self::StribeckGaussian,
+        Self::StribeckExponent,
+        Self::AsymmetricCoulombViscous,
+        Self::PowerLaw,
+        Self::ArctanCoulombViscous,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coulomb => "Coulomb",
+            Self::CoulombStatic => "Coulomb with static friction",
+            Self::CoulombViscous => "Coulomb and viscous",
+            Self::StribeckDry => "Stribeck without viscous",
+            Self::BengisuAkay => "Bengisu-Akay",
+            Self::Awrejcewicz => "Awrejcewicz",
+            Self::Stribeck => "Stribeck",
+            Self::StribeckGaussian => "Stribeck, Gaussian",
+            Self::StribeckExponent => "Stribeck, free exponent",
+            Self::AsymmetricCoulombViscous => "asymmetric Coulomb and viscous",
+            Self::PowerLaw => "Coulomb and power law",
+            Self::ArctanCoulombViscous => "arctangent Coulomb and viscous",
+        }
+    }
+
+    /// Its structure.
+    pub fn structure(self) -> Structure {
+        use Shape::{
+            AbsSign, AbsViscous, Breakaway, Sign, SignPower, StribeckExponential, StribeckGaussian, StribeckPower,
+            Viscous,
+        };
+        let (sign, shapes): (SignForm, &[Shape]) = match self {
+            Self::Coulomb => (SignForm::Tanh, &[Sign]),
+            Self::CoulombStatic => (SignForm::Tanh, &[Sign, Breakaway]),
+            Self::CoulombViscous => (SignForm::Tanh, &[Sign, Viscous]),
+            Self::StribeckDry => (SignForm::Tanh, &[Sign, StribeckExponential]),
+            Self::BengisuAkay => (SignForm::Parabolic, &[Sign, StribeckExponential]),
+            Self::Awrejcewicz => (SignForm::Cubic, &[Sign, StribeckExponential]),
+            Self::Stribeck => (SignForm::Tanh, &[Sign, StribeckExponential, Viscous]),
+            Self::StribeckGaussian => (SignForm::Tanh, &[Sign, StribeckGaussian, Viscous]),
+            Self::StribeckExponent => (SignForm::Tanh, &[Sign, StribeckPower, Viscous]),
+            Self::AsymmetricCoulombViscous => (SignForm::Tanh, &[Sign, Viscous, AbsSign, AbsViscous]),
+            Self::PowerLaw => (SignForm::Tanh, &[Sign, SignPower]),
+            Self::ArctanCoulombViscous => (SignForm::Arctan, &[Sign, Viscous]),
+        };
+        Structure::new(sign, shapes.iter().copied().map(Term::plain))
+    }
+}
+
+/// A fitted form.
+#[derive(Clone, Debug)]
+pub struct FormFit {
+    /// The law with named constants and intervals.
+    pub law: Law,
+    /// Standard errors and identifiability in the order of the law's parameters.
+    pub uncertainty: Uncertainty,
+    /// Coefficients of the nuisance columns.
+    pub nuisance: Vec<NuisanceCoefficient>,
+    /// Root mean square of the residuals, unit of the target.
+    pub rmse: f64,
+    /// The same over samples predicted from constants that were fitted without their blocks.
+    pub held_out_rmse: f64,
+    /// Bayesian information criterion (Schwarz 1978) with the effective number of samples; lower is better.
+    pub bic: f64,
+    /// Whether the optimiser ended at a minimum.
+    pub converged: bool,
+}
+
+/// Fits one form by least squares from a grid of starts. `smoothing` fixes the constant of the smoothed sign (`k` of
+/// `tanh(k v)`, unit 1/velocity) where it is known.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn fit_form(form: KnownForm, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
+    fit_structure(&form.structure(), data, smoothing)
+}
+
+/// [`fit_form`] for any structure.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
+    fit_from_starts(structure, data, smoothing, None)
+}
+
+/// [`fit_structure`] that also starts from the constants of a law that was fitted to other samples of the same joint.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn refit(law: &Law, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
+    fit_from_starts(&law.structure, data, smoothing, Some(law))
+}
+
+fn fit_from_starts(
+    structure: &Structure,
+    data: &LawData,
+    smoothing: Option<f64>,
+    start: Option<&Law>,
+) -> Result<FormFit, LawError> {
+    let extents = Extents::new(data)?;
+    let needed = constants(structure) + data.nuisance.len() + 1;
+    if data.rows() < needed {
+        return Err(LawError::TooFewSamples { samples: data.rows(), constants: needed });
+    }
+    let problem = Problem::new(data, &extents);
+    let known: Vec<(Nonlinear, f64)> = smoothing.map(|k| (Nonlinear::Smoothing, k)).into_iter().collect();
+    let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
+    let holding = Held { nonlinear: &held, coefficient: None };
+    let rough = problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH);
+    let mut fit = problem.polish(&rough, &held);
+    if let Some(law) = start {
+        let psi: Vec<f64> = law.parameters.iter().take(structure.nonlinear().len()).map(|p| p.value).collect();
+        let resumed = problem.fit_from(structure, &psi, holding, Effort::FINAL);
+        fit = if resumed.rss < fit.rss { resumed } else { fit };
+    }
+    let uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
+    let fit = rounded(&problem, &fit, &uncertainty);
+    let effective = data.rows() as f64 / uncertainty.correlation_length;
+    let free = constants(structure) - held.len() + data.nuisance.len();
+    let mean_square = fit.rss / data.rows() as f64;
+    Ok(FormFit {
+        law: describe(&problem, &fit, &uncertainty, &held),
+        nuisance: nuisance_coefficients(&problem, &fit, &uncertainty),
+        rmse: mean_square.sqrt(),
+        held_out_rmse: held_out_mean_square(&problem, &fit, holding, FOLDS).sqrt(),
+        bic: effective * libm::log(mean_square.max(f64::MIN_POSITIVE)) + libm::log(effective) * free as f64,
+        converged: fit.converged,
+        uncertainty,
+    })
+}
+
+/// Fits every form and ranks them by held-out likelihood, each constant paying what the Bayesian criterion asks of it beyond
+/// what holding out has already cost; best first.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn rank_forms(data: &LawData) -> Result<Vec<(KnownForm, FormFit)>, LawError> {
+    let fits: Vec<(KnownForm, FormFit)> = KnownForm::ALL
+        .par_iter()
+        .map(|form| Ok((*form, fit_form(*form, data, None)?)))
+        .collect::<Result<_, LawError>>()?;
+    let length = fits.iter().map(|(_, f)| f.uncertainty.correlation_length).fold(f64::INFINITY, f64::min);
+    let effective = data.rows() as f64 / length;
+    let each = (0.5 * libm::log(effective) - 1.0).max(0.0);
+    let score = |(form, fit): &(KnownForm, FormFit)| {
+        effective * libm::log(fit.held_out_rmse.max(f64::MIN_POSITIVE)) + each * constants(&form.structure()) as f64
+    };
+    let mut ranked: Vec<(f64, (KnownForm, FormFit))> = fits.into_iter().map(|f| (score(&f), f)).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(ranked.into_iter().map(|(_, f)| f).collect())
+}

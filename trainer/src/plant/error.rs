@@ -1,0 +1,25 @@
+//! What keeps a joint from being simulated.
+
+/// What keeps a joint from being simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlantError {
+    /// No effect has this name.
+    #[error("no effect is called `{0}`; see docs/simulate.md for the names")]
+    UnknownEffect(String),
+    /// A value is outside its range.
+    #[error("`{key}` must be {range}, not {value}")]
+    OutOfRange {
+        /// Key in the `[plant]` section.
+        key: &'static str,
+        /// Its range in words.
+        range: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// Two hidden effects each need a transmission of their own.
+    #[error("`{0}` cannot be combined with another compliant or inexact transmission")]
+    TwoTransmissions(String),
+    /// The motion left all bounds: the effects are too strong for the controller.
+    #[error("the joint became unstable {0} s into the recording; lower the amplitudes")]
+    Unstable(f64),
+}
