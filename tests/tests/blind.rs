@@ -51,7 +51,7 @@ fn every_effect_is_in_the_stated_set_and_nearly_all_come_first() {
 #[test]
 fn what_is_removed_is_measured_on_the_torque_that_was_put_back() {
     let outcome = hidden("torque_offset", 300.0, 130_070_052);
-    assert!(outcome.diagnosis.put_back_s != 0.0);
+    assert!(outcome.diagnosis.realigned_by_s != 0.0);
     let removed = Row::of(&outcome).removed_share;
     assert!(removed.is_some_and(|share| (0.9..1.05).contains(&share)), "{removed:?}");
 }

@@ -1,4 +1,4 @@
-//! Recordings by equations that share nothing with the simulator: what was once named wrongly is named rightly.
+//! Recordings by code that is independent of the simulator: what was once named wrongly is named rightly.
 
 use frikan_tests::second_opinion::grade::Grade;
 use frikan_tests::second_opinion::{Case, Part, cases, run};

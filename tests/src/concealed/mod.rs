@@ -1,6 +1,7 @@
 //! Effects concealed in simulated recordings, and what the diagnosis makes of them.
 //!
-//! The simulator (`plant`) and the diagnosis share no equations; this module is the only place where they meet.
+//! The simulator (`plant`) and the diagnosis are independent code after the same literature (the Dahl element and the law of a dwell
+//! stand in both); this module is the only place where they meet.
 
 pub mod advised;
 pub mod afterwards;
@@ -225,8 +226,9 @@ impl Outcome {
             return None;
         }
         let recorded = signals(recording, joint);
-        let put_back =
-            |torque: &[f64]| Signals { torque: torque.to_vec(), ..recorded.clone() }.realigned(diagnosis.put_back_s);
+        let put_back = |torque: &[f64]| {
+            Signals { torque: torque.to_vec(), ..recorded.clone() }.realigned(diagnosis.realigned_by_s)
+        };
         let [effect, noise] =
             [&recording.truth.effect_torque, &recording.truth.noise_torque].map(|t| put_back(t).torque);
         strength(&put_back(&recorded.torque).into(), &effect, &noise, case.base, diagnosis.lock)

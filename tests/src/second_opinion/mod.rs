@@ -1,4 +1,5 @@
-//! A second opinion on the diagnosis: recordings by equations that share nothing with the simulator or the diagnosis.
+//! A second opinion on the diagnosis: recordings by code that is independent of simulator and diagnosis, after
+//! the same literature.
 //!
 //! Motions are prescribed, or come from controllers and integrators of this module's own; every recording is written as
 //! files and diagnosed by the command line.

@@ -30,8 +30,7 @@ const FILES_IN_CIRCLES: [&str; 11] = [
 ];
 
 /// Modules side by side that import each other in a circle. This list shall become empty.
-const ROOMS_IN_CIRCLES: [&str; 3] =
-    ["tests/src/second_opinion/singles", "trainer/src/report", "trainer/src/samples"];
+const ROOMS_IN_CIRCLES: [&str; 3] = ["tests/src/second_opinion/singles", "trainer/src/report", "trainer/src/samples"];
 
 /// Most lines of a file.
 const MOST_LINES: usize = 350;

@@ -11,7 +11,7 @@ const MOST_REALIGNMENTS: usize = 2;
 /// Samples of the sampling's own delay from which it is felt.
 const LEAST_SAMPLING_DELAY: f64 = 0.3;
 /// Samples of a longer shift that are left to the regressor of a delay.
-const LEFT_OF_A_SHIFT: f64 = 2.0;
+const SAMPLES_LEFT_TO_REGRESSOR: f64 = 2.0;
 /// Ratio of two errors up to which they are equal.
 const EQUAL_ERROR_RATIO: f64 = 1.02;
 /// Ratio of two errors below which the first is clearly less.
@@ -51,7 +51,7 @@ impl Realignment {
     /// enough for the linear regressor of a delay.
     pub(crate) fn second_delay_s(self, first: &Diagnosis) -> Option<f64> {
         let is_long = self.samples().abs() > LONGEST_SAMPLING_DELAY;
-        let left = LEFT_OF_A_SHIFT * self.period_s * self.samples().signum();
+        let left = SAMPLES_LEFT_TO_REGRESSOR * self.period_s * self.samples().signum();
         (is_long && misalignment(first).is_none()).then_some(self.shift_s - left)
     }
 }
@@ -66,7 +66,7 @@ pub(crate) fn next_delay_s(trials: &[Trial]) -> Option<f64> {
 /// What trials from one beginning say together: the physics of the last, behind the misalignment that the first found.
 pub(crate) fn joined(mut trials: Vec<Trial>, period_s: f64) -> Option<Diagnosis> {
     let last = trials.pop()?;
-    let mut diagnosis = Diagnosis { put_back_s: last.delay_s, ..last.diagnosis };
+    let mut diagnosis = Diagnosis { realigned_by_s: last.delay_s, ..last.diagnosis };
     let Some(Trial { diagnosis: first, .. }) = trials.into_iter().next() else {
         if misalignment(&diagnosis).is_none() {
             diagnosis.sampling_delay_s += last.delay_s;

@@ -131,7 +131,8 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     }
     let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
     let hypotheses = catalogue();
-    let settings = if prepared.grain_limited { options.settings.behind_grain() } else { options.settings };
+    let settings =
+        if prepared.quantisation_limited { options.settings.behind_quantisation() } else { options.settings };
     let workbench = &Workbench::new(&prepared, &base, &hypotheses);
     let measurement_noise = MeasurementNoise::of(&prepared, comparison, &base.residual);
     let search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings };
@@ -187,7 +188,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
         cut_off_hz: prepared.filter.cut_off_hz,
         rows,
         sampling_delay_s: if let Delay::OfSampling(delay) = base.delay { delay } else { 0.0 },
-        put_back_s: 0.0,
+        realigned_by_s: 0.0,
         baseline_refit: baseline,
         improved_refit: improved,
     })

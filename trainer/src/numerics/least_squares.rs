@@ -128,7 +128,7 @@ pub(crate) fn residual(columns: &[Vec<f64>], target: &[f64], coefficients: &[f64
 }
 
 /// What the least-squares fit over runs leaves at every row; `None` where it is singular.
-pub(crate) fn left_by_fit(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<Vec<f64>> {
+pub(crate) fn fit_residual(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<Vec<f64>> {
     least_squares(columns, target, runs).map(|coefficients| residual(columns, target, &coefficients))
 }
 

@@ -60,7 +60,7 @@ pub struct JointState {
 pub enum Twist {
     /// There is none, or the twist follows nothing that is known of a transmission.
     #[default]
-    Untold,
+    Unknown,
     /// The link moves with the motor.
     Rigid,
     /// The twist is that of one effect.

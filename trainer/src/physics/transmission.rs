@@ -12,7 +12,7 @@ const LINK_SHARE: f64 = 0.5;
 
 /// Whether a second encoder leaves this effect of the transmission possible.
 pub(super) fn is_possible(state: &JointState, effect: EffectId) -> bool {
-    matches!(state.twist, Twist::Untold) || is_shown(state, effect)
+    matches!(state.twist, Twist::Unknown) || is_shown(state, effect)
 }
 
 /// Whether a second encoder shows this effect of the transmission.

@@ -30,16 +30,16 @@ pub(crate) struct Excitation {
 }
 
 /// Share of a limit that is used: smoothing, quantisation and the controller take the rest.
-const SHARE: f64 = 0.95;
+const USED_LIMIT_SHARE: f64 = 0.95;
 /// Length of the moving average that makes the corners of trapezoidal moves finite in jerk, s.
 const ROUNDING_S: f64 = 0.04;
 
 /// Every motion that fits into the envelope, `duration` s long, one position every `period` s.
 pub(crate) fn library(envelope: &Envelope, duration: f64, period: f64) -> Vec<Excitation> {
     let clock = Clock { samples: (duration / period) as usize, period };
-    let half = 0.5 * SHARE * (envelope.high - envelope.low);
+    let half = 0.5 * USED_LIMIT_SHARE * (envelope.high - envelope.low);
     let centre = 0.5 * (envelope.high + envelope.low);
-    let top = SHARE * envelope.speed;
+    let top = USED_LIMIT_SHARE * envelope.speed;
     if !(half > 0.0 && top > 0.0 && envelope.acceleration > 0.0) {
         return Vec::new();
     }
@@ -248,7 +248,8 @@ fn multisine(tones: &[(f64, f64)], half: f64, centre: f64, envelope: &Envelope, 
     let mut scale = half / peak;
     for _ in 0..4 {
         let (speed, acceleration) = peaks(&way(scale), clock.period);
-        let over = (speed / (SHARE * envelope.speed)).max(acceleration / (SHARE * envelope.acceleration));
+        let over = (speed / (USED_LIMIT_SHARE * envelope.speed))
+            .max(acceleration / (USED_LIMIT_SHARE * envelope.acceleration));
         scale /= over.max(1.0);
     }
     way(scale)

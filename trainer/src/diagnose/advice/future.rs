@@ -22,9 +22,9 @@ pub(crate) struct Future<'a> {
 }
 
 /// Share of the load torque that its position has to explain before a payload can be planned.
-const EXPLAINED: f64 = 0.9;
+const LEAST_EXPLAINED_SHARE: f64 = 0.9;
 /// Payloads closer than this share are the same.
-const SAME_PAYLOAD: f64 = 0.1;
+const SAME_PAYLOAD_SHARE: f64 = 0.1;
 /// Longest rest that is proposed, s.
 const LONGEST_REST_S: f64 = 1800.0;
 
@@ -72,7 +72,7 @@ impl<'a> Future<'a> {
             rest += run.clone().map(|i| (load[i] - payload * typical[i]).powi(2)).sum::<f64>();
             energy += load[run.clone()].iter().map(|l| l * l).sum::<f64>();
         }
-        if energy > 0.0 && rest < (1.0 - EXPLAINED) * energy {
+        if energy > 0.0 && rest < (1.0 - LEAST_EXPLAINED_SHARE) * energy {
             self.load = Some(weights);
             self.payload_range = (low, high);
         }
@@ -84,7 +84,7 @@ impl<'a> Future<'a> {
             return Vec::new();
         }
         let mut payloads = vec![0.0, self.payload_range.0, self.payload_range.1];
-        payloads.dedup_by(|a, b| (*a - *b).abs() < SAME_PAYLOAD);
+        payloads.dedup_by(|a, b| (*a - *b).abs() < SAME_PAYLOAD_SHARE);
         payloads
     }
 

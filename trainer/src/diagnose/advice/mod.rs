@@ -54,7 +54,7 @@ impl Limits {
     fn envelope(&self, state: &JointState) -> Envelope {
         let (low, high) = state.travel();
         let (low, high) = (self.lowest_position.unwrap_or(low), self.highest_position.unwrap_or(high));
-        let common = |series: &[f64]| quantile(series.iter().map(|x| x.abs()), COMMON);
+        let common = |series: &[f64]| quantile(series.iter().map(|x| x.abs()), ENVELOPE_QUANTILE);
         let home = state.position.last().copied().unwrap_or(low);
         Envelope {
             low,
@@ -68,7 +68,7 @@ impl Limits {
 }
 
 /// Quantile of recorded speed and acceleration up to which a joint may certainly be moved.
-const COMMON: f64 = 0.995;
+const ENVELOPE_QUANTILE: f64 = 0.995;
 
 /// A motion to record next.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ impl Plan {
 /// Evidence in nats from which two effects are told apart.
 pub const TOLD_APART_NATS: f64 = 3.0;
 /// Excitations whose expected evidence is worked out with the rivals' shapes refined.
-const REFINED: usize = 3;
+const REFINED_EXCITATIONS: usize = 3;
 
 /// The most telling excitation for the findings that have rivals; `None` where every name is certain or nothing in the
 /// library can be moved.
@@ -137,7 +137,7 @@ pub fn plan(question: &Question) -> Option<Plan> {
     let mut weighed = weigh(candidates(question, &future, &past.state, &pairs), false);
     let separable = separable(&weighed, pairs.len());
     weighed.sort_by(|a, b| least(&b.nats, &separable).total_cmp(&least(&a.nats, &separable)));
-    weighed.truncate(REFINED);
+    weighed.truncate(REFINED_EXCITATIONS);
     let weighed = weigh(weighed.into_iter().map(|weighed| weighed.candidate).collect(), true);
     let separable = self::separable(&weighed, pairs.len());
     let better = |a: Weighed, b: Weighed| if least(&b.nats, &separable) > least(&a.nats, &separable) { b } else { a };

@@ -101,11 +101,11 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
 }
 
 /// Probability of a fault that the signals show by themselves.
-const AS_GOOD_AS_CERTAIN: f64 = 0.99;
+const MEASUREMENT_FAULT_PROBABILITY: f64 = 0.99;
 
 /// A fault of the measurement as a finding.
 pub(crate) fn measurement_finding(note: &HealthNote) -> Finding {
-    unfitted(note.effect, AS_GOOD_AS_CERTAIN, Action::Measurement, note.clone())
+    unfitted(note.effect, MEASUREMENT_FAULT_PROBABILITY, Action::Measurement, note.clone())
 }
 
 /// Something that happened once, in rows that were locked away.
@@ -129,12 +129,12 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces) -> Findin
     Finding {
         equation: "dF = c(time)".to_string(),
         location: Location { regions: vec![region], when_s: vec![worst.when_s] },
-        ..unfitted(effect, CLEARLY_NO_NOISE, effect.action(), unexplained_event(worst))
+        ..unfitted(effect, LOCKED_EVENT_PROBABILITY, effect.action(), unexplained_event(worst))
     }
 }
 
 /// Probability of what leaves some stretch with several times of what any other is left with.
-const CLEARLY_NO_NOISE: f64 = 0.98;
+const LOCKED_EVENT_PROBABILITY: f64 = 0.98;
 
 /// A finding without a fitted term.
 fn unfitted(effect: EffectId, probability: f64, action: Action, note: HealthNote) -> Finding {

@@ -16,7 +16,7 @@ pub(crate) fn score_as_given(workbench: &Workbench, baseline: &Refit) -> Given {
     let moved = workbench.base.names.len();
     let change = weighted(&workbench.base.columns[..moved], &baseline.base[..moved]);
     let unmoved: Vec<f64> = rest(workbench, baseline).iter().zip(change).map(|(rest, change)| rest + change).collect();
-    Given { score: score_of(workbench, &unmoved), holds: workbench.base.held.clone() }
+    Given { score: score_of(workbench, &unmoved), holds: workbench.base.reference_effects.clone() }
 }
 
 fn score_of(workbench: &Workbench, rest: &[f64]) -> Score {

@@ -79,7 +79,7 @@ pub enum Evidence {
 pub struct Finding {
     /// Which effect.
     pub effect: EffectId,
-    /// Calibrated probability that the effect is the named one.
+    /// Probability that the effect is the named one, by the frequency of right names on the simulated suite.
     pub probability: f64,
     /// What this recording cannot tell from it, with probabilities.
     pub alternatives: Vec<(EffectId, f64)>,
@@ -171,7 +171,7 @@ pub struct Diagnosis {
     /// Delay of the torque against the position in s, as far as it is the sampling's own.
     pub sampling_delay_s: f64,
     /// Delay by which the torque was put back before anything was fitted, in s.
-    pub put_back_s: f64,
+    pub realigned_by_s: f64,
     /// Series for pictures and sentences.
     pub traces: Traces,
 }

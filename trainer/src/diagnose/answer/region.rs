@@ -27,10 +27,10 @@ pub struct Region {
 }
 
 /// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
-const TELLING: f64 = 0.12;
+const LEAST_SURPLUS: f64 = 0.12;
 
 /// Least rise of that surplus at which two axes are named instead of one.
-const SHARPER: f64 = 0.07;
+const LEAST_SECOND_AXIS_SURPLUS: f64 = 0.07;
 
 /// Bins a channel for the search of the maximal interval.
 const BINS: usize = 40;
@@ -47,7 +47,7 @@ impl Region {
     /// Whether the region holds so much more of the evidence than of the samples that it is worth naming.
     #[must_use]
     pub fn is_telling(&self) -> bool {
-        self.contrast() > TELLING
+        self.contrast() > LEAST_SURPLUS
     }
 
     /// How much denser the evidence is inside than on average, weighed by what it holds.
@@ -104,7 +104,7 @@ fn conjunction(evidence: &Evidence, axes: &[Axis], regions: &[Region]) -> Option
         })
     });
     let both = pairs.max_by(|a, b| a.contrast().total_cmp(&b.contrast()))?;
-    (both.contrast() > lasting().next()?.contrast() + SHARPER).then_some(both)
+    (both.contrast() > lasting().next()?.contrast() + LEAST_SECOND_AXIS_SURPLUS).then_some(both)
 }
 
 impl Evidence<'_> {

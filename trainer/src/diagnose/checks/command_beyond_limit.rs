@@ -5,7 +5,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::physics::EffectId;
 
 /// Recorded torque over the drive's limit from which it is more than noise on top of it.
-const CLEARLY_BEYOND: f64 = 1.05;
+const COMMAND_LIMIT_RATIO: f64 = 1.05;
 
 /// A recorded command.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Command {
         let largest = sizes().fold(0.0, f64::max);
         let beyond = sizes().filter(|size| *size > limit).count();
         let share = beyond as f64 / signals.torque.len().max(1) as f64;
-        (largest > CLEARLY_BEYOND * limit).then_some(Self { limit, largest, share })
+        (largest > COMMAND_LIMIT_RATIO * limit).then_some(Self { limit, largest, share })
     }
 
     /// The signals with the torque that the drive gave.

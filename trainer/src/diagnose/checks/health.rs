@@ -12,11 +12,11 @@ use crate::samples::spikes::{PRINTED, Spikes};
 /// Share of samples at one extreme torque from which it counts as clipped.
 const CLIPPED_SHARE: f64 = 0.02;
 /// A torque step of this share of the usual torque is worth a note, and of this hides friction.
-const TELLING_TORQUE_SHARE: f64 = 0.01;
-const COARSE_TORQUE_SHARE: f64 = 0.05;
+const NOTED_STEP_SHARE: f64 = 0.01;
+const BLOCKING_STEP_SHARE: f64 = 0.05;
 /// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
 const LEAST_BAND_HZ: f64 = 17.0;
-const COARSE_STEP: f64 = 1e-4;
+const COARSE_STEP_SHARE: f64 = 1e-4;
 
 /// What is wrong with a torque as it was recorded.
 #[derive(Clone, Debug)]
@@ -74,9 +74,9 @@ fn replaced(spikes: &Spikes) -> HealthNote {
 /// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
 /// error is as large as all that the base leaves.
 fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
-    (share > TELLING_TORQUE_SHARE).then(|| HealthNote {
+    (share > NOTED_STEP_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: share > COARSE_TORQUE_SHARE || step / 12f64.sqrt() >= left_by_base,
+        blocking: share > BLOCKING_STEP_SHARE || step / 12f64.sqrt() >= left_by_base,
         observation: Observation::CoarseTorque { step },
     })
 }
@@ -94,7 +94,7 @@ fn torque_step(signals: &Signals) -> Option<TorqueStep> {
     let usual = quantile(signals.torque.iter().map(|torque| torque.abs()), 0.9);
     let changes = signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     // An even clock may fall a little beside the recorded samples, and so between two steps.
-    let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * TELLING_TORQUE_SHARE * usual).collect();
+    let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * NOTED_STEP_SHARE * usual).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
     (steps.len() > FEWEST_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
@@ -112,8 +112,8 @@ pub(crate) fn late_torque(delay: f64, period: f64) -> HealthNote {
 /// An encoder so coarse that its grain alone left only a few hertz of the motion.
 pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
     let cut_off = prepared.filter.cut_off_hz;
-    let is_coarse = signals.position_resolution > COARSE_STEP * prepared.state.span();
-    let coarse = is_coarse && prepared.grain_limited && cut_off < LEAST_BAND_HZ;
+    let is_coarse = signals.position_resolution > COARSE_STEP_SHARE * prepared.state.span();
+    let coarse = is_coarse && prepared.quantisation_limited && cut_off < LEAST_BAND_HZ;
     coarse.then(|| HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,

@@ -19,13 +19,13 @@ const UNIT_FACTORS: [(f64, &str); 6] = [
 ];
 
 /// Factor of what is given that its turned sign leaves, mass or gravity being as wrong as they usually are.
-const AS_A_TURNED_SIGN_LEAVES: std::ops::Range<f64> = -2.0..-0.5;
+const REVERSED_FACTOR_RANGE: std::ops::Range<f64> = -2.0..-0.5;
 /// How near a factor has to be to that of a unit: a body of the wrong mass may come close to it by chance.
-const AS_A_UNIT_LEAVES: std::ops::Range<f64> = 0.9..1.11;
+const UNIT_RATIO_RANGE: std::ops::Range<f64> = 0.9..1.11;
 
 /// Correlation from which a recorded velocity goes with the derivative of the position, and its factor where both have one unit.
-const GOES_WITH: f64 = 0.9;
-const AS_ONE_UNIT_LEAVES: std::ops::Range<f64> = 0.8..1.25;
+const LEAST_CORRELATION: f64 = 0.9;
+const SAME_UNIT_RATIO_RANGE: std::ops::Range<f64> = 0.8..1.25;
 
 /// What a unit or a sign is seen behind: little of the encoder's grain.
 fn slow_filter(signals: &Signals) -> ZeroPhase {
@@ -46,7 +46,10 @@ pub(crate) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
     let (recorded, derived) = (product(&velocity, &velocity), product(&derivative, &derivative));
     let both = product(&velocity, &derivative);
     let factor = both / derived.max(f64::MIN_POSITIVE);
-    if both.powi(2) < GOES_WITH.powi(2) * recorded * derived || AS_ONE_UNIT_LEAVES.contains(&factor) || both == 0.0 {
+    if both.powi(2) < LEAST_CORRELATION.powi(2) * recorded * derived
+        || SAME_UNIT_RATIO_RANGE.contains(&factor)
+        || both == 0.0
+    {
         return None;
     }
     Some(HealthNote {
@@ -114,10 +117,10 @@ pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> 
     for (column, &(part, _)) in bodies.iter().enumerate().filter(|(column, _)| share(*column) > 0.1) {
         let factor = coefficients[column];
         // Hysteresis turns with the position, and so against the acceleration: alone it makes no body negative that is given.
-        if given && AS_A_TURNED_SIGN_LEAVES.contains(&factor) {
+        if given && REVERSED_FACTOR_RANGE.contains(&factor) {
             return wrong(Observation::WrongFactor { part, factor, confusion: None });
         }
-        let confusion = UNIT_FACTORS.iter().find(|(wanted, _)| given && AS_A_UNIT_LEAVES.contains(&(factor / wanted)));
+        let confusion = UNIT_FACTORS.iter().find(|(wanted, _)| given && UNIT_RATIO_RANGE.contains(&(factor / wanted)));
         if let Some(&(_, confusion)) = confusion {
             return wrong(Observation::WrongFactor { part, factor, confusion: Some(confusion) });
         }

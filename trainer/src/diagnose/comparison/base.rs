@@ -1,11 +1,11 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, friction_basis, raw_columns};
-use crate::diagnose::comparison::delay::{LONGEST_SAMPLING_DELAY, answer_to_grain};
+use crate::diagnose::comparison::delay::{LONGEST_SAMPLING_DELAY, position_error_energy};
 use crate::diagnose::comparison::reference::{Comparison, tabulated_velocities};
-use crate::diagnose::comparison::sign_width::{add_softness, fit_width};
+use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
-use crate::numerics::least_squares::{dot, least_squares, left_by_fit, residual};
+use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
 use crate::physics::EffectId;
 
 /// A fitted base model: columns at the working rows behind the common filter.
@@ -18,9 +18,9 @@ pub struct Base {
     /// Filtered target: recorded torque less the nominal rigid body or reference.
     pub target: Vec<f64>,
     /// Effects that a reference holds itself: the recording may ask for less of them.
-    pub held: Vec<EffectId>,
+    pub reference_effects: Vec<EffectId>,
     /// Filtered torque of each direction in which a reference is not sure of itself, at one standard deviation.
-    pub doubt: Vec<Vec<f64>>,
+    pub uncertainty: Vec<Vec<f64>>,
     /// What the base with a delay of the torque leaves at every working row.
     pub(crate) residual: Vec<f64>,
     /// Root mean square of what the formulas of a reference get wrong.
@@ -35,7 +35,7 @@ pub(crate) enum Delay {
     /// Short enough to be the sampling's own, in s: carried as a nuisance.
     OfSampling(f64),
     /// The answer of the drive to the encoder's grain explains as much.
-    OfGrain,
+    OfPositionError,
     /// An effect to be looked for.
     Open,
 }
@@ -44,7 +44,7 @@ impl Base {
     /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) -> Option<Self> {
-        fit_width(prepared, comparison, kind);
+        fit_sign_width(prepared, comparison, kind);
         let raw = raw_columns(&prepared.state, comparison, kind);
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
         let target = prepared.filtered(&prepared.friction_torque);
@@ -52,7 +52,7 @@ impl Base {
         let mut columns = filtered_columns(prepared, comparison, &raw);
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);
-        add_softness(prepared, &mut columns, &target);
+        add_soft_sign(prepared, &mut columns, &target);
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
         columns.push(prepared.filtered(&rate));
@@ -63,17 +63,17 @@ impl Base {
             Delay::OfSampling(late)
         } else {
             columns.pop();
-            let in_step = left_by_fit(&columns, &target, &runs)?;
+            let in_step = fit_residual(&columns, &target, &runs)?;
             let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
-            if explained < answer_to_grain(prepared, comparison) { Delay::OfGrain } else { Delay::Open }
+            if explained < position_error_energy(prepared, comparison) { Delay::OfPositionError } else { Delay::Open }
         };
-        let (held, doubt) = match &comparison.reference {
-            Some(reference) => (reference.effects.clone(), &reference.doubt[..]),
+        let (reference_effects, uncertain_directions) = match &comparison.reference {
+            Some(reference) => (reference.effects.clone(), &reference.uncertainty[..]),
             None => (Vec::new(), &[][..]),
         };
-        let doubt = prepared.filtered_all(doubt);
+        let uncertainty = prepared.filtered_all(uncertain_directions);
         let formula_error = comparison.reference.as_ref().map_or(0.0, |reference| reference.formula_error);
-        Some(Self { columns, names, target, held, doubt, residual: left, formula_error, delay })
+        Some(Self { columns, names, target, reference_effects, uncertainty, residual: left, formula_error, delay })
     }
 }
 

@@ -62,7 +62,7 @@ pub(crate) fn filtered_columns(
     columns.extend(nuisances(prepared));
     columns.push(sharpness(prepared));
     if let Some(reference) = &comparison.reference {
-        columns.extend(reference.left.iter().map(|left| prepared.filtered(left)));
+        columns.extend(reference.replayed_residual.iter().map(|residual| prepared.filtered(residual)));
     }
     columns
 }

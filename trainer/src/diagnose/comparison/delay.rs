@@ -2,8 +2,8 @@
 
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, raw_columns};
 use crate::diagnose::comparison::reference::Comparison;
-use crate::diagnose::comparison::sign_width::fit_width;
-use crate::diagnose::preparation::position_error::grain_through_inertia;
+use crate::diagnose::comparison::sign_width::fit_sign_width;
+use crate::diagnose::preparation::position_error::position_error_torque;
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, orthonormal, project_out, rows_in};
 
@@ -18,7 +18,7 @@ const SHIFTED_ERROR_RATIO: f64 = 0.98;
 /// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole
 /// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more.
 pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison, kind: BaseKind) -> f64 {
-    fit_width(&mut prepared, comparison, kind);
+    fit_sign_width(&mut prepared, comparison, kind);
     let prepared = &prepared;
     let state = &prepared.state;
     let raw = raw_columns(state, comparison, kind);
@@ -41,7 +41,7 @@ pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison,
     let unshifted = left[longest as usize];
     let is_clear = |best: &usize| {
         let explained = unshifted - left[*best];
-        explained > (1.0 - SHIFTED_ERROR_RATIO) * unshifted && explained > answer_to_grain(prepared, comparison)
+        explained > (1.0 - SHIFTED_ERROR_RATIO) * unshifted && explained > position_error_energy(prepared, comparison)
     };
     let Some(best) = best.filter(is_clear) else { return 0.0 };
     let [before, here, after] = [left[best - 1], left[best], left[best + 1]];
@@ -51,9 +51,9 @@ pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison,
 }
 
 /// Energy on open rows that a delay can explain by itself: the drive answers to the encoder's grain some samples later.
-pub(crate) fn answer_to_grain(prepared: &Prepared, comparison: &Comparison) -> f64 {
+pub(crate) fn position_error_energy(prepared: &Prepared, comparison: &Comparison) -> f64 {
     rows_in(&prepared.open_runs()) as f64
-        * grain_through_inertia(prepared, &comparison.signals).map_or(0.0, |grain| grain * grain)
+        * position_error_torque(prepared, &comparison.signals).map_or(0.0, |grain| grain * grain)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
 /// Relative step of the central differences; far above the roundoff of `f32`.
-const STEP: f64 = 1e-2;
+const DIFFERENCE_STEP_SHARE: f64 = 1e-2;
 
 /// The model at the states of a recording. `given` is a rigid-body torque that the recording carries.
 ///
@@ -49,14 +49,14 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
 }
 
 /// Share of a trained range by which a channel may lie beyond it.
-const BEYOND: f64 = 0.01;
+const RANGE_MARGIN_SHARE: f64 = 0.01;
 
 /// Where the recording leaves the ranges that the model was fitted on.
 fn outside<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Outside {
     let mut outside = Outside::default();
     for (place, input) in model.inputs.iter().enumerate() {
         let (low, high) = (f64::from(input.low), f64::from(input.high));
-        let slack = BEYOND * (high - low);
+        let slack = RANGE_MARGIN_SHARE * (high - low);
         let is_beyond = |i: usize| {
             let value = f64::from(measurement(state, i).channels(&model.inputs)[place]);
             value < low - slack || value > high + slack
@@ -164,7 +164,7 @@ fn moving_columns<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) 
     (0..program.operations.len())
         .filter_map(|place| {
             let constant = *constant(&mut program.operations[place].clone())?;
-            let step = STEP * f64::from(constant).abs().max(1e-3);
+            let step = DIFFERENCE_STEP_SHARE * f64::from(constant).abs().max(1e-3);
             let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
             let (up, down) = (shifted(step)?, shifted(-step)?);
             Some((place, up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect::<Vec<f64>>()))

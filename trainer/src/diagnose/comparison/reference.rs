@@ -17,11 +17,11 @@ pub struct Reference {
     /// Effects of the catalogue that it holds itself.
     pub effects: Vec<EffectId>,
     /// What the law leaves of the simulation from which it was learned, where that is of the same motion.
-    pub left: Option<Vec<f64>>,
+    pub replayed_residual: Option<Vec<f64>>,
     /// Root mean square, behind the filter, of what its formulas get wrong beside that.
     pub formula_error: f64,
     /// Torque of each direction in which the law is not sure of itself, at one standard deviation.
-    pub doubt: Vec<Vec<f64>>,
+    pub uncertainty: Vec<Vec<f64>>,
     /// Samples at which a channel lies beyond what the law was fitted on, and by which channels; empty where none does.
     pub outside: Outside,
     /// Its friction as pairs (velocity, torque) in ascending velocity.

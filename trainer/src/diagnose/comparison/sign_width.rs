@@ -3,25 +3,25 @@
 use crate::diagnose::comparison::columns::{BaseKind, WIDE_SIGN, filtered_columns, raw_columns};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::least_squares::{dot, least_squares, left_by_fit};
+use crate::numerics::least_squares::{dot, fit_residual, least_squares};
 use crate::numerics::pattern_search::{Movable, climb};
 
 /// Widths of the smoothed sign that are tried, over the least.
-const WIDTHS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
+const SIGN_WIDTH_RATIOS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 /// The widest, over the least.
-const WIDEST: f64 = 30.0;
+const WIDEST_SIGN_RATIO: f64 = 30.0;
 
 /// Share of the energy that the least width leaves, up to which a wider one is the joint's own: a looser
 /// limit would let presliding or the Stribeck effect pass for a softer sign.
-const OWN_WIDTH: f64 = 0.01;
+const SOFT_SIGN_ENERGY_RATIO: f64 = 0.01;
 /// The same up to which the width is sought closer.
-const WORTH_A_CLOSER_LOOK: f64 = 0.1;
+const REFINED_SIGN_ENERGY_RATIO: f64 = 0.1;
 
 /// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
-const MOST_SOFTNESS: f64 = 1.5;
+const SOFT_SIGN_TORQUE_RATIO: f64 = 1.5;
 
 /// Widens the smoothed sign where friction turns over so softly that next to nothing else is wrong with the base.
-pub(crate) fn fit_width(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) {
+pub(crate) fn fit_sign_width(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) {
     if kind == BaseKind::Reference {
         return;
     }
@@ -30,17 +30,17 @@ pub(crate) fn fit_width(prepared: &mut Prepared, comparison: &Comparison, kind: 
     let mut left_at = |over_least: f64| {
         prepared.state.turn_over_within(over_least * least);
         let columns = filtered_columns(prepared, comparison, &raw_columns(&prepared.state, comparison, kind));
-        left_by_fit(&columns, &target, &runs).map_or(f64::INFINITY, |left| dot(&left, &left, &runs))
+        fit_residual(&columns, &target, &runs).map_or(f64::INFINITY, |left| dot(&left, &left, &runs))
     };
     let unwidened = left_at(1.0);
-    let tried = WIDTHS.map(|width| (width, left_at(width)));
+    let tried = SIGN_WIDTH_RATIOS.map(|width| (width, left_at(width)));
     let mut own = 1.0;
     if let Some((nearest, left)) = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
-        && left < WORTH_A_CLOSER_LOOK * unwidened
+        && left < REFINED_SIGN_ENERGY_RATIO * unwidened
     {
-        let free = Movable { index: 0, step: 0.5, low: 0.0, high: WIDEST.ln() };
+        let free = Movable { index: 0, step: 0.5, low: 0.0, high: WIDEST_SIGN_RATIO.ln() };
         let width = climb(&[f64::ln(nearest)], &[free], |width| Some(-left_at(width[0].exp())))[0].exp();
-        if left_at(width) < OWN_WIDTH * unwidened {
+        if left_at(width) < SOFT_SIGN_ENERGY_RATIO * unwidened {
             own = width;
         }
     }
@@ -50,13 +50,14 @@ pub(crate) fn fit_width(prepared: &mut Prepared, comparison: &Comparison, kind: 
 /// Friction may turn over softly, and its torque may be that of an instant instead of a whole sample: the softer sign at the samples is
 /// a nuisance beside the given columns, but where it takes more torque than friction has there or the opposite, and stands for
 /// something else.
-pub(crate) fn add_softness(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
+pub(crate) fn add_soft_sign(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
     let state = &prepared.state;
     let width = WIDE_SIGN * state.sign_velocity;
     columns.push(prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i])));
     let torque =
         least_squares(columns, target, &prepared.open_runs()).and_then(|coefficients| coefficients.last().copied());
-    let is_of_friction = |torque: f64| (0.0..=MOST_SOFTNESS).contains(&(torque / state.base_friction_at(width)));
+    let is_of_friction =
+        |torque: f64| (0.0..=SOFT_SIGN_TORQUE_RATIO).contains(&(torque / state.base_friction_at(width)));
     if !torque.is_some_and(is_of_friction) {
         columns.pop();
     }
@@ -90,7 +91,7 @@ mod tests {
         let comparison = Comparison::from(signals);
         let mut prepared = comparison.prepare(Lock::Nothing);
         let least = prepared.state.sign_velocity;
-        fit_width(&mut prepared, &comparison, BaseKind::CoulombViscous);
+        fit_sign_width(&mut prepared, &comparison, BaseKind::CoulombViscous);
         (least, prepared.state.sign_velocity)
     }
 

@@ -1,10 +1,10 @@
 //! What of a candidate's evidence may be an error of the law that the recording is compared with: a law that was learned from a
-//! noisy simulation is not sure of itself.
+//! noisy simulation has an uncertainty of its own.
 
 use crate::numerics::least_squares::{dot, orthonormal, project_out};
 use std::ops::Range;
 
-/// The doubts of a reference beside a base, whitened.
+/// The uncertainty of a reference beside a base, whitened.
 pub(crate) struct LawUncertainty {
     /// Torque of each uncertain direction at one standard deviation.
     torque: Vec<Vec<f64>>,
@@ -20,7 +20,7 @@ impl LawUncertainty {
         Self { torque, base, runs }
     }
 
-    /// Variance that noise alone gives the evidence of whitened columns over that beside noise and doubt, above 0 and at most 1.
+    /// Variance that noise alone gives the evidence of whitened columns over that beside noise and uncertainty, above 0 and at most 1.
     pub fn trust(&self, columns: &[Vec<f64>]) -> f64 {
         if self.torque.is_empty() {
             return 1.0;
@@ -28,7 +28,8 @@ impl LawUncertainty {
         let mut free = columns.to_vec();
         free.iter_mut().for_each(|column| project_out(column, &self.base, &self.runs));
         let directions = orthonormal(&free, &self.runs);
-        let shares = directions.iter().flat_map(|d| self.torque.iter().map(|doubt| dot(d, doubt, &self.runs).powi(2)));
+        let shares =
+            directions.iter().flat_map(|d| self.torque.iter().map(|torque| dot(d, torque, &self.runs).powi(2)));
         1.0 / (1.0 + shares.sum::<f64>() / directions.len().max(1) as f64)
     }
 }
@@ -42,10 +43,10 @@ mod tests {
         let axis =
             |place: usize, length: f64| (0..4).map(|i| if i == place { length } else { 0.0 }).collect::<Vec<f64>>();
         let all = std::iter::once(0..4).collect::<Vec<_>>();
-        let doubt = LawUncertainty::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
-        assert!((doubt.trust(&[axis(1, 0.5)]) - 0.1).abs() < 1e-12);
-        assert_eq!(doubt.trust(&[axis(2, 0.5)]), 1.0);
-        assert!((doubt.trust(&[axis(1, 1.0), axis(2, 1.0)]) - 1.0 / 5.5).abs() < 1e-12);
+        let uncertainty = LawUncertainty::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
+        assert!((uncertainty.trust(&[axis(1, 0.5)]) - 0.1).abs() < 1e-12);
+        assert_eq!(uncertainty.trust(&[axis(2, 0.5)]), 1.0);
+        assert!((uncertainty.trust(&[axis(1, 1.0), axis(2, 1.0)]) - 1.0 / 5.5).abs() < 1e-12);
         assert_eq!(LawUncertainty::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&[axis(1, 0.5)]), 1.0);
     }
 }

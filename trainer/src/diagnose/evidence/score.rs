@@ -245,7 +245,7 @@ pub struct GroupEvidence {
     pub statistic: f64,
     /// Its linear coefficients.
     pub degrees: usize,
-    /// Held-out gain over the base in nats.
+    /// SimulatedEffect-out gain over the base in nats.
     pub held_out: f64,
     /// Gain of each fold.
     pub fold_gain: Vec<f64>,

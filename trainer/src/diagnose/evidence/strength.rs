@@ -6,7 +6,7 @@ use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::evidence::score::Bench;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::rows::Lock;
-use crate::numerics::least_squares::{dot, left_by_fit, residual, rows_in};
+use crate::numerics::least_squares::{dot, fit_residual, residual, rows_in};
 
 /// Strength of a torque that a recording conceals.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub fn strength(
     let runs = prepared.open_runs();
     let filtered = prepared.filtered(torque);
     let known: Vec<Vec<f64>> = base.columns.iter().cloned().chain([filtered.clone()]).collect();
-    let model = Noise::fit(&left_by_fit(&known, &base.target, &runs)?, &runs, &noise_features(&prepared));
+    let model = Noise::fit(&fit_residual(&known, &base.target, &runs)?, &runs, &noise_features(&prepared));
     let white = |column: &[f64]| model.whitened(column, &runs);
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
     let whitened = Bench::new(columns, white(&filtered), vec![runs.clone()]);

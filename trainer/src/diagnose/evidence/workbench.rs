@@ -8,7 +8,7 @@ use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::least_squares::{left_by_fit, weighted};
+use crate::numerics::least_squares::{fit_residual, weighted};
 use crate::physics::{EffectId, Hypothesis, JointState};
 use rayon::prelude::*;
 
@@ -54,7 +54,8 @@ impl<'a> Workbench<'a> {
     pub(crate) fn only_positive(&self, label: &Label) -> bool {
         match label {
             Label::Named(effect) => {
-                self.base.held.is_empty() && self.hypothesis(*effect).is_some_and(Hypothesis::only_positive)
+                self.base.reference_effects.is_empty()
+                    && self.hypothesis(*effect).is_some_and(Hypothesis::only_positive)
             }
             Label::Generic(_) => false,
         }
@@ -143,14 +144,14 @@ impl<'a> Workbench<'a> {
 
     /// LawUncertaintys of the reference beside the base of a bench.
     pub(crate) fn law_uncertainty(&self, bench: &Bench, noise: &Noise) -> LawUncertainty {
-        LawUncertainty::beside(&bench.base, self.whitened(&self.base.doubt, noise), bench.runs())
+        LawUncertainty::beside(&bench.base, self.whitened(&self.base.uncertainty, noise), bench.runs())
     }
 
     /// Noise of what the columns leave after an ordinary least-squares fit: one that is whitened first may leave slow
     /// errors that pass for noise.
     pub(crate) fn noise_after(&self, columns: &[Vec<f64>]) -> Noise {
         let runs = self.prepared.open_runs();
-        let left = left_by_fit(columns, &self.base.target, &runs);
+        let left = fit_residual(columns, &self.base.target, &runs);
         Noise::fit(left.as_ref().unwrap_or(&self.base.target), &runs, &self.noise_features)
     }
 }

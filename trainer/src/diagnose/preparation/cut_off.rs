@@ -16,12 +16,12 @@ impl Prepared {
         let mut chosen = None;
         for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
             let mut prepared = Self::at_cut_off(signals, cut_off, known, lock);
-            prepared.grain_limited = chosen.is_some();
+            prepared.quantisation_limited = chosen.is_some();
             let fits = encoder_noise_is_small(&prepared, signals);
             let enough_rows = prepared.rows.len() >= 200;
             match chosen {
                 // A narrower filter that leaves too little to work on is no help.
-                Some(wider) if !enough_rows => return Self { grain_limited: true, ..wider },
+                Some(wider) if !enough_rows => return Self { quantisation_limited: true, ..wider },
                 _ if fits => return prepared,
                 _ => chosen = Some(prepared),
             }

@@ -3,11 +3,11 @@
 
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::states::{Prepared, identified_inertia, simplest_model};
-use crate::numerics::least_squares::{dot, left_by_fit, rows_in};
+use crate::numerics::least_squares::{dot, fit_residual, rows_in};
 use crate::numerics::statistics::root_mean_square;
 
 /// Share of the residual's deviation that encoder noise may reach through the inertia: what it gives a candidate is taken off that.
-const ENCODER_SHARE: f64 = 0.4;
+const POSITION_ERROR_SHARE: f64 = 0.4;
 /// Standard deviation of the recorded position, in its unit.
 fn position_error(prepared: &Prepared, signals: &Signals) -> f64 {
     let speed = root_mean_square(&prepared.state.velocity);
@@ -21,16 +21,16 @@ pub(crate) fn encoder_noise_is_small(prepared: &Prepared, signals: &Signals) -> 
     }
     let rows = prepared.open_runs();
     let columns = simplest_model(prepared);
-    let Some(grain) = grain_through_inertia(prepared, signals) else { return true };
+    let Some(grain) = position_error_torque(prepared, signals) else { return true };
     let friction = prepared.filtered(&prepared.friction_torque);
-    let Some(left) = left_by_fit(&columns, &friction, &rows) else { return true };
+    let Some(left) = fit_residual(&columns, &friction, &rows) else { return true };
     let deviation = (dot(&left, &left, &rows) / rows_in(&rows).max(1) as f64).sqrt();
-    grain <= ENCODER_SHARE * deviation
+    grain <= POSITION_ERROR_SHARE * deviation
 }
 
 /// Deviation, behind the filter, of the torque that the errors of the position make through the inertia; `None` where the recording
 /// shows no inertia.
-pub(crate) fn grain_through_inertia(prepared: &Prepared, signals: &Signals) -> Option<f64> {
+pub(crate) fn position_error_torque(prepared: &Prepared, signals: &Signals) -> Option<f64> {
     let acceleration = prepared.filter.second_derivative_gain(signals.period);
     identified_inertia(prepared).map(|inertia| inertia.abs() * position_error(prepared, signals) * acceleration)
 }

@@ -6,12 +6,12 @@ use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, quantile};
 use crate::physics::JointState;
 
 /// Sum of the squares of the weights of a fourth difference.
-const POWER_OF_DIFFERENCE: f64 = 70.0;
+const FOURTH_DIFFERENCE_GAIN: f64 = 70.0;
 /// Speeds over the top speed from which a sample is fast, and below which it is slow.
-const FAST: f64 = 0.5;
-const SLOW: f64 = 0.1;
+const FAST_SPEED_SHARE: f64 = 0.5;
+const SLOW_SPEED_SHARE: f64 = 0.1;
 /// Scatter in periods up to which it may be what a joint's own motion has beyond a fourth difference.
-const LEAST_JITTER: f64 = 0.05;
+const LEAST_JITTER_PERIODS: f64 = 0.05;
 /// Samples of a kind at least.
 const LEAST_SAMPLES: usize = 100;
 
@@ -28,9 +28,9 @@ pub(crate) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
             let [a, b, c, d, e] = [i - 2, i - 1, i, i + 1, i + 2].map(|j| signals.position[j]);
             let difference = a - 4.0 * b + 6.0 * c - 4.0 * d + e;
             let speed = state.velocity[i].abs();
-            if speed > FAST * top_speed {
+            if speed > FAST_SPEED_SHARE * top_speed {
                 fast.push((difference.abs(), speed));
-            } else if speed < SLOW * top_speed {
+            } else if speed < SLOW_SPEED_SHARE * top_speed {
                 slow.push(difference.abs());
             }
         }
@@ -39,14 +39,14 @@ pub(crate) fn sampling_jitter(signals: &Signals, state: &JointState) -> f64 {
         return 0.0;
     }
     let power = |differences: &mut dyn Iterator<Item = f64>| {
-        (DEVIATION_PER_MEDIAN * quantile(differences, 0.5)).powi(2) / POWER_OF_DIFFERENCE
+        (DEVIATION_PER_MEDIAN * quantile(differences, 0.5)).powi(2) / FOURTH_DIFFERENCE_GAIN
     };
     let at_low_speed = if slow.len() < LEAST_SAMPLES { 0.0 } else { power(&mut slow.into_iter()) };
     let of_grain = signals.position_resolution.powi(2) / 12.0;
     let beyond = power(&mut fast.iter().map(|(difference, _)| *difference)) - at_low_speed.max(of_grain);
     let speed = quantile(fast.iter().map(|(_, speed)| *speed), 0.5);
     let jitter = beyond.max(0.0).sqrt() / speed.max(f64::MIN_POSITIVE);
-    if jitter < LEAST_JITTER * signals.period { 0.0 } else { jitter }
+    if jitter < LEAST_JITTER_PERIODS * signals.period { 0.0 } else { jitter }
 }
 
 #[cfg(test)]

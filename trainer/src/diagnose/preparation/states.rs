@@ -6,7 +6,7 @@ use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
 use crate::diagnose::preparation::rows::{Block, Lock, hesitation, rows_and_blocks, standstill};
 use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
-use crate::diagnose::preparation::two_encoders::told_by_twist;
+use crate::diagnose::preparation::two_encoders::shown_by_twist;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::least_squares;
 use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, quantile};
@@ -23,7 +23,7 @@ pub struct Prepared {
     /// The filter before the motion.
     pub(crate) motion_filter: ZeroPhase,
     /// Whether a wider filter was refused for the errors of the position.
-    pub grain_limited: bool,
+    pub quantisation_limited: bool,
     /// Standard deviation of the instants at which the position was sampled, s.
     pub(crate) sampling_jitter: f64,
     /// Sample index of each working row.
@@ -57,17 +57,17 @@ impl<'a> Known<'a> {
 }
 
 /// Width of the smoothed sign at least, as a share of the top speed.
-const SIGN_SHARE: f64 = 0.001;
+const SIGN_WIDTH_SHARE: f64 = 0.001;
 /// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
-const STATE_WIDTHS: [f64; 3] = [4.0, 2.5, 1.6];
+const MOTION_FILTER_RATIOS: [f64; 3] = [4.0, 2.5, 1.6];
 /// The filter before the other channels over the common one.
-const CHANNEL_WIDTH: f64 = 1.6;
+const CHANNEL_FILTER_RATIO: f64 = 1.6;
 /// Widest filter, in cycles a sample.
-const WIDEST: f64 = 0.35;
+const WIDEST_CYCLES_PER_SAMPLE: f64 = 0.35;
 /// Filter of the nuisance column of the velocity over that before the motion.
-const NARROW_VELOCITY: f64 = 0.4;
+const NARROW_VELOCITY_RATIO: f64 = 0.4;
 /// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.
-const NARROW_ACCELERATION: f64 = 0.8;
+const NARROW_ACCELERATION_RATIO: f64 = 0.8;
 
 impl Prepared {
     /// Prepares states and rows behind a given cut-off in Hz.
@@ -79,8 +79,8 @@ impl Prepared {
         let (states, Motion { position, velocity, acceleration }) = sharpest_motion(signals, cut_off);
         let narrow =
             |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), &signals.position, segments, period);
-        let narrow_velocity = narrow(NARROW_VELOCITY * states.cut_off_hz).velocity;
-        let narrow_acceleration = narrow(NARROW_ACCELERATION * cut_off).acceleration;
+        let narrow_velocity = narrow(NARROW_VELOCITY_RATIO * states.cut_off_hz).velocity;
+        let narrow_acceleration = narrow(NARROW_ACCELERATION_RATIO * cut_off).acceleration;
         let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
         let other_motion = |series: &[f64]| {
             let Motion { position, velocity, acceleration } = Motion::behind(&states, series, segments, period);
@@ -100,7 +100,7 @@ impl Prepared {
             gravity_slope: Vec::new(),
             temperature: signals.temperature.as_ref().map(|series| slow(series, &signals.time, period)),
             link: signals.link_position.as_ref().map(|series| other_motion(series)),
-            twist: Twist::Untold,
+            twist: Twist::Unknown,
             other_joints: signals.other_positions.iter().map(|series| other_motion(series)).collect(),
             torque: channels.over(&signals.torque, segments),
             predicted: Vec::new(),
@@ -111,7 +111,7 @@ impl Prepared {
             rotary: signals.rotary,
             resolution: signals.position_resolution,
         };
-        let least_width = (4.0 * velocity_noise).max(SIGN_SHARE * state.top_speed());
+        let least_width = (4.0 * velocity_noise).max(SIGN_WIDTH_SHARE * state.top_speed());
         state.turn_over_within(least_width.max(f64::MIN_POSITIVE));
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
@@ -120,7 +120,7 @@ impl Prepared {
             None => gravity_of_body(&state),
         };
         state.gravity_slope = slope_of_gravity(&state);
-        state.twist = told_by_twist(&state);
+        state.twist = shown_by_twist(&state);
         let friction_torque = match known.torque {
             Some(known) => signals.torque.iter().zip(known).map(|(t, k)| t - k).collect(),
             None => signals.torque.clone(),
@@ -135,7 +135,7 @@ impl Prepared {
             state,
             filter,
             motion_filter: states,
-            grain_limited: false,
+            quantisation_limited: false,
             rows,
             blocks,
             narrow_velocity,
@@ -202,7 +202,7 @@ impl Prepared {
 
 /// The filter before all channels but the motion.
 pub(crate) fn channel_filter(cut_off: f64, period: f64) -> ZeroPhase {
-    ZeroPhase::new((CHANNEL_WIDTH * cut_off).min(WIDEST / period), period)
+    ZeroPhase::new((CHANNEL_FILTER_RATIO * cut_off).min(WIDEST_CYCLES_PER_SAMPLE / period), period)
 }
 
 /// Position, velocity and acceleration behind one filter.
@@ -225,14 +225,14 @@ impl Motion {
 /// sign. A wider filter adds noise alone at most samples, so that the median tells its deviation.
 fn sharpest_motion(signals: &Signals, cut_off: f64) -> (ZeroPhase, Motion) {
     let behind = |width: f64| {
-        let filter = ZeroPhase::new((width * cut_off).min(WIDEST / signals.period), signals.period);
+        let filter = ZeroPhase::new((width * cut_off).min(WIDEST_CYCLES_PER_SAMPLE / signals.period), signals.period);
         let motion = Motion::behind(&filter, &signals.position, &signals.segments, signals.period);
         (filter, motion)
     };
-    let [wider @ .., narrowest] = STATE_WIDTHS;
+    let [wider @ .., narrowest] = MOTION_FILTER_RATIOS;
     let smoothest = behind(narrowest);
     let smooth = &smoothest.1.velocity;
-    let allowed = SIGN_SHARE * top_speed(smooth);
+    let allowed = SIGN_WIDTH_SHARE * top_speed(smooth);
     let is_quiet = |(_, motion): &(ZeroPhase, Motion)| {
         let added = quantile(motion.velocity.iter().zip(smooth).map(|(wide, smooth)| (wide - smooth).abs()), 0.5);
         4.0 * DEVIATION_PER_MEDIAN * added <= allowed

@@ -1,26 +1,26 @@
 //! What a second encoder tells of a transmission: over the torque that it carries the twist is a line (an elastic gear, Spong 1987),
 //! a jump (play, Nordin and Gutman 2002) or a loop (hysteretic wind-up, Taghirad and Belanger 1998).
 
-use crate::numerics::least_squares::{dot, left_by_fit};
+use crate::numerics::least_squares::{dot, fit_residual};
 use crate::numerics::statistics::quantile;
 use crate::physics::{EffectId, JointState, Twist, carried_torque, usual_link_inertia};
 use std::ops::Range;
 
 /// Share of the twist's energy that the best of the three may leave: what leaves more is no function of the torque, but a
 /// kinematic error, another convention or noise.
-const LEFT_AT_MOST: f64 = 0.5;
+const UNEXPLAINED_SHARE: f64 = 0.5;
 /// What a line may leave of it and be a line, whatever else would leave.
-const LINE: f64 = 0.02;
+const LINE_RESIDUAL_SHARE: f64 = 0.02;
 /// What a jump or a loop has to leave over what a line leaves.
-const CLEARLY_LESS: f64 = 0.6;
+const HYSTERESIS_ENERGY_RATIO: f64 = 0.6;
 /// Twist over the travel that is rounding.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING_SHARE: f64 = 1e-9;
 /// Torque within which a jump turns, and torques over which a loop builds up, over the largest common torque.
-const JUMP: f64 = 0.03;
-const LOOPS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
+const JUMP_TORQUE_SHARE: f64 = 0.03;
+const LOOP_TORQUE_SHARES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
 /// What the twist between both encoders shows.
-pub(crate) fn told_by_twist(state: &JointState) -> Twist {
+pub(crate) fn shown_by_twist(state: &JointState) -> Twist {
     shown(state).unwrap_or_default()
 }
 
@@ -34,27 +34,29 @@ fn shown(state: &JointState) -> Option<Twist> {
     let line = [vec![1.0; state.len()], carried.clone(), link.acceleration.clone()];
     let left = |with: Option<Vec<f64>>| {
         let columns: Vec<Vec<f64>> = line.iter().cloned().chain(with).collect();
-        left_by_fit(&columns, &twist, all).map(|left| dot(&left, &left, all))
+        fit_residual(&columns, &twist, all).map(|left| dot(&left, &left, all))
     };
-    let whole = left_by_fit(&line[..1], &twist, all).map(|left| dot(&left, &left, all))?;
-    let grain = state.resolution.max(ROUNDING * state.span());
+    let whole = fit_residual(&line[..1], &twist, all).map(|left| dot(&left, &left, all))?;
+    let grain = state.resolution.max(ROUNDING_SHARE * state.span());
     if whole <= state.len() as f64 * grain * grain {
         return Some(Twist::Rigid);
     }
     let by_line = left(None)?;
-    let by_jump = left(Some(carried.iter().map(|torque| (torque / (JUMP * largest)).tanh()).collect()))?;
-    let loops = LOOPS.iter().filter_map(|share| left(Some(winding(&carried, share * largest, all))));
+    let by_jump = left(Some(carried.iter().map(|torque| (torque / (JUMP_TORQUE_SHARE * largest)).tanh()).collect()))?;
+    let loops = LOOP_TORQUE_SHARES.iter().filter_map(|share| left(Some(winding(&carried, share * largest, all))));
     let by_loop = loops.fold(f64::INFINITY, f64::min);
-    if by_line.min(by_jump).min(by_loop) > LEFT_AT_MOST * whole {
+    if by_line.min(by_jump).min(by_loop) > UNEXPLAINED_SHARE * whole {
         return None;
     }
-    Some(Twist::Shows(if by_line < LINE * whole || by_jump.min(by_loop) > CLEARLY_LESS * by_line {
-        EffectId::Elasticity
-    } else if by_jump < by_loop {
-        EffectId::Backlash
-    } else {
-        EffectId::WindupHysteresis
-    }))
+    Some(Twist::Shows(
+        if by_line < LINE_RESIDUAL_SHARE * whole || by_jump.min(by_loop) > HYSTERESIS_ENERGY_RATIO * by_line {
+            EffectId::Elasticity
+        } else if by_jump < by_loop {
+            EffectId::Backlash
+        } else {
+            EffectId::WindupHysteresis
+        },
+    ))
 }
 
 /// Dahl's element over a torque: towards the side to which it changes, over `reach` (Dahl 1968).
@@ -138,6 +140,6 @@ mod tests {
             samples.set(samples.get() + 1.0);
             1e-3 * f64::sin(0.05 * samples.get())
         };
-        assert_eq!(told(wave), Twist::Untold);
+        assert_eq!(told(wave), Twist::Unknown);
     }
 }

@@ -6,21 +6,21 @@ use crate::diagnose::search::thresholds::Settings;
 use statrs::function::erf::erfc_inv;
 
 /// Share of the level that is left to what the locked rows ask for the opposite of.
-const BEYOND_DOUBT: f64 = 0.007;
+const CONTRADICTED_LEVEL_RATIO: f64 = 0.007;
 
 /// Weight of the locked rows over their share of the evidence, and the largest that they get.
 const LOCKED_WEIGHT: f64 = 2.0;
-const LARGEST_WEIGHT: f64 = 0.9;
+const LARGEST_LOCKED_WEIGHT: f64 = 0.9;
 
 /// Share of the evidence from which the locked rows can contradict the open ones.
-const TELLING_SHARE: f64 = 0.03;
+const CONTRADICTING_SHARE: f64 = 0.03;
 
 /// Error of the locked rows over that without a one-off event, from which it is refused.
-const WORSE_BY_AN_EVENT: f64 = 1.1;
+const EVENT_ERROR_RATIO: f64 = 1.1;
 /// The same of what is to be compensated, where it is certain from block to block.
-const ERRS_MORE: f64 = 1.03;
+const NAMED_ERROR_RATIO: f64 = 1.03;
 /// Error of the locked rows over that without an effect, from which nothing speaks for it.
-const FAR_WORSE: f64 = 1.5;
+const UNNAMED_ERROR_RATIO: f64 = 1.5;
 
 /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
 /// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice. What the locked
@@ -28,15 +28,15 @@ const FAR_WORSE: f64 = 1.5;
 /// the locked rows clearly worse, whitened and not: beside larger effects, whose formulas err slowly, whitening may see a loss
 /// where the error falls. A structure without a name is not compensated: of it the locked rows may ask for less.
 pub(crate) fn is_carried(settings: &Settings, label: &Label, family_wise: f64, locked: &Proof) -> bool {
-    let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > TELLING_SHARE;
+    let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > CONTRADICTING_SHARE;
     let counted = if is_contradicted { 1.0 } else { LOCKED_WEIGHT };
-    let weight = (counted * locked.locked_share).min(LARGEST_WEIGHT);
+    let weight = (counted * locked.locked_share).min(LARGEST_LOCKED_WEIGHT);
     let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
-    let level = if is_contradicted { BEYOND_DOUBT } else { 1.0 } * settings.family_wise_level;
+    let level = if is_contradicted { CONTRADICTED_LEVEL_RATIO } else { 1.0 } * settings.family_wise_level;
     let is_to_be_compensated = matches!(label, Label::Named(_));
-    let is_far_worse = locked.improved_rmse > FAR_WORSE * locked.baseline_rmse;
+    let is_far_worse = locked.improved_rmse > UNNAMED_ERROR_RATIO * locked.baseline_rmse;
     let may_be_worse = !is_contradicted && !is_to_be_compensated && !is_far_worse;
-    let errs_more = locked.ratio_ci95[0] > 1.0 && locked.improved_rmse > ERRS_MORE * locked.baseline_rmse;
+    let errs_more = locked.ratio_ci95[0] > 1.0 && locked.improved_rmse > NAMED_ERROR_RATIO * locked.baseline_rmse;
     together >= deviations_of(level)
         && (may_be_worse || !is_worse(settings, locked))
         && !(is_to_be_compensated && errs_more)
@@ -50,7 +50,7 @@ fn is_worse(settings: &Settings, locked: &Proof) -> bool {
 /// Whether an event makes the locked rows clearly worse: they may hold the rest of it, so that a little more of it in the base
 /// costs many nats.
 pub(crate) fn is_worse_by_an_event(settings: &Settings, locked: &Proof) -> bool {
-    is_worse(settings, locked) && locked.improved_rmse > WORSE_BY_AN_EVENT * locked.baseline_rmse
+    is_worse(settings, locked) && locked.improved_rmse > EVENT_ERROR_RATIO * locked.baseline_rmse
 }
 
 /// Standard deviations that a normal variable exceeds with a probability.

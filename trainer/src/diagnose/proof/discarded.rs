@@ -15,18 +15,18 @@ use crate::physics::EffectId;
 const MINOR_SHARE: f64 = 0.06;
 const MINOR_SHARE_WITHOUT_NAME: f64 = 0.1;
 /// Root mean square over that of the torque beside a known rigid body below which it is small.
-const MINOR_TORQUE: f64 = 0.025;
+const MINOR_TORQUE_SHARE: f64 = 0.025;
 /// Times the error that a law's formulas show in the simulation it was learned from up to which it may explain what is found: the
 /// rest of the motion may suit them less.
-pub(crate) const FORMULA_ERROR: f64 = 1.5;
+pub(crate) const FORMULA_ERROR_RATIO: f64 = 1.5;
 
 /// Root mean square over that of the recorded torque below which an effect is too small to matter: no filter, encoder or clock is
 /// that exact, and what they leave has a shape.
-const NEGLIGIBLE_TORQUE: f64 = 7e-4;
+const NEGLIGIBLE_TORQUE_SHARE: f64 = 7e-4;
 
 /// Torque (root mean square) that matters in a recording.
 pub(crate) fn least_torque(workbench: &Workbench) -> f64 {
-    NEGLIGIBLE_TORQUE * root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque))
+    NEGLIGIBLE_TORQUE_SHARE * root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque))
 }
 
 /// Torque (root mean square) beside a known rigid body: weight and inertia can be many times what friction is.
@@ -65,7 +65,7 @@ pub(crate) fn withdraw_unproven(
 
 /// Sets aside what explains no more than the formulas of the reference get wrong.
 pub(crate) fn set_aside_doubtful(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
-    set_aside_below(FORMULA_ERROR * workbench.base.formula_error, workbench, accepted)
+    set_aside_below(FORMULA_ERROR_RATIO * workbench.base.formula_error, workbench, accepted)
 }
 
 /// Sets aside what is too small to matter.
@@ -117,7 +117,7 @@ pub(crate) fn set_aside_minor(
     accepted: &mut Vec<Accepted>,
     baseline: &Refit,
 ) -> Vec<(EffectId, f64)> {
-    let small_energy = (MINOR_TORQUE * torque_beside_rigid_body(workbench)).powi(2);
+    let small_energy = (MINOR_TORQUE_SHARE * torque_beside_rigid_body(workbench)).powi(2);
     let mut minor = Vec::new();
     while let (Some(refitted), true) = (refit(workbench, accepted), accepted.len() > 1) {
         let removable = (baseline.noise.rms.powi(2) - refitted.noise.rms.powi(2)).max(f64::MIN_POSITIVE);

@@ -1,4 +1,5 @@
-//! The proof: rows locked away from all fitting and naming are opened at the end. They may withdraw a finding, and nothing else.
+//! The proof: rows locked away from fitting and from the search are opened at the end. They count in the decision whether a finding
+//! stands, so that the errors on them are not those of rows that decided nothing.
 
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::proof::refit::{Refit, refit};

@@ -30,7 +30,7 @@ const SWEEPS: usize = 2;
 
 /// Root mean square of a whitened fit over that of a plain one from which what is left is the error of the model's formulas,
 /// slow and large, and not noise: then the plain fit holds.
-const WHITENING_COSTS: f64 = 1.1;
+const PLAIN_FIT_ERROR_RATIO: f64 = 1.1;
 
 /// Moves the shapes of the accepted effects to their joint optimum: one effect at a time, the others in the base.
 pub(crate) fn polish(workbench: &Workbench, accepted: &mut [Accepted], noise: &Noise) {
@@ -90,7 +90,7 @@ pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refi
     let white = residual(&bench.base, &bench.target, &solution);
     let mut left = residual(&columns, &workbench.base.target, &solution);
     let rows = rows_in(&runs);
-    let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > WHITENING_COSTS * noise.rms;
+    let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > PLAIN_FIT_ERROR_RATIO * noise.rms;
     if plain {
         solution = least_squares(&columns, &workbench.base.target, &runs)?;
         left = residual(&columns, &workbench.base.target, &solution);

@@ -9,19 +9,19 @@ use crate::physics::EffectId;
 
 /// Shares of what a free function explains at which a name is good enough: of the energy, and of the whitened energy, in which the
 /// slow errors of a formula count for less.
-const NEARLY_AS_MUCH: f64 = 0.88;
-const NEARLY_AS_MUCH_WHITENED: f64 = 0.94;
+const NAMED_ENERGY_SHARE: f64 = 0.88;
+const NAMED_WHITENED_SHARE: f64 = 0.94;
 
 /// Score in nats from which the errors of a formula show. Of what is weaker a name needs this share of a free function's score
 /// too: much of the energy that it explains may be chance.
 const STRONG_NATS: f64 = 60.0;
-const NEARLY_AS_GOOD: f64 = 0.8;
+const NAMED_SCORE_SHARE: f64 = 0.8;
 
 /// Shares of energy outside of a wider hypothesis at which a narrower one is of its kind, the same but for its formula, and a part
 /// of it.
-const OF_ITS_KIND: f64 = 0.1;
-const NEARLY_ALL: f64 = 0.01;
-const ALL: f64 = 1e-6;
+const SAME_KIND_ENERGY_SHARE: f64 = 0.1;
+const SAME_FORMULA_ENERGY_SHARE: f64 = 0.01;
+const PART_ENERGY_SHARE: f64 = 1e-6;
 
 /// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
 /// chance what the name's formula misses.
@@ -51,7 +51,7 @@ impl Round<'_, '_> {
             (Some(named), Some(generic))
                 if generic.score > named.score + settings.ambiguity_margin && generic.evidence.held_out > held_out =>
             {
-                passing_names().find(|name| self.stands_beside(name, generic, table)).unwrap_or(generic)
+                passing_names().find(|name| self.is_kept_beside(name, generic, table)).unwrap_or(generic)
             }
             (Some(named), _) if named.label == Label::Named(EffectId::TransientEvent) => {
                 // No other block can confirm an event, so any cause that may come back goes before it on equal terms.
@@ -64,7 +64,7 @@ impl Round<'_, '_> {
             (None, Some(generic)) => generic,
             (None, None) => return None,
         };
-        let best = self.plainest(self.surest(best, passing_names()), passing_names());
+        let best = self.simplest(self.most_significant(best, passing_names()), passing_names());
         let mut rivals = Vec::new();
         let mut standings = Vec::new();
         let mut margin = f64::INFINITY;
@@ -81,7 +81,7 @@ impl Round<'_, '_> {
             };
             if is_ruled_out {
                 margin = margin.min(distance);
-            } else if distance < 0.0 || !self.contains(rival, best, NEARLY_ALL) {
+            } else if distance < 0.0 || !self.contains(rival, best, SAME_FORMULA_ENERGY_SHARE) {
                 rivals.push((effect, distance));
             }
         }
@@ -104,14 +104,14 @@ impl Round<'_, '_> {
     /// Whether a name is kept beside a free function that leads it. A free function holds more than any name does, and every formula
     /// is a little wrong: what explains nearly as much, whitened or not, is good enough, unless the function leads what holds the
     /// name among those of its channel as well. Then it is no error of the formula that the name lacks.
-    fn stands_beside(&self, name: &Scored, generic: &Scored, table: &[Scored]) -> bool {
+    fn is_kept_beside(&self, name: &Scored, generic: &Scored, table: &[Scored]) -> bool {
         let is_strong = generic.score >= STRONG_NATS;
-        let explains_as_much = name.explained >= NEARLY_AS_MUCH * generic.explained
-            && (is_strong || name.score >= NEARLY_AS_GOOD * generic.score)
-            || name.evidence.beyond_noise() >= NEARLY_AS_MUCH_WHITENED * generic.evidence.beyond_noise();
+        let explains_as_much = name.explained >= NAMED_ENERGY_SHARE * generic.explained
+            && (is_strong || name.score >= NAMED_SCORE_SHARE * generic.score)
+            || name.evidence.beyond_noise() >= NAMED_WHITENED_SHARE * generic.evidence.beyond_noise();
         let errs_by_its_formula = || {
             let mut of_the_channel = table.iter().filter(|s| s.label.channel() == generic.label.channel());
-            let own = of_the_channel.find(|own| self.contains(own, name, OF_ITS_KIND));
+            let own = of_the_channel.find(|own| self.contains(own, name, SAME_KIND_ENERGY_SHARE));
             own.is_none_or(|own| own.score > generic.score - self.search.settings.ambiguity_margin)
         };
         explains_as_much && errs_by_its_formula()
@@ -124,7 +124,7 @@ impl Round<'_, '_> {
 
     /// The best hypothesis, or one within the margin that the open rows prove by themselves where they do not prove the best one:
     /// that was sought among more shapes, of which one fits by chance.
-    fn surest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+    fn most_significant<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
         if self.is_significant(best) || !matches!(best.label, Label::Named(_)) {
             return best;
         }
@@ -134,15 +134,17 @@ impl Round<'_, '_> {
 
     /// The best hypothesis, or one within reach that explains the same with less: without its further coefficients, or by the
     /// effect that the best one yields to.
-    fn plainest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
+    fn simplest<'t>(&self, best: &'t Scored, mut passing: impl Iterator<Item = &'t Scored>) -> &'t Scored {
         if !matches!(best.label, Label::Named(_)) {
             return best;
         }
         let plainer = |rival: &&Scored| {
             let as_good = |no_better_by: f64| best.score - rival.score < no_better_by;
             let is_as_sure = self.is_significant(rival) || !self.is_significant(best);
-            let is_a_part =
-                || within_reach(best, rival, self.search.settings.ambiguity_margin) && self.contains(best, rival, ALL);
+            let is_a_part = || {
+                within_reach(best, rival, self.search.settings.ambiguity_margin)
+                    && self.contains(best, rival, PART_ENERGY_SHARE)
+            };
             is_as_sure && (self.yields(best, rival).is_some_and(as_good) || is_a_part())
         };
         passing.find(plainer).unwrap_or(best)
@@ -192,12 +194,12 @@ fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach:
 /// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from
 /// block to block (Hansen, Lunde and Nason 2011).
 fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
-    const CLOSE_NATS: f64 = 5.0;
+    const CLOSE_LEAD_NATS: f64 = 5.0;
     const LEAST_T: f64 = 1.65;
     let distance = best.score - rival.score;
     let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
     let count = leads.len() as f64;
     let mean = leads.iter().sum::<f64>() / count;
     let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    distance < reach || distance < CLOSE_NATS && mean < LEAST_T * (variance / count).sqrt()
+    distance < reach || distance < CLOSE_LEAD_NATS && mean < LEAST_T * (variance / count).sqrt()
 }

@@ -16,11 +16,11 @@ use crate::physics::{EffectId, Shape};
 use rayon::prelude::*;
 
 /// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
-const PLACES_LOOKED_AT: f64 = 10.0;
+const SHAPES_PER_GRID_STEP: f64 = 10.0;
 
 /// Criterion from which a candidate does not belong to the noise that the null draws are made of. With what is less they keep
 /// the chance directions that look best: without those, the noise of slow hypotheses would seem too small.
-const CLEAR_NATS: f64 = 10.0;
+const CLEAR_CANDIDATE_NATS: f64 = 10.0;
 
 /// A hypothesis with its score in one round.
 #[derive(Clone, Debug)]
@@ -50,14 +50,14 @@ pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) 
     match label {
         Label::Named(EffectId::TransientEvent) => {
             let alone = evidence.criterion - 0.5 * grid_size.ln();
-            if alone > BEYOND_DOUBT_NATS { alone.max(both) } else { alone }
+            if alone > CERTAIN_EVENT_NATS { alone.max(both) } else { alone }
         }
         _ => both,
     }
 }
 
-/// Criterion of a one-off event that is beyond doubt.
-const BEYOND_DOUBT_NATS: f64 = 50.0;
+/// Criterion of a one-off event that counts as certain.
+const CERTAIN_EVENT_NATS: f64 = 50.0;
 
 /// Evidence of every variant of every group; `None` where a variant depends on the base.
 type Tested = Vec<Vec<Option<VariantEvidence>>>;
@@ -101,7 +101,7 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
-        let best = best_two(self.search.workbench, &self.variants, self.bench.rows(), CLEAR_NATS);
+        let best = best_two(self.search.workbench, &self.variants, self.bench.rows(), CLEAR_CANDIDATE_NATS);
         let runs = self.bench.runs();
         let base_directions = orthonormal(&self.bench.base, &runs);
         let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
@@ -171,13 +171,13 @@ impl<'s, 'a> Round<'s, 'a> {
             })
             .collect();
         self.refine_leaders(&mut table, alone, rows);
-        self.discount_grain(&mut table);
+        self.discount_measurement_noise(&mut table);
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
     }
 
     /// Takes from every candidate what the encoder's grain gives it by itself.
-    fn discount_grain(&self, table: &mut [Scored]) {
+    fn discount_measurement_noise(&self, table: &mut [Scored]) {
         let Some(grain) = self.search.measurement_noise else { return };
         let least = self.search.settings.candidate_score;
         if table.iter().all(|scored| scored.score <= least) {
@@ -228,7 +228,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
                     let looked_at =
-                        PLACES_LOOKED_AT.ln() * free as f64 + self.search.workbench.scanned_beyond(scored.group);
+                        SHAPES_PER_GRID_STEP.ln() * free as f64 + self.search.workbench.scanned_beyond(scored.group);
                     let refined = chi_square_surprise(trust * evidence.statistic, evidence.degrees) - looked_at;
                     scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;
@@ -264,7 +264,7 @@ fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: b
 
 /// Nats for each row from which a candidate explains a fifth of all that the base leaves. Slow functions that take up parts of a
 /// one-off event of that size would else leave its edges to the noise.
-const DOMINANT_NATS_A_ROW: f64 = 0.1;
+const DOMINANT_NATS_PER_ROW: f64 = 0.1;
 
 /// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
 /// whatever is slow seems more than that, unless they are dominant.
@@ -273,7 +273,7 @@ const ROWS_PER_COEFFICIENT_BESIDE_NOISE: f64 = 150.0;
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a
 /// dominant event.
 fn best_two(workbench: &Workbench, variants: &Tested, rows: f64, least: f64) -> Vec<Vec<f64>> {
-    let is_dominant = |gain: f64| gain > DOMINANT_NATS_A_ROW * rows;
+    let is_dominant = |gain: f64| gain > DOMINANT_NATS_PER_ROW * rows;
     let mut gains: Vec<(f64, usize, usize)> = Vec::new();
     for (group, tested) in variants.iter().enumerate() {
         let criterion = |(i, v): (usize, &Option<VariantEvidence>)| {

@@ -51,12 +51,12 @@ impl Default for Settings {
 
 /// Share of the false alarms that is left where the grain of the encoder limits the band: what it adds follows the motion, and
 /// the null draws understate it three to five times.
-const BEHIND_GRAIN: f64 = 0.25;
+const QUANTISED_LEVEL_RATIO: f64 = 0.25;
 
 impl Settings {
     /// Limits for a recording whose band is limited by the grain of its encoder.
-    pub(crate) fn behind_grain(self) -> Self {
-        Self { family_wise_level: BEHIND_GRAIN * self.family_wise_level, ..self }
+    pub(crate) fn behind_quantisation(self) -> Self {
+        Self { family_wise_level: QUANTISED_LEVEL_RATIO * self.family_wise_level, ..self }
     }
 
     /// Largest family-wise probability and least score on the open rows, for what the locked rows can confirm and for what they

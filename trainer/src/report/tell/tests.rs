@@ -95,7 +95,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         cut_off_hz: 20.0,
         rows: 1500,
         sampling_delay_s: 0.0,
-        put_back_s: 0.0,
+        realigned_by_s: 0.0,
         traces,
     }
 }

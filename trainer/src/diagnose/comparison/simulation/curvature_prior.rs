@@ -5,21 +5,21 @@ use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
 /// Deviation of a knot from the straight line between its neighbours that is expected beforehand, over Coulomb friction.
-const EXPECTED_BEND: f64 = 0.1;
+const EXPECTED_CURVATURE_SHARE: f64 = 0.1;
 
-/// Expected bends of a curve over its knots, each a row beside those of a recording: known to be zero within [`EXPECTED_BEND`].
+/// Expected bends of a curve over its knots, each a row beside those of a recording: known to be zero within [`EXPECTED_CURVATURE_SHARE`].
 #[derive(Clone, Debug)]
-pub(crate) struct Bends {
+pub(crate) struct CurvaturePrior {
     /// Weight of every knot in the bend at each inner one.
     rows: Vec<Vec<f64>>,
 }
 
-impl Bends {
-    /// Bends of a curve over speed whose torque at the knots is about `torque`.
+impl CurvaturePrior {
+    /// CurvaturePrior of a curve over speed whose torque at the knots is about `torque`.
     pub fn of(torque: &[f64]) -> Self {
         let knots: Vec<f64> = (0..torque.len()).map(|j| speed_knot(j, torque.len())).collect();
         let size = quantile(torque.iter().map(|value| value.abs()), 0.5);
-        let weight = 1.0 / (EXPECTED_BEND * size).max(f64::MIN_POSITIVE);
+        let weight = 1.0 / (EXPECTED_CURVATURE_SHARE * size).max(f64::MIN_POSITIVE);
         let rows = (1..knots.len() - 1).map(|j| {
             let share = (knots[j] - knots[j - 1]) / (knots[j + 1] - knots[j - 1]);
             let mut row = vec![0.0; knots.len()];
@@ -53,7 +53,7 @@ mod tests {
         let hat = |seen: usize| (0..5).map(|row| f64::from(row == seen && seen != 1)).collect::<Vec<f64>>();
         let (mut columns, mut target): (Vec<Vec<f64>>, Vec<f64>) = ((0..5).map(hat).collect(), torque.to_vec());
         target[1] = 0.0;
-        let rows = Bends::of(&torque).put_behind(&mut columns, &mut target, 1e-3);
+        let rows = CurvaturePrior::of(&torque).put_behind(&mut columns, &mut target, 1e-3);
         let fitted = least_squares(&columns, &target, &[0..5, rows]).unwrap();
         assert!((fitted[1] - 2.0).abs() < 0.2 && (fitted[3] - 2.6).abs() < 1e-3, "{fitted:?}");
     }
@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn a_straight_line_over_speed_does_not_bend() {
         let line: Vec<f64> = (0..9).map(|j| 1.0 + 3.0 * speed_knot(j, 9)).collect();
-        for row in Bends::of(&line).rows {
+        for row in CurvaturePrior::of(&line).rows {
             let bend: f64 = row.iter().zip(&line).map(|(weight, torque)| weight * torque).sum();
             assert!(bend.abs() < 1e-9, "{bend}");
         }

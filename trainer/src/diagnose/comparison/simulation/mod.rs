@@ -2,9 +2,9 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 mod curvature_prior;
-mod held;
 mod replay;
 mod residual_noise;
+mod simulated_effects;
 
 use crate::diagnose::comparison::columns::{nuisances, speed_hats};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
@@ -16,11 +16,11 @@ use crate::numerics::covariance::of_whitened;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState};
-use curvature_prior::Bends;
-pub use held::FindEffects;
-use held::{HeldEffects, held_by};
-use replay::Left;
-use residual_noise::{Rest, rest_of};
+use curvature_prior::CurvaturePrior;
+use replay::ReplayedResidual;
+use residual_noise::{ResidualNoise, residual_noise};
+pub use simulated_effects::FindEffects;
+use simulated_effects::{SimulatedEffects, simulated_effects};
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -30,7 +30,7 @@ const GRAVITY_TRAVEL_RAD: f64 = 0.2;
 const KNOTS: [usize; 4] = [5, 9, 17, 33];
 
 /// Noise of a simulation over that of the recording below which what a law leaves of it is the error of the law's formulas.
-const QUIET: f64 = 0.5;
+const QUIET_NOISE_RATIO: f64 = 0.5;
 
 /// Why no law can be learned from a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -55,13 +55,13 @@ pub struct InverseLaw {
     given: bool,
     /// Hats over speed.
     knots: usize,
-    held: Option<HeldEffects>,
+    simulated: Option<SimulatedEffects>,
     /// Weights of the friction columns, then of the rigid body's, then of the effects'.
     coefficients: Vec<f64>,
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
-    doubt: Vec<Vec<f64>>,
+    uncertainty: Vec<Vec<f64>>,
     /// What the law leaves of a simulation that is quiet.
-    left: Option<Left>,
+    replay: Option<ReplayedResidual>,
     /// Root mean square of that beside the simulation's noise; zero of one that is not quiet.
     formula_error: f64,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
@@ -76,18 +76,22 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
     let law = learn_with(None, &prepared, given)?;
-    let Some(Rest { noise, .. }) = rest_of(real, &law) else { return Ok(law) };
-    let held = held_by(simulation, &law, noise, find_effects);
-    let mut law = if held.is_none() { law } else { learn_with(held, &prepared, given).unwrap_or(law) };
-    if let Some(rest) = rest_of(simulation, &law).filter(|rest| rest.noise < QUIET * noise) {
-        law.left = Some(Left::of(simulation, &law.torque(&prepared.state)));
+    let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
+    let simulated = simulated_effects(simulation, &law, noise, find_effects);
+    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given).unwrap_or(law) };
+    if let Some(rest) = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise) {
+        law.replay = Some(ReplayedResidual::of(simulation, &law.torque(&prepared.state)));
         law.formula_error = rest.formula_error;
     }
     Ok(law)
 }
 
 /// The law with given effects in it.
-fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Result<InverseLaw, Unlearnable> {
+fn learn_with(
+    simulated: Option<SimulatedEffects>,
+    prepared: &Prepared,
+    given: bool,
+) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
     if rows < LEAST_ROWS {
@@ -103,10 +107,10 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
                 knots,
                 gravity,
                 given,
-                held: held.clone(),
+                simulated: simulated.clone(),
                 coefficients: Vec::new(),
-                doubt: Vec::new(),
-                left: None,
+                uncertainty: Vec::new(),
+                replay: None,
                 formula_error: 0.0,
                 rmse: 0.0,
             };
@@ -124,7 +128,7 @@ fn learn_with(held: Option<HeldEffects>, prepared: &Prepared, given: bool) -> Re
     };
     let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
     let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
-    law.doubt = law.doubts(prepared, &rest, &noise);
+    law.uncertainty = law.uncertain_directions(prepared, &rest, &noise);
     Ok(law)
 }
 
@@ -142,7 +146,7 @@ impl InverseLaw {
         let mut columns = filtered_with_nuisances(prepared, &raw);
         let roughly = least_squares(&columns, &target, &prepared.open_runs())?;
         let noise = root_mean_square(&residual(&columns, &target, &roughly));
-        let bends = Bends::of(&roughly[..self.knots]);
+        let bends = CurvaturePrior::of(&roughly[..self.knots]);
         let fit = |columns: &[Vec<f64>]| {
             let (mut columns, mut target, mut runs) = (columns.to_vec(), target.clone(), prepared.open_runs());
             runs.push(bends.put_behind(&mut columns, &mut target, noise));
@@ -161,12 +165,12 @@ impl InverseLaw {
 
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation: the axes of their
     /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
-    fn doubts(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
+    fn uncertain_directions(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
         let mut runs = prepared.open_runs();
         let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
         let mut columns: Vec<Vec<f64>> = columns.iter().map(|column| noise.whitened(column, &runs)).collect();
         let mut rest = noise.whitened(rest, &runs);
-        runs.push(Bends::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
+        runs.push(CurvaturePrior::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
         let Some(all) = of_whitened(&columns, &rest, &[], &runs) else { return Vec::new() };
         let width = self.coefficients.len();
         let axes = all.view((0, 0), (width, width)).clone_owned().symmetric_eigen();
@@ -209,7 +213,7 @@ impl InverseLaw {
         if self.given {
             columns.extend(state.rigid_body.clone());
         }
-        columns.extend(self.held.iter().flat_map(|held| held.columns(state)));
+        columns.extend(self.simulated.iter().flat_map(|effects| effects.columns(state)));
         columns
     }
 
@@ -231,10 +235,10 @@ impl InverseLaw {
     /// Effects of the catalogue that the simulator holds, with shape and coefficients.
     pub fn effects(&self) -> impl Iterator<Item = (EffectId, &[f64], &[f64])> {
         let mut begin = self.friction_width() + self.rigid_body_width();
-        self.held.iter().flat_map(|held| &held.effects).map(move |held| {
-            let place = begin..begin + held.width;
+        self.simulated.iter().flat_map(|simulated| &simulated.effects).map(move |found| {
+            let place = begin..begin + found.width;
             begin = place.end;
-            (held.effect, &held.shape[..], &self.coefficients[place])
+            (found.effect, &found.shape[..], &self.coefficients[place])
         })
     }
 
@@ -260,7 +264,7 @@ impl InverseLaw {
     #[must_use]
     pub fn at(&self, state: &JointState) -> Reference {
         let columns = self.columns(state);
-        let met = self.left.as_ref().and_then(|left| left.at(state));
+        let met = self.replay.as_ref().and_then(|residual| residual.at(state));
         let unmet = met.as_ref().map_or(1.0, |met| 1.0 - met.share);
         let formula_error = self.formula_error * unmet.sqrt();
         Reference {
@@ -268,9 +272,9 @@ impl InverseLaw {
             rigid_body: self.rigid_body_of(&columns),
             jacobian: coulomb_and_viscous(state),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
-            left: met.map(|met| met.torque),
+            replayed_residual: met.map(|met| met.torque),
             formula_error,
-            doubt: self.doubt.iter().map(|direction| weighted(&columns, direction)).collect(),
+            uncertainty: self.uncertainty.iter().map(|direction| weighted(&columns, direction)).collect(),
             outside: Outside::default(),
             friction: self.friction_curve(),
         }

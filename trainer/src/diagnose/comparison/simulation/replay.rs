@@ -5,11 +5,11 @@ use crate::numerics::statistics::root_mean_square;
 use crate::physics::JointState;
 
 /// Largest difference of the positions, over their travel, at which recording and simulation are of one motion.
-const ONE_MOTION: f64 = 0.02;
+const SAME_MOTION_SHARE: f64 = 0.02;
 
 /// Torque left over time, with the position at which it was left.
 #[derive(Clone, Debug)]
-pub(crate) struct Left {
+pub(crate) struct ReplayedResidual {
     /// Time since the start, s.
     time: Vec<f64>,
     position: Vec<f64>,
@@ -17,14 +17,14 @@ pub(crate) struct Left {
 }
 
 /// What of it a recording meets again.
-pub(crate) struct Met {
+pub(crate) struct Replay {
     /// Torque at every sample, nothing beyond the simulation.
     pub torque: Vec<f64>,
     /// Share of the samples within the simulation.
     pub share: f64,
 }
 
-impl Left {
+impl ReplayedResidual {
     pub fn of(simulation: &Signals, law: &[f64]) -> Self {
         let start = simulation.time.first().copied().unwrap_or(0.0);
         Self {
@@ -35,7 +35,7 @@ impl Left {
     }
 
     /// The torque at the same times of a recording. `None` where that is of another motion.
-    pub fn at(&self, state: &JointState) -> Option<Met> {
+    pub fn at(&self, state: &JointState) -> Option<Replay> {
         let start = state.time.first()?;
         let (mut torque, mut differences) = (Vec::with_capacity(state.len()), Vec::new());
         for (time, position) in state.time.iter().zip(&state.position) {
@@ -55,7 +55,7 @@ impl Left {
         }
         let difference = root_mean_square(&differences);
         let share = differences.len() as f64 / torque.len() as f64;
-        (difference <= ONE_MOTION * state.span()).then_some(Met { torque, share })
+        (difference <= SAME_MOTION_SHARE * state.span()).then_some(Replay { torque, share })
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
             rotary: true,
             ..Signals::default()
         };
-        let left = Left::of(&moving(0.0, 3.0), &[100.0; 400]);
+        let left = ReplayedResidual::of(&moving(0.0, 3.0), &[100.0; 400]);
         let later = left.at(&moving(50.0, 3.0).states()).unwrap();
         assert!((later.torque[250] - 150.0).abs() < 1e-6 && later.torque.last() == Some(&0.0), "{}", later.torque[250]);
         assert!((later.share - 399.0 / 400.0).abs() < 1e-9, "{}", later.share);

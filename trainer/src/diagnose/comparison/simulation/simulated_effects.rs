@@ -21,7 +21,7 @@ pub type FindEffects<'f> = &'f dyn Fn(&Comparison) -> Vec<Fitted>;
 
 /// An effect of a law, at unit coefficients.
 #[derive(Clone, Debug)]
-pub(crate) struct Held {
+pub(crate) struct SimulatedEffect {
     pub effect: EffectId,
     pub shape: Shape,
     /// Number of its columns.
@@ -30,13 +30,13 @@ pub(crate) struct Held {
 
 /// Effects of a simulation, as their columns are worked out: beside the static law alone.
 #[derive(Clone, Debug)]
-pub(crate) struct HeldEffects {
-    pub effects: Vec<Held>,
+pub(crate) struct SimulatedEffects {
+    pub effects: Vec<SimulatedEffect>,
     pub beside: Box<InverseLaw>,
 }
 
 /// Noise that the simulation is given, over that of the recording: what the recording shows is found in the simulation first.
-const NOISE_SHARE: f64 = 1.0 / 3.0;
+const ADDED_NOISE_SHARE: f64 = 1.0 / 3.0;
 
 /// Whether an effect is a function of the state, which another recording has as well, and not of the clock.
 fn belongs_to_the_state(effect: EffectId) -> bool {
@@ -47,26 +47,26 @@ fn belongs_to_the_state(effect: EffectId) -> bool {
 ///
 /// The simulation is given a share of the `noise` of the real recording: below that the formulas of simulator and catalogue
 /// differ, and the recording could not show it.
-pub(crate) fn held_by(
+pub(crate) fn simulated_effects(
     simulation: &Signals,
     law: &InverseLaw,
     noise: f64,
     find_effects: FindEffects,
-) -> Option<HeldEffects> {
+) -> Option<SimulatedEffects> {
     let mut signals = simulation.clone();
-    add_noise(&mut signals, NOISE_SHARE * noise);
+    add_noise(&mut signals, ADDED_NOISE_SHARE * noise);
     let state = signals.states();
     let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
-    let comparison = Comparison::with(signals, Reference { jacobian, doubt: Vec::new(), ..law.at(&state) });
-    let held = find_effects(&comparison).into_iter().filter_map(|found| match found.label {
+    let comparison = Comparison::with(signals, Reference { jacobian, uncertainty: Vec::new(), ..law.at(&state) });
+    let found = find_effects(&comparison).into_iter().filter_map(|found| match found.label {
         Label::Named(effect) if belongs_to_the_state(effect) => {
             let width = found.coefficients.len();
-            (width > 0).then_some(Held { effect, shape: found.shape, width })
+            (width > 0).then_some(SimulatedEffect { effect, shape: found.shape, width })
         }
         _ => None,
     });
-    let effects: Vec<Held> = held.collect();
-    (!effects.is_empty()).then(|| HeldEffects { effects, beside: Box::new(law.clone()) })
+    let effects: Vec<SimulatedEffect> = found.collect();
+    (!effects.is_empty()).then(|| SimulatedEffects { effects, beside: Box::new(law.clone()) })
 }
 
 /// Adds white noise of a deviation behind the filter to the torque.
@@ -78,7 +78,7 @@ fn add_noise(signals: &mut Signals, deviation: f64) {
     signals.torque.iter_mut().zip(&white).for_each(|(torque, noise)| *torque += scale * noise);
 }
 
-impl HeldEffects {
+impl SimulatedEffects {
     /// Torque of every effect per unit coefficient at the states of a recording; zero where the recording lacks a channel.
     pub fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
         let beside = self.beside.columns(state);
@@ -91,9 +91,9 @@ impl HeldEffects {
         }
         let hypotheses = catalogue();
         let hypothesis = |effect: EffectId| hypotheses.iter().find(|hypothesis| hypothesis.id() == effect);
-        let columns = self.effects.iter().flat_map(|held| {
-            let mut columns = hypothesis(held.effect).map(|h| h.columns(&state, &held.shape)).unwrap_or_default();
-            columns.resize_with(held.width, || vec![0.0; state.len()]);
+        let columns = self.effects.iter().flat_map(|of| {
+            let mut columns = hypothesis(of.effect).map(|h| h.columns(&state, &of.shape)).unwrap_or_default();
+            columns.resize_with(of.width, || vec![0.0; state.len()]);
             columns
         });
         columns.collect()
