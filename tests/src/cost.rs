@@ -43,5 +43,5 @@ pub fn count_integer(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
 /// # Errors
 /// Those of [`Emulator::run`].
 pub fn count_rows(emulator: &Emulator, image: &[u8], values: &[f32], inputs: usize) -> Result<Answer> {
-    emulator.run(&Request { image, values, inputs, mode: Mode::Count, floating_point_control: 0 })
+    emulator.run(&Request { image, values, inputs, outputs: 1, mode: Mode::Count, floating_point_control: 0 })
 }

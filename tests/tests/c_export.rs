@@ -146,8 +146,14 @@ fn the_cortex_m4f_computes_the_bits_of_the_runtime() {
         let emulator = Emulator::with_elf(Firmware::find().unwrap().target("cortex-m4f").unwrap(), elf).unwrap();
         let values = rows(&model, ROWS / 10);
         let padded: Vec<f32> = values.iter().flat_map(|value| [*value, 0.0, 0.0, 0.0]).collect();
-        let request =
-            Request { image: &[], values: &padded, inputs: 4, mode: Mode::Evaluate, floating_point_control: 0 };
+        let request = Request {
+            image: &[],
+            values: &padded,
+            inputs: 4,
+            outputs: 1,
+            mode: Mode::Evaluate,
+            floating_point_control: 0,
+        };
         let answer = emulator.run(&request).unwrap();
         assert_same_bits(&name, &values, &answer.outputs, &expected(&model, &values));
     }

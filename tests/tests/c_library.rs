@@ -32,7 +32,7 @@ fn example(folder: &Path, definitions: &[String]) -> Emulator {
 }
 
 fn torques(emulator: &Emulator, image: &[u8], values: &[f32]) -> Result<Answer> {
-    emulator.run(&Request { image, values, inputs: 4, mode: Mode::Evaluate, floating_point_control: 0 })
+    emulator.run(&Request { image, values, inputs: 4, outputs: 1, mode: Mode::Evaluate, floating_point_control: 0 })
 }
 
 /// A law with corrections that remember, over all channels of the example.
