@@ -10,7 +10,7 @@ use frikan_runtime::shared::units::{Quantity, Unit};
 mod effects;
 mod network;
 
-pub use effects::{every_effect, with_effects, with_every_effect};
+pub use effects::{by_velocity, every_effect, table_with_presliding, with_effects, with_every_effect};
 pub use network::{network, network_1_5_1, network_three_inputs, network_two_inputs};
 
 /// Cells of the firmware's models.

@@ -84,6 +84,11 @@ fn slow_clock(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
     added(effect, memory, &Seen { dt: 1.01 * seen.dt, ..*seen })
 }
 
+/// Takes every way for a hundredth longer than it is.
+fn long_way(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
+    added(effect, memory, &Seen { travel: 1.01 * seen.travel, ..*seen })
+}
+
 fn answers(model: &TestModel, calls: &[Call], effect: Wrong) -> Vec<Answer> {
     let mut compensator = Reference::new(model, effect);
     calls.iter().map(|call| compensator.step(call)).collect()
@@ -104,6 +109,7 @@ fn remembers(effect: &Effect) -> bool {
         velocity: 1.0,
         position: 0.0,
         angle: 0.0,
+        travel: 0.1,
         load: 0.0,
         temperature: 0.0,
         law: 1.0,
@@ -128,10 +134,13 @@ fn a_wrong_effect_is_caught_whichever_it_is() {
         let mut mutations = of_all.to_vec();
         if remembers(&effect) {
             mutations.extend(of_memory);
-            // A play knows distances alone.
-            if !matches!(effect, Effect::Play { .. }) {
-                mutations.push(("slow clock", slow_clock));
-            }
+        }
+        if matches!(effect, Effect::FrictionalLag { .. } | Effect::WarmUp { .. } | Effect::DwellBreakaway { .. }) {
+            mutations.push(("slow clock", slow_clock));
+        }
+        if matches!(effect, Effect::Presliding { .. } | Effect::DwellBreakaway { .. } | Effect::WindupHysteresis { .. })
+        {
+            mutations.push(("long way", long_way));
         }
         let model = with_effects(&[effect]);
         let calls = sequence(&model, LEAST_STEPS);

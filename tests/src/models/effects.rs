@@ -1,6 +1,6 @@
 //! Models with correction terms.
 
-use frikan_runtime::shared::effect::{Effect, Harmonic, Kind, MAX_EFFECTS};
+use frikan_runtime::shared::effect::{Effect, Element, Harmonic, Kind, MAX_EFFECTS};
 use frikan_runtime::shared::model::Input;
 use frikan_runtime::shared::table::{Cell, Table, Uniform, UniformShape};
 use frikan_runtime::shared::units::{Quantity, Unit};
@@ -41,12 +41,16 @@ pub fn every_effect() -> Vec<(&'static str, Effect)> {
     let first_cell = symmetric_table().cells.len() as u16;
     let table = Table::Uniform(Uniform::new(UniformShape { first_cell, cells: 1, low: -2.0, high: 2.0 }));
     let of_table = |kind| Effect::PositionTable { kind, smoothing_velocity, table };
+    let temperature =
+        |decay| Effect::Temperature { reference: 20.0, coulomb: -0.1, viscous: -0.05, decay, smoothing_velocity };
     vec![
+        ("FrictionalLag", Effect::FrictionalLag { time_constant: 0.01 }),
         ("Coulomb", Effect::Coulomb { coulomb: 0.5, viscous: 0.1, smoothing_velocity }),
         ("Stribeck", Effect::Stribeck { amplitude: 2.0, velocity: 0.1, exponent: 0.5, smoothing_velocity }),
         ("PowerViscous", Effect::PowerViscous { coefficient: 1.0, exponent: 0.7, smoothing_velocity }),
         ("Asymmetry", Effect::Asymmetry { coulomb: 0.5, viscous: 0.1, smoothing_velocity }),
-        ("Temperature", Effect::Temperature { reference: 20.0, coulomb: -0.1, viscous: -0.05, smoothing_velocity }),
+        ("Temperature", temperature(0.0)),
+        ("Temperature of a grease", temperature(0.03)),
         (
             "WarmUp",
             Effect::WarmUp { time_constant: 60.0, coulomb: -0.1, viscous: 0.1, power_limit: 20.0, smoothing_velocity },
@@ -62,11 +66,8 @@ pub fn every_effect() -> Vec<(&'static str, Effect)> {
                 smoothing_velocity,
             },
         ),
-        ("FrictionalLag", Effect::FrictionalLag { time_constant: 0.01 }),
-        (
-            "Presliding",
-            Effect::Presliding { coulomb: 5.0, breakaway: 7.0, velocity: 0.1, stiffness: 5.0e3, smoothing_velocity },
-        ),
+        ("Presliding", presliding(1)),
+        ("Presliding of four elements", presliding(4)),
         (
             "DwellBreakaway",
             Effect::DwellBreakaway {
@@ -99,5 +100,37 @@ pub fn with_every_effect() -> Vec<(String, TestModel)> {
         let (names, effects): (Vec<_>, Vec<_>) = chunk.iter().cloned().unzip();
         (names.join(", "), with_effects(&effects))
     });
-    alone.chain(together).collect()
+    let short = [1, 2].into_iter().flat_map(|inputs| {
+        let one = (format!("table of {inputs} inputs with one element"), table_with_presliding(inputs, 1));
+        [one, (format!("table of {inputs} inputs with four elements"), table_with_presliding(inputs, 4))]
+    });
+    alone.chain(together).chain([("ways by the velocity".to_owned(), by_velocity())]).chain(short).collect()
+}
+
+/// A table of velocity, or of velocity beside a position, with presliding and nothing else: what a drive has most.
+#[must_use]
+pub fn table_with_presliding(inputs: usize, elements: usize) -> TestModel {
+    let mut model = with_effects(&[presliding(elements)]);
+    model.inputs.truncate(inputs);
+    model.validate().expect("the tests' models are valid");
+    model
+}
+
+/// Presliding of up to four elements.
+fn presliding(count: usize) -> Effect {
+    let elements = [(5.0, 1.0e-3), (3.0, 4.0e-3), (2.0, 1.6e-2), (1.0, 6.4e-2)];
+    let elements = elements.into_iter().take(count).map(|(torque, distance)| Element { torque, distance });
+    Effect::Presliding { smoothing_velocity: SMOOTHING, elements: elements.collect() }
+}
+
+/// A table that reads velocity alone, with the effects that go by a way.
+#[must_use]
+pub fn by_velocity() -> TestModel {
+    let goes_by_a_way = |effect: &Effect| {
+        matches!(effect, Effect::Presliding { .. } | Effect::DwellBreakaway { .. } | Effect::WindupHysteresis { .. })
+    };
+    let mut model = symmetric_table();
+    model.effects.extend(every_effect().into_iter().map(|(_, effect)| effect).filter(goes_by_a_way));
+    model.validate().expect("the tests' models are valid");
+    model
 }

@@ -15,6 +15,8 @@ pub struct Seen<'a> {
     pub position: f32,
     /// Position as measured, rad.
     pub angle: f32,
+    /// Distance since the sample before, rad.
+    pub travel: f32,
     /// N m.
     pub load: f32,
     /// degC.
@@ -38,8 +40,8 @@ pub struct Added {
     pub velocity: f32,
 }
 
-/// What an effect keeps from one sample to the next, at most three numbers; nothing before the first sample.
-pub type Memory = Option<[f32; 3]>;
+/// What an effect keeps from one sample to the next, at most four numbers; nothing before the first sample.
+pub type Memory = Option<[f32; 4]>;
 
 /// Distances after which a latched breakaway torque counts as spent.
 const SPENT: f32 = 20.0;
@@ -61,8 +63,10 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
         Effect::Asymmetry { coulomb, viscous, smoothing_velocity } => {
             coulomb * smooth(*smoothing_velocity).abs() + viscous * v.abs()
         }
-        Effect::Temperature { reference, coulomb, viscous, smoothing_velocity } => {
-            (coulomb * smooth(*smoothing_velocity) + viscous * v) * (seen.temperature - reference)
+        Effect::Temperature { reference, coulomb, viscous, decay, smoothing_velocity } => {
+            let warmth = seen.temperature - reference;
+            let thinned = if *decay == 0.0 { warmth } else { (1.0 - exp(-(decay * warmth))) / decay };
+            coulomb * smooth(*smoothing_velocity) * warmth + viscous * v * thinned
         }
         Effect::WarmUp { time_constant, coulomb, viscous, power_limit, smoothing_velocity } => {
             let heat = warmed(memory, (*time_constant, *power_limit), seen);
@@ -70,31 +74,32 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
         }
         Effect::Load { mean, difference, quadratic, stribeck, velocity, smoothing_velocity } => {
             let (s, load) = (smooth(*smoothing_velocity), seen.load);
-            let linear = mean * load.abs() * s + difference * load * s.abs();
-            linear * (1.0 + stribeck * exp(-square(v / velocity))) + quadratic * load * load * s
+            let at_speed = mean + stribeck * exp(-square(v / velocity));
+            at_speed * load.abs() * s + difference * load * s.abs() + quadratic * load * load * s
         }
         Effect::FrictionalLag { time_constant } => {
-            let [before, ..] = memory.unwrap_or([v, 0.0, 0.0]);
+            let [before, ..] = memory.unwrap_or([v, 0.0, 0.0, 0.0]);
             let lagged = before + lag_share(seen.dt / time_constant) * (v - before);
-            *memory = Some([lagged, 0.0, 0.0]);
+            *memory = Some([lagged, 0.0, 0.0, 0.0]);
             return Added { velocity: lagged, ..Added::default() };
         }
-        Effect::Presliding { coulomb, breakaway, velocity, stiffness, smoothing_velocity } => {
-            let g = coulomb + (breakaway - coulomb) * exp(-square(v / velocity));
-            let moved = v * seen.dt;
-            let [z, ..] = memory.unwrap_or_default();
-            let z = approached(z, g * direction(moved), moved.abs() * stiffness / g);
-            let z = z.clamp(-breakaway.max(*coulomb), breakaway.max(*coulomb));
-            *memory = Some([z, 0.0, 0.0]);
-            z - g * smooth(*smoothing_velocity)
+        Effect::Presliding { smoothing_velocity, elements } => {
+            let mut stretched = memory.unwrap_or_default();
+            for (z, element) in stretched.iter_mut().zip(elements) {
+                *z = turned_over(*z, seen.travel, element.distance);
+            }
+            *memory = Some(stretched);
+            let held = elements.iter().zip(stretched).fold(0.0, |sum, (element, z)| sum + element.torque * z);
+            let slipping = elements.iter().fold(0.0, |sum, element| sum + element.torque);
+            held - slipping * smooth(*smoothing_velocity)
         }
         Effect::DwellBreakaway { gain, time, distance, rest_velocity, dwell_limit, smoothing_velocity } => {
-            let [dwell, travelled, latched] = memory.unwrap_or_default();
+            let [dwell, travelled, latched, _] = memory.unwrap_or_default();
             let now = if v.abs() < *rest_velocity {
                 let dwell = (dwell + seen.dt).min(*dwell_limit);
-                [dwell, 0.0, gain * log(1.0 + dwell / time)]
+                [dwell, 0.0, gain * log(1.0 + dwell / time), 0.0]
             } else {
-                [0.0, (travelled + v.abs() * seen.dt / distance).min(SPENT), latched]
+                [0.0, (travelled + seen.travel.abs() / distance).min(SPENT), latched, 0.0]
             };
             *memory = Some(now);
             now[2] * exp(-now[1]) * smooth(*smoothing_velocity)
@@ -111,16 +116,15 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
         }
         Effect::Play { half_width, torque } => {
             let q = seen.position;
-            let [link, ..] = memory.unwrap_or([q, 0.0, 0.0]);
+            let [link, ..] = memory.unwrap_or([q, 0.0, 0.0, 0.0]);
             let link = link.max(q - half_width).min(q + half_width);
-            *memory = Some([link, 0.0, 0.0]);
+            *memory = Some([link, 0.0, 0.0, 0.0]);
             return Added { torque: torque * ((q - link) / half_width), position: -(q - link), velocity: 0.0 };
         }
         Effect::WindupHysteresis { torque, distance } => {
-            let moved = v * seen.dt;
             let [z, ..] = memory.unwrap_or_default();
-            let z = approached(z, direction(moved), moved.abs() / distance).clamp(-1.0, 1.0);
-            *memory = Some([z, 0.0, 0.0]);
+            let z = turned_over(z, seen.travel, *distance);
+            *memory = Some([z, 0.0, 0.0, 0.0]);
             torque * z
         }
         Effect::Spring { stiffness, rest } => stiffness * (seen.position - rest),
@@ -128,25 +132,21 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
     Added { torque, ..Added::default() }
 }
 
-/// `target + (from - target) exp(-ratio)`.
-fn approached(from: f32, target: f32, ratio: f32) -> f32 {
-    target + (from - target) * exp(-ratio)
-}
-
-/// -1, 0 or 1.
-fn direction(moved: f32) -> f32 {
-    if moved == 0.0 { 0.0 } else { moved.signum() }
+/// `z r + (1 - r) S` with `r = exp(-|dq| / distance)` and `S` the sign of `dq`.
+fn turned_over(z: f32, travel: f32, distance: f32) -> f32 {
+    let left = exp(-(travel.abs() / distance));
+    z * left + (1.0 - left) * travel.signum()
 }
 
 /// The filtered power, W; the second number of the memory is what rounding put in too much (Kahan 1965).
 fn warmed(memory: &mut Memory, (time_constant, power_limit): (f32, f32), seen: &Seen<'_>) -> f32 {
-    let [heat, excess, _] = memory.unwrap_or_default();
+    let [heat, excess, ..] = memory.unwrap_or_default();
     let power = (seen.law * seen.velocity).abs().min(power_limit);
     let increment = lag_share(seen.dt / time_constant) * (power - heat) - excess;
     let sum = heat + increment;
     let excess = (sum - heat) - increment;
     let heat = sum.max(0.0).min(power_limit);
-    *memory = Some([heat, excess, 0.0]);
+    *memory = Some([heat, excess, 0.0, 0.0]);
     heat
 }
 

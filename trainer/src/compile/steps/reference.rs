@@ -19,6 +19,8 @@ pub struct Reference<'a, const CELLS: usize, E> {
     model: &'a Model<CELLS>,
     effect: E,
     memories: Vec<Memory>,
+    /// Position of the sample before.
+    position: Option<f32>,
     /// What was put out last.
     torque: f32,
 }
@@ -27,26 +29,28 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
     /// A compensator at its start.
     #[must_use]
     pub fn new(model: &'a Model<CELLS>, effect: E) -> Self {
-        Self { model, effect, memories: vec![None; model.effects.len()], torque: 0.0 }
+        Self { model, effect, memories: vec![None; model.effects.len()], position: None, torque: 0.0 }
     }
 
     /// The answer to a call.
     pub fn step(&mut self, call: &Call) -> Answer {
         if call.reset {
             self.memories.fill(None);
+            self.position = None;
             self.torque = 0.0;
         }
         let [gain, most, slew] = call.limits.map(|limit| if limit.is_finite() { limit.max(0.0) } else { 0.0 });
         let channels = channels(self.model, &call.measurement);
-        let is_usable = channels.iter().all(|channel| channel.is_finite()) && (0.0..=LONGEST_SAMPLE).contains(&call.dt);
+        let is_usable = channels.iter().all(|channel| channel.is_finite())
+            && (0.0..=LONGEST_SAMPLE).contains(&call.dt)
+            && call.dt.is_sign_positive();
         if !is_usable {
             self.torque = 0.0;
             return Answer::new(0.0, 0.0, false);
         }
         let friction = self.friction(&channels, &call.measurement, call.dt);
-        let wanted = (gain * friction.torque).clamp(-most, most);
         let reach = slew * call.dt;
-        let change = (wanted - self.torque).clamp(-reach, reach);
+        let change = (gain * friction.torque - self.torque).clamp(-reach, reach);
         self.torque = (self.torque + change).clamp(-most, most);
         Answer::new(self.torque, friction.position, true)
     }
@@ -57,10 +61,16 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
         let held: Vec<f32> = inputs.iter().zip(channels).map(|(input, x)| x.clamp(input.low, input.high)).collect();
         let of = |quantity: Quantity| inputs.iter().zip(&held).find(|(input, _)| input.quantity == quantity);
         let held_or_zero = |quantity| of(quantity).map_or(0.0, |(_, value)| *value);
+        let velocity = held_or_zero(Quantity::Velocity);
+        let before = self.position.replace(measurement.position);
         let mut seen = Seen {
-            velocity: held_or_zero(Quantity::Velocity),
+            velocity,
             position: held_or_zero(Quantity::Position),
             angle: measurement.position,
+            travel: match of(Quantity::Position) {
+                Some(_) => before.map_or(0.0, |before| measurement.position - before),
+                None => velocity * dt,
+            },
             load: held_or_zero(Quantity::Load),
             temperature: held_or_zero(Quantity::Temperature),
             law: 0.0,
