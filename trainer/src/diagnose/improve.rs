@@ -8,7 +8,7 @@ use super::names::plain_name;
 use super::outcome::Diagnosis;
 use super::signals::Signals;
 use super::simulation::InverseLaw;
-use crate::compile::effects::{Context, Terms};
+use crate::compile::effects::{Context, Terms, has_room_for_position};
 use crate::compile::formula::{Curve, Parity};
 use crate::compile::interval::Interval;
 use crate::compile::series::{ORDERS, Series};
@@ -63,7 +63,7 @@ pub fn improve(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>, uni
         power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
         power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
         duration: state.time.last()? - state.time.first()?,
-        may_read_position: may_read_position(origin),
+        may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
     };
     let mut terms = Terms { rigid_body: rigid_body(diagnosis, signals, origin), ..Terms::default() };
     if let Origin::Model(model) = origin {
@@ -220,16 +220,6 @@ fn table_model(
         effects: heapless::Vec::new(),
     });
     (model, cells)
-}
-
-/// Whether a term may read the position: a network reads what it was fitted on, and a model so many channels.
-fn may_read_position(origin: Origin<'_>) -> bool {
-    match origin {
-        Origin::Model(model) if matches!(model.law, Law::Network(_)) || model.inputs.is_full() => {
-            model.inputs.iter().any(|input| input.quantity == Quantity::Position)
-        }
-        _ => true,
-    }
 }
 
 /// Adds the channels that the terms read; a table and a formula go on reading theirs, a network reads all.
