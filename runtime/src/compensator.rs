@@ -4,9 +4,11 @@ use frikan_shared::authentication::Trust;
 use frikan_shared::image::ImageError;
 use frikan_shared::model::Model;
 
-use crate::evaluate::limited;
-use crate::friction::{FrictionState, Measurement};
+use crate::common::{TableWithPresliding, table_alone};
+use crate::evaluate::within;
+use crate::friction::{Friction, FrictionState, Measurement};
 use crate::slots::load;
+use crate::usable::from_0_to;
 
 /// Longest sample period that a step takes for real, s.
 const LONGEST_SAMPLE: f32 = 1.0;
@@ -24,7 +26,7 @@ impl Limits {
     /// model's output; `slew`: its largest change in a second. What is negative or not finite counts as 0, that is, off.
     #[must_use]
     pub fn new(gain: f32, torque: f32, slew: f32) -> Self {
-        let sane = |limit: f32| if limit >= 0.0 && limit.is_finite() { limit } else { 0.0 };
+        let sane = |limit: f32| if limit > 0.0 && limit.is_finite() { limit } else { 0.0 };
         Self { gain: sane(gain), torque: sane(torque), slew: sane(slew) }
     }
 }
@@ -55,8 +57,15 @@ pub struct Compensation {
 #[derive(Clone, Debug)]
 pub struct Compensator<const CELLS: usize> {
     model: Result<Model<CELLS>, ImageError>,
+    running: Running,
+}
+
+/// What goes on from one step to the next.
+#[derive(Clone, Debug)]
+struct Running {
     state: FrictionState,
     limits: Limits,
+    /// What was put out last.
     torque: f32,
 }
 
@@ -82,8 +91,7 @@ impl<const CELLS: usize> Compensator<CELLS> {
     /// Compensation by a decoded model, or off for the reason given.
     #[must_use]
     pub fn with_model(model: Result<Model<CELLS>, ImageError>, limits: Limits) -> Self {
-        let state = FrictionState::new(model.as_ref().map_or(&[][..], |model| model.effects.as_slice()));
-        Self { model, state, limits, torque: 0.0 }
+        Self { model, running: Running { state: FrictionState::new(), limits, torque: 0.0 } }
     }
 
     /// The model, where there is one.
@@ -100,34 +108,55 @@ impl<const CELLS: usize> Compensator<CELLS> {
 
     /// Changes the limits between two steps; the slew limit holds across the change.
     pub fn set_limits(&mut self, limits: Limits) {
-        self.limits = limits;
+        self.running.limits = limits;
     }
 
     /// Forgets what the effects remember and starts from zero torque.
     pub fn reset(&mut self) {
-        self.state = FrictionState::new(self.model.as_ref().map_or(&[][..], |model| model.effects.as_slice()));
-        self.torque = 0.0;
+        self.running.state = FrictionState::new();
+        self.running.torque = 0.0;
     }
 
     /// The compensation after a sample period of `dt` seconds. Call it at a fixed rate.
     ///
-    /// Zero torque at once, and the slew starting from there, when anything that the model reads is not finite.
+    /// Zero torque at once, and the slew starting from there, when anything that the model reads is not finite or `dt` is not from 0 to 1 s;
+    /// what the effects remember is then as before. With a floating-point unit the number of instructions depends on the model alone.
     #[must_use]
     pub fn step(&mut self, measurement: &Measurement, dt: f32) -> Compensation {
         let model = match &self.model {
             Ok(model) => model,
             Err(error) => return Compensation { torque: 0.0, position: 0.0, status: Status::NoModel(*error) },
         };
-        let channels = measurement.channels(&model.inputs);
-        if !(0.0..=LONGEST_SAMPLE).contains(&dt) || channels.iter().any(|channel| !channel.is_finite()) {
-            self.torque = 0.0;
-            return Compensation { torque: 0.0, position: 0.0, status: Status::NotFinite };
+        let (running, is_step) = (&mut self.running, from_0_to(LONGEST_SAMPLE, dt));
+        // The commonest models here, the others in a function of its own: a short way saves no registers of a long one.
+        if let Some(friction) = table_alone(model, measurement, is_step) {
+            running.put_out(friction, dt)
+        } else if let Some(table) = TableWithPresliding::of(model) {
+            let friction = table.step(&mut running.state, measurement, dt, is_step);
+            running.put_out(friction, dt)
+        } else {
+            running.step_any(model, measurement, dt)
         }
-        let friction = self.state.step(model, measurement, dt);
-        let wanted = limited(self.limits.gain * friction.torque, self.limits.torque);
-        let change = limited(wanted - self.torque, self.limits.slew * dt);
-        self.torque = limited(self.torque + change, self.limits.torque);
-        Compensation { torque: self.torque, position: friction.position, status: Status::Active }
+    }
+}
+
+impl Running {
+    /// A step of any model.
+    #[inline(never)]
+    fn step_any<const CELLS: usize>(&mut self, model: &Model<CELLS>, sample: &Measurement, dt: f32) -> Compensation {
+        let friction = self.state.step_within(model, sample, dt, LONGEST_SAMPLE);
+        self.put_out(friction, dt)
+    }
+
+    /// As near to the friction as the limits allow; 0 at once where the sample is of no use.
+    #[inline(always)]
+    fn put_out(&mut self, friction: Friction, dt: f32) -> Compensation {
+        let limits = &self.limits;
+        // Nothing here is NaN but where the sample is of no use, and then nothing of it is kept.
+        let change = within(limits.gain * friction.torque - self.torque, limits.slew * dt);
+        self.torque = friction.usable.or_zero(within(self.torque + change, limits.torque));
+        let status = if friction.usable.is_usable() { Status::Active } else { Status::NotFinite };
+        Compensation { torque: self.torque, position: friction.position, status }
     }
 }
 

@@ -21,16 +21,19 @@ pub fn limited(value: f32, limit: f32) -> f32 {
     unless(magnitude > f32::INFINITY.to_bits(), f32::from_bits(held))
 }
 
-/// The channels of `inputs`, each held to its trained range, and 0 for others; NaN stays NaN.
+/// `value` held to `[-limit, limit]`, for values and limits that are no NaN and limits that are not negative; some number for others.
 #[must_use]
 #[inline(always)]
-pub fn held(channels: &[Input], inputs: &[f32; MAX_INPUTS]) -> [f32; MAX_INPUTS] {
-    let mut held = [0.0; MAX_INPUTS];
-    for ((held, &input), channel) in held.iter_mut().zip(inputs).zip(channels) {
-        let below = if input > channel.high { channel.high } else { input };
-        *held = if below < channel.low { channel.low } else { below };
-    }
-    held
+pub(crate) fn within(value: f32, limit: f32) -> f32 {
+    f32::from_bits(value.abs().to_bits().min(limit.to_bits()) | (value.to_bits() & SIGN_BIT))
+}
+
+/// A channel held to its trained range; NaN stays NaN.
+#[must_use]
+#[inline(always)]
+pub fn held(input: &Input, channel: f32) -> f32 {
+    let below = if channel > input.high { input.high } else { channel };
+    if below < input.low { input.low } else { below }
 }
 
 /// Friction that the static law of `model` gives for `inputs`, in the order of the model's channels; channels that the
@@ -65,7 +68,10 @@ fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_I
 
 #[inline(never)]
 fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS], program: &Program) -> f32 {
-    let inputs = held(&model.inputs, inputs);
+    let mut inputs = *inputs;
+    for (value, input) in inputs.iter_mut().zip(&model.inputs) {
+        *value = held(input, *value);
+    }
     let any_nan = inputs.iter().fold(false, |any, input| any | input.is_nan());
     limited(unless(any_nan, run(program, &inputs)), model.output_limit)
 }

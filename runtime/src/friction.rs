@@ -5,8 +5,9 @@ use frikan_shared::elementary;
 use frikan_shared::model::{Input, MAX_INPUTS, Model, RigidBody};
 use frikan_shared::units::Quantity;
 
-use crate::effects::{Motion, State, contribution, frictional_lag};
-use crate::evaluate::{evaluate, held, limited};
+use crate::effects::{self, Contribution, Memory, Motion, contribution, frictional_lag, travel};
+use crate::evaluate::{evaluate, limited};
+use crate::usable::{Usable, finite, from_0_to};
 
 /// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,16 +33,22 @@ impl Measurement {
         let mut channels = [0.0; MAX_INPUTS];
         let mut others = self.other.iter();
         for (channel, input) in channels.iter_mut().zip(inputs) {
-            *channel = match input.quantity {
-                Quantity::Velocity => self.velocity,
-                Quantity::Position => self.position,
-                Quantity::Acceleration => self.acceleration,
-                Quantity::Load => self.load,
-                Quantity::Temperature => self.temperature,
-                Quantity::Other(_) => others.next().copied().unwrap_or(0.0),
-            };
+            *channel = self.channel(&input.quantity, &mut others);
         }
         channels
+    }
+
+    /// The channel of a quantity; one without a standard quantity is the next of `others`.
+    #[inline(always)]
+    pub(crate) fn channel(&self, quantity: &Quantity, others: &mut core::slice::Iter<'_, f32>) -> f32 {
+        match quantity {
+            Quantity::Velocity => self.velocity,
+            Quantity::Position => self.position,
+            Quantity::Acceleration => self.acceleration,
+            Quantity::Load => self.load,
+            Quantity::Temperature => self.temperature,
+            Quantity::Other(_) => others.next().copied().unwrap_or(0.0),
+        }
     }
 }
 
@@ -52,33 +59,32 @@ pub struct Friction {
     pub torque: f32,
     /// What the effects add to the link's position against the motor's, rad.
     pub position: f32,
+    /// Whether all that the model reads was finite; else there is no friction, and the memory is as it was.
+    pub usable: Usable,
 }
 
-/// The memory of a model's effects.
-#[derive(Clone, Debug, PartialEq)]
+/// The memory of a model's effects, and of the way.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionState {
-    states: [State; MAX_EFFECTS],
+    pub(crate) memories: [Memory; MAX_EFFECTS],
+    pub(crate) travel: Memory,
 }
 
 impl FrictionState {
     /// At rest, cold, nothing wound up.
     #[must_use]
-    pub fn new(effects: &[Effect]) -> Self {
-        let mut states = [State::None; MAX_EFFECTS];
-        for (state, effect) in states.iter_mut().zip(effects) {
-            *state = State::new(effect);
-        }
-        Self { states }
+    pub fn new() -> Self {
+        Self::default()
     }
 
     /// At rest, nothing wound up, and as warm as `effects` are after a rest of so many seconds; cold where the rest is not
     /// positive, for then nothing is known of it.
     #[must_use]
     pub fn after_rest(&self, effects: &[Effect], rest: f32) -> Self {
-        let mut after = Self::new(effects);
+        let mut after = Self::default();
         if rest > 0.0 {
-            for ((state, effect), before) in after.states.iter_mut().zip(effects).zip(&self.states) {
-                *state = before.after_rest(effect, rest);
+            for ((memory, effect), before) in after.memories.iter_mut().zip(effects).zip(&self.memories) {
+                *memory = effects::after_rest(effect, before, rest);
             }
         }
         after
@@ -86,34 +92,66 @@ impl FrictionState {
 
     /// Advances by `dt` seconds and returns the friction at the end of them.
     ///
-    /// NaN in a channel that the model reads gives no friction and leaves the memory as it was; `dt` must be finite and
-    /// not negative, and counts as 0 otherwise.
+    /// A channel that the model reads and that is not finite, and a `dt` that is negative or not finite, give no friction and leave the
+    /// memory as it was.
     #[must_use]
     pub fn step<const CELLS: usize>(&mut self, model: &Model<CELLS>, measurement: &Measurement, dt: f32) -> Friction {
-        let mut channels = measurement.channels(&model.inputs);
-        if channels.iter().any(|channel| channel.is_nan()) {
-            return Friction::default();
+        self.step_within(model, measurement, dt, f32::MAX)
+    }
+
+    /// As [`FrictionState::step`], for a `dt` of at most `longest`. No branch depends on the sample.
+    #[inline(always)]
+    pub(crate) fn step_within<const CELLS: usize>(
+        &mut self,
+        model: &Model<CELLS>,
+        measurement: &Measurement,
+        dt: f32,
+        longest: f32,
+    ) -> Friction {
+        if model.effects.is_empty() {
+            return law_alone(model, measurement, from_0_to(longest, dt));
         }
-        let dt = if dt > 0.0 && dt.is_finite() { dt } else { 0.0 };
-        let mut motion = Motion::new(&model.inputs, &held(&model.inputs, &channels), measurement.position, dt);
-        for (effect, state) in model.effects.iter().zip(&mut self.states) {
-            if let (Effect::FrictionalLag { time_constant }, State::Lag(lag)) = (effect, state) {
-                let lagged = frictional_lag::step(*time_constant, lag, &motion);
-                for (channel, input) in channels.iter_mut().zip(&model.inputs) {
-                    *channel = if input.quantity == Quantity::Velocity { lagged } else { *channel };
-                }
+        let mut motion = Motion { angle: measurement.position, dt, ..Motion::default() };
+        let mut channels = [0.0; MAX_INPUTS];
+        let mut others = measurement.other.iter();
+        let (mut usable, mut reads_position) = (from_0_to(longest, dt), false);
+        for (channel, input) in channels.iter_mut().zip(&model.inputs) {
+            *channel = measurement.channel(&input.quantity, &mut others);
+            usable &= finite(*channel);
+            reads_position |= input.quantity == Quantity::Position;
+            motion.take(input, *channel);
+        }
+        let usable = Usable::where_negative(usable);
+        motion.usable = usable;
+        motion.travel = motion.velocity * dt;
+        if reads_position {
+            motion.travel = travel::step(&mut self.travel, motion.angle, usable);
+        }
+        if let ([Effect::FrictionalLag { time_constant }, ..], [memory, ..]) = (&model.effects[..], &mut self.memories)
+        {
+            let lagged = frictional_lag::step(*time_constant, memory, &motion);
+            for (channel, input) in channels.iter_mut().zip(&model.inputs) {
+                *channel = if input.quantity == Quantity::Velocity { lagged } else { *channel };
             }
         }
         motion.law_torque = evaluate(model, &channels);
-        let mut friction = Friction { torque: motion.law_torque, position: 0.0 };
-        for (effect, state) in model.effects.iter().zip(&mut self.states) {
-            let added = contribution(effect, state, &motion, &model.cells);
-            friction.torque += added.torque;
-            friction.position += added.position;
+        let mut sum = Contribution::torque(motion.law_torque);
+        for (effect, memory) in model.effects.iter().zip(&mut self.memories) {
+            let added = contribution(effect, memory, &motion, &model.cells);
+            sum.torque += added.torque;
+            sum.position += added.position;
         }
-        friction.torque = limited(friction.torque, model.output_limit);
-        friction
+        let torque = usable.or_zero(limited(sum.torque, model.output_limit));
+        Friction { torque, position: usable.or_zero(sum.position), usable }
     }
+}
+
+/// The friction of a model without effects; `is_step` is negative where the sample period is one.
+#[inline(never)]
+fn law_alone<const CELLS: usize>(model: &Model<CELLS>, measurement: &Measurement, is_step: i32) -> Friction {
+    let channels = measurement.channels(&model.inputs);
+    let usable = Usable::where_negative(channels.iter().fold(is_step, |usable, channel| usable & finite(*channel)));
+    Friction { torque: usable.or_zero(evaluate(model, &channels)), position: 0.0, usable }
 }
 
 /// Rigid-body torque in force for one sample: `inertia a + gravity_sin sin q + gravity_cos cos q + offset + given_scale given`.

@@ -9,6 +9,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod common;
 pub mod compensator;
 pub mod effects;
 pub mod evaluate;
@@ -19,6 +20,7 @@ pub mod joints;
 pub mod network;
 pub mod slots;
 pub mod table;
+pub mod usable;
 
 #[cfg(test)]
 mod test_models;

@@ -72,12 +72,19 @@ pub fn cubic(cell: &Cell, place: Place) -> f32 {
     f32::from_bits(value.to_bits() ^ place.sign)
 }
 
+/// The value of a geometric table at `input`; that at an end for NaN.
+#[must_use]
+#[inline(always)]
+pub fn geometric_value<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS>, input: f32) -> f32 {
+    let place = place_geometric(layout, input);
+    cubic(pool.at(place.row), place)
+}
+
 /// The value of a geometric table at `input`; 0 for NaN.
 #[must_use]
 #[inline(always)]
 pub fn evaluate_geometric<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS>, input: f32) -> f32 {
-    let place = place_geometric(layout, input);
-    let value = cubic(pool.at(place.row), place);
+    let value = geometric_value(layout, pool, input);
     // NaN is told from the bits of |v| + c, which are at hand.
     let is_nan = (input.abs() + layout.offset).to_bits() > f32::INFINITY.to_bits();
     f32::from_bits(if is_nan { 0 } else { value.to_bits() })

@@ -1,8 +1,12 @@
 //! The correction terms that a diagnosis adds to a law, each with its coefficients.
 //!
-//! Notation: `v` velocity, `q` position, `dt` sample period, `dq = v dt`, `s(v) = tanh(v / smoothing_velocity)` a smoothed sign.
-//! Every term costs the same at every step, keeps a bounded state, and reads its channels held to their trained
-//! ranges (the angle of a ripple excepted: it repeats). Linear axes read metre and newton for radian and newton metre.
+//! Notation: `v` velocity, `q` position, `dt` sample period, `dq` the distance of a sample, `s(v) = tanh(v / smoothing_velocity)` a
+//! smoothed sign. Where the model reads the position, `dq` is its change since the sample before (0 at the first one); else it is `v dt`.
+//! Every term costs the same at every step, keeps a bounded state, and reads its channels held to their trained ranges (the angle of a
+//! ripple and the distance excepted). Linear axes read metre and newton for radian and newton metre.
+//!
+//! Arithmetic is `f32`, each operation rounded by itself, products and sums from left to right as the equations are written; functions are
+//! those of [`crate::elementary`], `1 - exp(-x)` of a lag its `lag_share(x)`, `exp(-x / y)` the exponential of the negated quotient.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +17,9 @@ pub const MAX_EFFECTS: usize = 8;
 
 /// Most harmonics of one ripple.
 pub const MAX_HARMONICS: usize = 4;
+
+/// Most elements of one presliding term.
+pub const MAX_ELEMENTS: usize = 4;
 
 /// What a periodic or position-dependent term adds to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,6 +41,15 @@ pub struct Harmonic {
     pub cosine: f32,
     /// Sine coefficient, N m (rad for [`Kind::Position`]).
     pub sine: f32,
+}
+
+/// A Maxwell slip element: a spring in series with dry friction (Al-Bender, Lampaert & Swevers 2005).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Element {
+    /// Torque at which it slips, N m, above 0.
+    pub torque: f32,
+    /// Distance over which it turns over after a reversal, rad, above 0.
+    pub distance: f32,
 }
 
 /// A correction term.
@@ -77,14 +93,17 @@ pub enum Effect {
         /// rad/s.
         smoothing_velocity: f32,
     },
-    /// `(coulomb s(v) + viscous v) (T - reference)` (Bittencourt & Gunnarsson 2012).
+    /// `(coulomb s(v)) (T - reference) + (viscous v) w` (Bittencourt & Gunnarsson 2012) with `w = T - reference`, or, for a viscosity that
+    /// falls exponentially as that of a grease does, `w = (1 - exp(-(decay (T - reference)))) / decay`.
     Temperature {
         /// degC.
         reference: f32,
         /// N m/K.
         coulomb: f32,
-        /// N m s/(rad K).
+        /// N m s/(rad K), at the reference.
         viscous: f32,
+        /// 1/K, 1e-4 to 10; 0 for a viscosity that falls linearly.
+        decay: f32,
         /// rad/s.
         smoothing_velocity: f32,
     },
@@ -102,9 +121,9 @@ pub enum Effect {
         /// rad/s.
         smoothing_velocity: f32,
     },
-    /// `(mean |load| s(v) + difference load |s(v)|) (1 + stribeck exp(-(v / velocity)^2)) + quadratic load^2 s(v)`.
+    /// `(mean + stribeck exp(-(v / velocity)^2)) |load| s(v) + difference load |s(v)| + quadratic load load s(v)`.
     ///
-    /// With `mean = (driving + backdriving) / 2` and `difference = (driving - backdriving) / 2` the first bracket is
+    /// With `mean = (driving + backdriving) / 2` and `difference = (driving - backdriving) / 2` and no `stribeck` the first two terms are
     /// `driving |load| s(v)` where load and velocity have one sign and `backdriving |load| s(v)` where they have not
     /// (Hamon, Gautier & Garrec 2010).
     Load {
@@ -114,37 +133,30 @@ pub enum Effect {
         difference: f32,
         /// 1/(N m).
         quadratic: f32,
-        /// Rise of the load friction at rest, dimensionless.
+        /// What it is more at rest, dimensionless.
         stribeck: f32,
-        /// rad/s.
+        /// Over which that falls, rad/s.
         velocity: f32,
         /// rad/s.
         smoothing_velocity: f32,
     },
     /// The law and what depends on it see the lagged velocity `v_L += (1 - exp(-dt / time_constant)) (v - v_L)`
-    /// (Hess & Soom 1990). Adds no torque of its own.
+    /// (Hess & Soom 1990); the first sample starts without lag. Adds no torque of its own, and is the first of a model's effects.
     FrictionalLag {
         /// s.
         time_constant: f32,
     },
-    /// `z - g(v) s(v)` with `z` the LuGre bristle torque, stepped exactly:
-    /// `z <- S + (z - S) exp(-|dq| stiffness / g(v))`, `S = g(v) sgn(dq)`,
-    /// `g(v) = coulomb + (breakaway - coulomb) exp(-(v / velocity)^2)` (Canudas de Wit et al. 1995; Dahl 1968 where
-    /// `breakaway = coulomb`). It replaces the smoothed sign of the law by the bristle.
+    /// `sum of torque_i z_i - (sum of torque_i) s(v)` with the Maxwell slip elements, each stepped exactly over the distance of a sample:
+    /// `z_i <- z_i r_i + (1 - r_i) S`, `r_i = exp(-|dq| / distance_i)`, `S` the sign of `dq` (Dahl 1968; Al-Bender, Lampaert & Swevers 2005). It replaces
+    /// the smoothed sign of the law by the elements, which begin relaxed, at 0.
     Presliding {
-        /// N m, above 0.
-        coulomb: f32,
-        /// N m, at least `coulomb`.
-        breakaway: f32,
-        /// Stribeck velocity, rad/s.
-        velocity: f32,
-        /// Bristle stiffness `sigma_0`, N m/rad.
-        stiffness: f32,
         /// Of the law that it corrects, rad/s.
         smoothing_velocity: f32,
+        /// The elements, one at least.
+        elements: heapless::Vec<Element, MAX_ELEMENTS>,
     },
-    /// `A exp(-x / distance) s(v)` over the distance `x` travelled since rest, `A = gain ln(1 + t_d / time)` latched from
-    /// the dwell `t_d` when motion starts (Rabinowicz 1958; Dieterich 1979).
+    /// `A exp(-x) s(v)` over the way `x <- x + |dq| / distance` travelled since rest, at most 20, `A = gain ln(1 + t_d / time)` latched from
+    /// the dwell `t_d <- t_d + dt` when motion starts (Rabinowicz 1958; Dieterich 1979).
     DwellBreakaway {
         /// N m.
         gain: f32,
@@ -185,7 +197,7 @@ pub enum Effect {
         /// Torque at either flank, N m; 0 where only the position is corrected.
         torque: f32,
     },
-    /// `torque z` with `z <- S + (z - S) exp(-|dq| / distance)`, `S = sgn(dq)` (Taghirad & Belanger 1998).
+    /// `torque z` with `z <- z r + (1 - r) S`, `r = exp(-|dq| / distance)`, `S` the sign of `dq` (Taghirad & Belanger 1998).
     WindupHysteresis {
         /// N m.
         torque: f32,

@@ -40,11 +40,23 @@ fn at_least(x: f32, low: f32) -> f32 {
     if x > low { x } else { low }
 }
 
-/// `exp(x)`, held at both ends: never zero, never infinite. Polynomial of Cephes `expf` (Moshier 1992).
+/// `exp(x)`, held at both ends: never zero, never infinite.
 #[must_use]
 #[inline]
 pub fn exp(x: f32) -> f32 {
-    let x = at_least(at_most(x, 88.37), -87.0);
+    exp_of_held(at_least(at_most(x, 88.37), -87.0))
+}
+
+/// `exp(-x)` of what decays, to the bit, for `x` from 0 on; some finite number for any other.
+#[must_use]
+#[inline]
+pub fn decay(x: f32) -> f32 {
+    exp_of_held(at_least(-x, -87.0))
+}
+
+/// `exp(x)` from -87 to 88.37. Polynomial of Cephes `expf` (Moshier 1992).
+#[inline(always)]
+fn exp_of_held(x: f32) -> f32 {
     let rounded = x * core::f32::consts::LOG2_E + ROUND;
     let n = rounded - ROUND;
     // ln 2 in two parts; the products with the first are exact.

@@ -13,7 +13,7 @@ use crate::validate::InvalidModel;
 pub const MAGIC: [u8; 4] = *b"FRKN";
 
 /// Version of the format that this crate writes and reads.
-pub const FORMAT_VERSION: u16 = 3;
+pub const FORMAT_VERSION: u16 = 4;
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 16;

@@ -40,12 +40,16 @@ pub enum InvalidModel {
     EffectCoefficient,
     /// An effect needs an input that the model does not have.
     EffectInput,
-    /// Two effects of a kind that a model may have once only.
-    DuplicateEffect,
+    /// A frictional lag that is not the first effect: the law sees the velocity that it gives.
+    LagNotFirst,
 }
 
 /// Largest magnitude of a trained range and of a coefficient: keeps every sum of a table and of a state finite.
 const LARGEST: f32 = 1.0e9;
+
+/// Slowest and fastest decay of a viscosity over temperature, 1/K: below, `f32` does not tell it from a line; above, there is no grease.
+const SLOWEST_DECAY: f32 = 1.0e-4;
+const FASTEST_DECAY: f32 = 10.0;
 
 fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
     if holds { Ok(()) } else { Err(otherwise) }
@@ -102,8 +106,8 @@ impl<const CELLS: usize> Model<CELLS> {
                 check_table(table, &self.cells)?;
             }
         }
-        let lags = self.effects.iter().filter(|effect| matches!(effect, Effect::FrictionalLag { .. })).count();
-        ensure(lags <= 1, InvalidModel::DuplicateEffect)
+        let late_lag = self.effects.iter().skip(1).any(|effect| matches!(effect, Effect::FrictionalLag { .. }));
+        ensure(!late_lag, InvalidModel::LagNotFirst)
     }
 }
 
@@ -189,8 +193,10 @@ fn check_coefficients(effect: &Effect) -> (bool, Option<Quantity>) {
         Effect::PowerViscous { coefficient, exponent, smoothing_velocity } => {
             (bounded(coefficient) && scales(&[exponent, smoothing_velocity]), None)
         }
-        Effect::Temperature { reference, coulomb, viscous, smoothing_velocity } => {
-            (all(&[reference, coulomb, viscous]) && scale(smoothing_velocity), Some(Quantity::Temperature))
+        Effect::Temperature { reference, coulomb, viscous, decay, smoothing_velocity } => {
+            let decays = decay == 0.0 || (SLOWEST_DECAY..=FASTEST_DECAY).contains(&decay);
+            let usable = all(&[reference, coulomb, viscous]) && decays && scale(smoothing_velocity);
+            (usable, Some(Quantity::Temperature))
         }
         Effect::WarmUp { time_constant, coulomb, viscous, power_limit, smoothing_velocity } => {
             (all(&[coulomb, viscous]) && scales(&[time_constant, power_limit, smoothing_velocity]), None)
@@ -200,8 +206,9 @@ fn check_coefficients(effect: &Effect) -> (bool, Option<Quantity>) {
             Some(Quantity::Load),
         ),
         Effect::FrictionalLag { time_constant } => (scale(time_constant), None),
-        Effect::Presliding { coulomb, breakaway, velocity, stiffness, smoothing_velocity } => {
-            (scales(&[coulomb, breakaway, velocity, stiffness, smoothing_velocity]), None)
+        Effect::Presliding { smoothing_velocity, ref elements } => {
+            let usable = elements.iter().all(|element| scales(&[element.torque, element.distance]));
+            (usable && !elements.is_empty() && scale(smoothing_velocity), None)
         }
         Effect::DwellBreakaway { gain, time, distance, rest_velocity, dwell_limit, smoothing_velocity } => {
             (bounded(gain) && scales(&[time, distance, rest_velocity, dwell_limit, smoothing_velocity]), None)

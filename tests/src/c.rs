@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// What makes C round every operation by itself, and says what is wrong.
-const FLAGS: [&str; 5] = ["-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror"];
+/// What says what is wrong. Nothing is said of contraction: the exported sources see to it.
+const FLAGS: [&str; 4] = ["-O2", "-Wall", "-Wextra", "-Werror"];
 
 /// The processor, its calling convention, and sections that the linker can leave out.
 const CORTEX_M4F: [&str; 7] = [
@@ -56,6 +56,21 @@ pub fn firmware(drive: &[PathBuf], definitions: &[String], elf: &Path) {
     gcc.args([example.join("startup.c"), example.join("main.c")]).args(drive);
     gcc.args(["-lgcc", "-Wl,--gc-sections", "-Wl,-z,noexecstack", "-T"]).arg(example.join("cortex-m4f.ld"));
     run(gcc.arg("-o").arg(elf));
+}
+
+/// The assembly of a source for the Cortex-M4F, compiled with nothing but `options`, or what the compiler says against it.
+///
+/// # Errors
+/// What the compiler says.
+///
+/// # Panics
+/// Where the compiler is not installed.
+pub fn cortex_m4f_assembly(source: &Path, options: &[&str]) -> Result<String, String> {
+    let mut gcc = Command::new("arm-none-eabi-gcc");
+    gcc.args(CORTEX_M4F).args(options).arg(source).args(["-S", "-o", "-"]);
+    let output = gcc.output().expect("tests/setup.sh installs the C compilers");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    if output.status.success() { Ok(text(&output.stdout)) } else { Err(text(&output.stderr)) }
 }
 
 /// Feeds `values` to the standard input of a program and reads floats from its standard output.

@@ -1,6 +1,8 @@
 //! What a model costs on a target: instructions, flash, RAM, stack, decoding.
 
 use frikan_shared::integer_table::REACH_BITS;
+use frikan_trainer::compile::steps::sequence::sequence;
+use frikan_trainer::compile::steps::{ANSWER_WORDS, CALL_WORDS, Call};
 use frikan_trainer::emulator::{Answer, Emulator, Mode, Request};
 use frikan_trainer::error::Result;
 
@@ -28,6 +30,23 @@ pub fn count(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
     count_rows(emulator, &models::image(model), &counted_rows(model), model.inputs.len())
 }
 
+/// Counts the instructions of [`COUNTED_ROWS`] steps of the sequence by which `trainer verify` proves a model, on an emulator of
+/// `emulate-step`.
+///
+/// # Errors
+/// Those of [`Emulator::run`].
+pub fn count_steps(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
+    let values: Vec<f32> = sequence(model, COUNTED_ROWS).iter().flat_map(Call::words).collect();
+    emulator.run(&Request {
+        image: &models::image(model),
+        values: &values,
+        inputs: CALL_WORDS,
+        outputs: ANSWER_WORDS,
+        mode: Mode::Count,
+        floating_point_control: 0,
+    })
+}
+
 /// Counts the instructions of an integer table, whose inputs are counts.
 ///
 /// # Errors
@@ -43,5 +62,5 @@ pub fn count_integer(emulator: &Emulator, model: &TestModel) -> Result<Answer> {
 /// # Errors
 /// Those of [`Emulator::run`].
 pub fn count_rows(emulator: &Emulator, image: &[u8], values: &[f32], inputs: usize) -> Result<Answer> {
-    emulator.run(&Request { image, values, inputs, mode: Mode::Count, floating_point_control: 0 })
+    emulator.run(&Request { image, values, inputs, outputs: 1, mode: Mode::Count, floating_point_control: 0 })
 }

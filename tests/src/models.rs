@@ -7,8 +7,10 @@ use frikan_runtime::shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_runtime::shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
 use frikan_runtime::shared::units::{Quantity, Unit};
 
+mod effects;
 mod network;
 
+pub use effects::{by_velocity, every_effect, table_with_presliding, with_effects, with_every_effect};
 pub use network::{network, network_1_5_1, network_three_inputs, network_two_inputs};
 
 /// Cells of the firmware's models.

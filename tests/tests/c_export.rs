@@ -6,7 +6,7 @@ use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::model::{Input, Law};
 use frikan_runtime::shared::units::{Quantity, Unit};
-use frikan_tests::c::{firmware, floats_through, host_program};
+use frikan_tests::c::{cortex_m4f_assembly, firmware, floats_through, host_program};
 use frikan_tests::models::{self, TestModel};
 use frikan_tests::vectors::{one_input, space_filling};
 use frikan_trainer::emulator::{Emulator, Firmware, Mode, Request};
@@ -146,10 +146,52 @@ fn the_cortex_m4f_computes_the_bits_of_the_runtime() {
         let emulator = Emulator::with_elf(Firmware::find().unwrap().target("cortex-m4f").unwrap(), elf).unwrap();
         let values = rows(&model, ROWS / 10);
         let padded: Vec<f32> = values.iter().flat_map(|value| [*value, 0.0, 0.0, 0.0]).collect();
-        let request =
-            Request { image: &[], values: &padded, inputs: 4, mode: Mode::Evaluate, floating_point_control: 0 };
+        let request = Request {
+            image: &[],
+            values: &padded,
+            inputs: 4,
+            outputs: 1,
+            mode: Mode::Evaluate,
+            floating_point_control: 0,
+        };
         let answer = emulator.run(&request).unwrap();
         assert_same_bits(&name, &values, &answer.outputs, &expected(&model, &values));
+    }
+}
+
+/// No option, and none of the levels of optimisation, makes a product and a sum into one operation.
+#[test]
+fn nothing_is_contracted_on_a_processor_that_could() {
+    let folder = tempfile::tempdir().unwrap();
+    let models =
+        [models::symmetric_table(), models::uniform(), models::stribeck_expression(), models::every_operation()];
+    for model in models {
+        let source = write(folder.path(), &model);
+        for level in ["-O1", "-O2", "-O3", "-Os"] {
+            let assembly = cortex_m4f_assembly(&source, &[level]).unwrap();
+            assert!(assembly.contains("vmul.f32"), "{level}: it multiplies");
+            let contracted = assembly.lines().filter(|line| line.contains("vfm") || line.contains("vfnm"));
+            assert_eq!(contracted.collect::<Vec<_>>(), Vec::<&str>::new(), "{level}");
+        }
+    }
+}
+
+/// Options under which the source would compute something else are refused by it.
+#[test]
+fn options_that_change_the_arithmetic_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = write(folder.path(), &models::symmetric_table());
+    assert!(cortex_m4f_assembly(&source, &["-O2"]).is_ok());
+    for options in [
+        &["-ffast-math"][..],
+        &["-Ofast"],
+        &["-ffinite-math-only"],
+        &["-freciprocal-math"],
+        &["-funsafe-math-optimizations"],
+        &["-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"],
+    ] {
+        let refusal = cortex_m4f_assembly(&source, options).unwrap_err();
+        assert!(refusal.contains("#error"), "{options:?}: {refusal}");
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use frikan_runtime::compensator::{Compensator, Limits, Status};
 use frikan_runtime::friction::Measurement;
 use frikan_runtime::shared::authentication::{KEY_BYTES, Key};
-use frikan_runtime::shared::effect::{Effect, Harmonic, Kind};
+use frikan_runtime::shared::effect::{Effect, Element, Harmonic, Kind};
 use frikan_runtime::shared::model::Input;
 use frikan_runtime::shared::units::{Quantity, Unit};
 use frikan_tests::c::{firmware, library_folder};
@@ -32,7 +32,7 @@ fn example(folder: &Path, definitions: &[String]) -> Emulator {
 }
 
 fn torques(emulator: &Emulator, image: &[u8], values: &[f32]) -> Result<Answer> {
-    emulator.run(&Request { image, values, inputs: 4, mode: Mode::Evaluate, floating_point_control: 0 })
+    emulator.run(&Request { image, values, inputs: 4, outputs: 1, mode: Mode::Evaluate, floating_point_control: 0 })
 }
 
 /// A law with corrections that remember, over all channels of the example.
@@ -47,7 +47,10 @@ fn with_effects() -> TestModel {
     let mut model = stribeck_expression();
     model.inputs.extend(channels.map(|(quantity, unit, high)| Input { quantity, unit, low: -high, high }));
     model.effects.extend([
-        Effect::Presliding { coulomb: 5.0, breakaway: 7.0, velocity: 0.1, stiffness: 5.0e3, smoothing_velocity },
+        Effect::Presliding {
+            smoothing_velocity,
+            elements: std::iter::once(Element { torque: 5.0, distance: 1.0e-3 }).collect(),
+        },
         Effect::WarmUp { time_constant: 1.0, coulomb: -0.1, viscous: 0.1, power_limit: 20.0, smoothing_velocity },
         Effect::Ripple { kind: Kind::Friction, smoothing_velocity, harmonics: std::iter::once(harmonic).collect() },
         Effect::Load {
@@ -58,7 +61,7 @@ fn with_effects() -> TestModel {
             velocity: 0.1,
             smoothing_velocity,
         },
-        Effect::Temperature { reference: 20.0, coulomb: -0.1, viscous: -0.05, smoothing_velocity },
+        Effect::Temperature { reference: 20.0, coulomb: -0.1, viscous: -0.05, decay: 0.0, smoothing_velocity },
     ]);
     model.validate().unwrap();
     model

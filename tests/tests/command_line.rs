@@ -82,14 +82,9 @@ fn fit_show_predict_verify_and_export_hang_together() {
     assert_eq!((verify.status, &json["compared"]), (0, &json["equal"]));
     assert!(json["schema"] == "frikan.verify/1" && json["first_difference"].is_null());
 
-    for (form, file) in [
-        ("bin", "m.bin"),
-        ("hex", "m.hex"),
-        ("c-header", "m.h"),
-        ("json", "m.image.json"),
-        ("mujoco", "m.xml"),
-        ("urdf", "m.urdf"),
-    ] {
+    for (form, file) in
+        [("bin", "m.bin"), ("c-header", "m.h"), ("json", "m.image.json"), ("mujoco", "m.xml"), ("urdf", "m.urdf")]
+    {
         assert_eq!(run(at, &["export", "m.frk", "--to", form, "-o", file]).status, 0, "{form}");
     }
     assert!(std::fs::read(at.join("m.bin")).unwrap() == image);

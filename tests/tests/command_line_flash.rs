@@ -59,8 +59,32 @@ fn every_form_holds_the_very_bytes() {
     assert!(Command::new(at.join("array")).output().unwrap().stdout == image);
 
     // To standard output nothing but the form goes.
-    let hex = run(at, &["export", "stribeck.frk", "--to", "hex", "-o", "-"]);
-    assert!(hex.output.lines().all(|line| line.starts_with(':')));
+    let hex = run(at, &["export", "stribeck.frk", "--to", "hex", "--address", "0", "-o", "-"]);
+    assert!(hex.output.lines().all(|line| line.starts_with(':')) && hex.status == 0);
+}
+
+/// An address that is missing, wraps or lies within a page, and a family that is missing, are refused and nothing is written.
+#[test]
+fn a_place_that_is_none_is_refused() {
+    let bench = bench();
+    let at = bench.path();
+    let family = ["--family", "0xe48bff56"];
+    let refused: [(&str, &[&str]); 8] = [
+        ("hex", &[]),
+        ("hex", &["--address", "0xFFFFFFF0"]),
+        ("bin", &["--address", "0xFFFFFFF0"]),
+        ("uf2", &family),
+        ("uf2", &["--address", "0x10000000"]),
+        ("uf2", &["--address", "0x10000080", family[0], family[1]]),
+        ("uf2", &["--address", "0xFFFFFF00", family[0], family[1]]),
+        ("uf2", &["--address", "0x10000001", family[0], family[1]]),
+    ];
+    for (form, options) in refused {
+        let refusal = export(at, form, "m.out", options);
+        assert_eq!(refusal.status, 2, "{form} {options:?}: {}", refusal.output);
+        assert!(refusal.messages.contains("FRK-U001"), "{form} {options:?}: {}", refusal.messages);
+        assert!(!at.join("m.out").exists(), "{form} {options:?}");
+    }
 }
 
 /// The object links for its processor, where the linker script puts it, under its symbol.

@@ -24,7 +24,8 @@ fn compare(emulator: &Emulator, name: &str, model: &TestModel, rows: usize, floa
         space_filling(rows, &model.inputs.iter().map(|input| input.high).collect::<Vec<_>>())
     };
     let image = models::image(model);
-    let request = Request { image: &image, values: &values, inputs, mode: Mode::Evaluate, floating_point_control };
+    let request =
+        Request { image: &image, values: &values, inputs, outputs: 1, mode: Mode::Evaluate, floating_point_control };
     let answer = emulator.run(&request).unwrap();
     assert_eq!(answer.outputs.len(), rows);
     for (index, (row, output)) in values.chunks_exact(inputs).zip(&answer.outputs).enumerate() {
@@ -55,8 +56,14 @@ fn integer_table_agrees_on(target: &str) {
     let steps = counts(TABLE_ROWS, 1 << REACH_BITS, 3);
     let values: Vec<f32> = steps.iter().map(|count| f32::from_bits(*count as u32)).collect();
     let image = models::image(&model);
-    let request =
-        Request { image: &image, values: &values, inputs: 1, mode: Mode::Evaluate, floating_point_control: 0 };
+    let request = Request {
+        image: &image,
+        values: &values,
+        inputs: 1,
+        outputs: 1,
+        mode: Mode::Evaluate,
+        floating_point_control: 0,
+    };
     let answer = emulator.run(&request).unwrap();
     for (count, output) in steps.iter().zip(&answer.outputs) {
         let expected = evaluate_integer(table, &model.cells, *count);
@@ -115,7 +122,8 @@ fn a_damaged_image_is_refused_on_the_target() {
     let emulator = Emulator::new("cortex-m4f").unwrap();
     let sound = models::image(&models::symmetric_table());
     let run = |image: &[u8]| {
-        let request = Request { image, values: &[0.1], inputs: 1, mode: Mode::Evaluate, floating_point_control: 0 };
+        let request =
+            Request { image, values: &[0.1], inputs: 1, outputs: 1, mode: Mode::Evaluate, floating_point_control: 0 };
         emulator.run(&request)
     };
     run(&sound).unwrap();

@@ -11,7 +11,7 @@ fn no_firmware_holds_a_panic_or_an_allocator() {
     assert!(names.len() >= 6, "{names:?}");
     for name in names {
         let target = firmware.target(&name).unwrap();
-        for binary in ["drive", "emulate"] {
+        for binary in ["drive", "emulate", "emulate-step"] {
             let found = forbidden_symbols(&firmware.build(&target, binary).unwrap()).unwrap();
             assert!(found.is_empty(), "{binary} of {name}: {found:?}");
         }

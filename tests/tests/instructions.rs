@@ -3,7 +3,7 @@
 
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::model::Law;
-use frikan_tests::cost::{count, count_integer};
+use frikan_tests::cost::{count, count_integer, count_steps};
 use frikan_tests::models;
 use frikan_trainer::compile::cost::instructions;
 use frikan_trainer::emulator::{Emulator, Firmware};
@@ -45,6 +45,43 @@ fn every_law_is_constant_on_cortex_m7() {
 #[test]
 fn every_law_is_constant_on_cortex_m33() {
     every_law_is_constant_on("cortex-m33", &[]);
+}
+
+/// Every step, constant whatever the sample, missing and special ones included; the commonest within their budget.
+fn every_step_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
+    let emulator = Emulator::with_binary(&Firmware::find().unwrap(), target, "emulate-step").unwrap();
+    let laws = models::every_law().into_iter().map(|(name, model)| (name.to_owned(), model));
+    let all = laws.chain(models::with_every_effect());
+    let counted: Vec<(String, (u32, u32))> =
+        all.map(|(name, model)| (name, count_steps(&emulator, &model).unwrap().instruction_range().unwrap())).collect();
+    for (name, (fewest, most)) in &counted {
+        assert_eq!(fewest, most, "a step of {name} on {target} is not constant");
+    }
+    for (name, budget) in budgets {
+        let (_, (_, most)) = counted.iter().find(|(counted, _)| counted == name).unwrap();
+        assert!(most <= budget, "a step of {name} on {target} takes {most} instructions, {budget} at most");
+    }
+}
+
+#[test]
+fn every_step_is_constant_on_cortex_m4f() {
+    let budgets = [
+        ("symmetric table", 120),
+        ("sided table", 120),
+        ("table of 1 inputs with one element", 250),
+        ("table of 2 inputs with one element", 270),
+    ];
+    every_step_is_constant_on("cortex-m4f", &budgets);
+}
+
+#[test]
+fn every_step_is_constant_on_cortex_m7() {
+    every_step_is_constant_on("cortex-m7", &[]);
+}
+
+#[test]
+fn every_step_is_constant_on_cortex_m33() {
+    every_step_is_constant_on("cortex-m33", &[]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use super::*;
 use crate::joints::{JointMeasurements, Joints};
 use crate::test_models::{coulomb_model, image_of};
-use frikan_shared::effect::Effect;
+use frikan_shared::effect::{Effect, Element};
 use nalgebra::SVector;
 use proptest::prelude::*;
 use std::vec::Vec;
@@ -119,7 +119,7 @@ fn only_what_the_model_reads_must_be_finite() {
         let answer = compensator.step(&faulty, DT);
         assert_eq!((answer.torque, answer.status), (0.0, Status::NotFinite));
     }
-    for dt in [-DT, 1.5] {
+    for dt in [-DT, -0.0, 1.5] {
         assert_eq!(compensator.step(&sound, dt).status, Status::NotFinite);
     }
     assert_eq!(compensator.step(&sound, 0.0).status, Status::Active);
@@ -196,7 +196,13 @@ fn every_effect() -> [Compensator<16>; 2] {
     let smoothing_velocity = 0.02;
     let first = [
         Effect::FrictionalLag { time_constant: 0.01 },
-        Effect::Presliding { coulomb: 5.0, breakaway: 7.0, velocity: 0.1, stiffness: 5.0e3, smoothing_velocity },
+        Effect::Presliding {
+            smoothing_velocity,
+            elements: [(5.0, 1.0e-3), (2.0, 4.0e-3)]
+                .map(|(torque, distance)| Element { torque, distance })
+                .into_iter()
+                .collect(),
+        },
         Effect::DwellBreakaway {
             gain: 1.0,
             time: 0.1,
@@ -215,7 +221,7 @@ fn every_effect() -> [Compensator<16>; 2] {
         Effect::Coulomb { coulomb: 0.5, viscous: 0.1, smoothing_velocity },
         Effect::Stribeck { amplitude: 2.0, velocity: 0.1, exponent: 0.5, smoothing_velocity },
         Effect::PowerViscous { coefficient: 1.0, exponent: 0.7, smoothing_velocity },
-        Effect::Temperature { reference: 1.0, coulomb: -0.1, viscous: -0.05, smoothing_velocity },
+        Effect::Temperature { reference: 1.0, coulomb: -0.1, viscous: -0.05, decay: 0.03, smoothing_velocity },
         Effect::Load {
             mean: 0.05,
             difference: 0.01,

@@ -2,22 +2,16 @@
 
 use frikan_shared::elementary::lag_share;
 
-use super::Motion;
+use super::{Memory, Motion, STARTED};
 
-/// The lagged velocity.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Lag {
-    /// rad/s, within the trained range.
-    velocity: f32,
-    /// Whether there was a sample before; the first one starts without lag.
-    started: bool,
-}
-
-/// Advances the lag and returns the lagged velocity, rad/s.
+/// Advances the lag and returns the lagged velocity, rad/s. The memory is that velocity, within the trained range, and whether there was
+/// a sample before; the first one starts without lag.
 #[must_use]
-pub fn step(time_constant: f32, lag: &mut Lag, motion: &Motion) -> f32 {
-    let before = if lag.started { lag.velocity } else { motion.velocity };
-    lag.velocity = before + lag_share(motion.dt / time_constant) * (motion.velocity - before);
-    lag.started = true;
-    lag.velocity
+#[inline(never)]
+pub fn step(time_constant: f32, [velocity, started, ..]: &mut Memory, motion: &Motion) -> f32 {
+    let before = if *started == STARTED { *velocity } else { motion.velocity };
+    let now = before + lag_share(motion.dt / time_constant) * (motion.velocity - before);
+    *velocity = motion.usable.or(now, *velocity);
+    *started = motion.usable.or(STARTED, *started);
+    now
 }

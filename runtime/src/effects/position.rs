@@ -9,6 +9,7 @@ use crate::table::evaluate_table;
 
 /// What a position term adds; nothing for any other effect.
 #[must_use]
+#[inline(never)]
 pub fn contribution<const CELLS: usize>(effect: &Effect, motion: &Motion, pool: &Pool<CELLS>) -> Contribution {
     match effect {
         Effect::Ripple { kind, smoothing_velocity, harmonics } => {

@@ -1,6 +1,6 @@
 use crate::friction::{FrictionState, Measurement};
 use crate::test_models::{TestModel, coulomb_model};
-use frikan_shared::effect::{Effect, Harmonic, Kind};
+use frikan_shared::effect::{Effect, Element, Harmonic, Kind};
 
 const DT: f32 = 1.0e-3;
 const SMOOTHING: f32 = 0.02;
@@ -9,10 +9,10 @@ const SMOOTHING: f32 = 0.02;
 fn added(effect: Effect, motion: impl Iterator<Item = Measurement>) -> std::vec::Vec<f32> {
     let model = coulomb_model(10.0, &[effect]);
     let bare = coulomb_model(10.0, &[]);
-    let mut state = FrictionState::new(&model.effects);
+    let mut state = FrictionState::new();
     motion
         .map(|measurement| {
-            state.step(&model, &measurement, DT).torque - FrictionState::new(&[]).step(&bare, &measurement, DT).torque
+            state.step(&model, &measurement, DT).torque - FrictionState::new().step(&bare, &measurement, DT).torque
         })
         .collect()
 }
@@ -21,34 +21,45 @@ fn at(velocity: f32) -> Measurement {
     Measurement { velocity, ..Measurement::default() }
 }
 
+fn presliding(elements: &[(f32, f32)]) -> Effect {
+    let elements = elements.iter().map(|&(torque, distance)| Element { torque, distance });
+    Effect::Presliding { smoothing_velocity: SMOOTHING, elements: elements.collect() }
+}
+
+/// A model without effects but `effect`, that reads the velocity alone.
+fn by_velocity(effect: Effect) -> TestModel {
+    let mut model = coulomb_model(10.0, &[effect]);
+    model.inputs.truncate(1);
+    model
+}
+
 #[test]
-fn presliding_follows_the_exact_solution_and_settles_on_the_law() {
-    let (coulomb, stiffness) = (10.0, 1.0e4);
-    let effect =
-        Effect::Presliding { coulomb, breakaway: coulomb, velocity: 0.1, stiffness, smoothing_velocity: SMOOTHING };
-    let velocity = 0.5f32;
-    let torques = added(effect, (0..200).map(|_| at(velocity)));
-    for (step, torque) in torques.iter().enumerate() {
-        let distance = velocity * DT * (step + 1) as f32;
-        let expected =
-            coulomb * (1.0 - (-distance * stiffness / coulomb).exp()) - coulomb * (velocity / SMOOTHING).tanh();
-        assert!((torque - expected).abs() < 1.0e-3, "{step}: {torque} {expected}");
+fn every_element_follows_its_exact_solution_and_settles_on_the_law() {
+    let elements = [(6.0, 1.0e-3), (3.0, 4.0e-3), (0.5, 1.6e-2), (0.5, 6.4e-2)];
+    for count in 1..=elements.len() {
+        let elements = &elements[..count];
+        let model = by_velocity(presliding(elements));
+        let (mut state, velocity) = (FrictionState::new(), 0.5f32);
+        let smooth_sign = (velocity / SMOOTHING).tanh();
+        let added = |torque: f32| torque - 10.0 * smooth_sign;
+        for step in 1..=1000 {
+            let torque = added(state.step(&model, &at(velocity), DT).torque);
+            let way = velocity * DT * step as f32;
+            let expected: f32 = elements.iter().map(|(f, d)| f * (1.0 - (-way / d).exp() - smooth_sign)).sum();
+            assert!((torque - expected).abs() < 1.0e-3, "{count}, {step}: {torque} {expected}");
+        }
+        // The way back: from 1 to -1, each over its own distance.
+        let torque = added(-state.step(&model, &at(-velocity), DT).torque);
+        let way = velocity * DT;
+        let expected: f32 = elements.iter().map(|(f, d)| f * (1.0 - 2.0 * (-way / d).exp() - smooth_sign)).sum();
+        assert!((torque - expected).abs() < 1.0e-2, "{count}: {torque} {expected}");
     }
-    assert!(torques[199].abs() < 1.0e-3);
 }
 
 #[test]
 fn presliding_does_not_depend_on_the_sample_period() {
-    let effect = Effect::Presliding {
-        coulomb: 4.0,
-        breakaway: 4.0,
-        velocity: 0.1,
-        stiffness: 500.0,
-        smoothing_velocity: SMOOTHING,
-    };
-    let model = coulomb_model(10.0, &[effect]);
-    let mut fine = FrictionState::new(&model.effects);
-    let mut coarse = fine.clone();
+    let model = by_velocity(presliding(&[(4.0, 8.0e-3)]));
+    let (mut fine, mut coarse) = (FrictionState::new(), FrictionState::new());
     let mut last = 0.0;
     for _ in 0..100 {
         last = fine.step(&model, &at(0.3), 1.0e-4).torque;
@@ -56,12 +67,27 @@ fn presliding_does_not_depend_on_the_sample_period() {
     assert!((coarse.step(&model, &at(0.3), 1.0e-2).torque - last).abs() < 1.0e-3);
 }
 
+/// Where the position is read the way is its change, whatever velocity and sample period say; a missing sample loses nothing of it.
+#[test]
+fn presliding_follows_the_measured_position() {
+    let model = coulomb_model(10.0, &[presliding(&[(4.0, 8.0e-3)])]);
+    let mut state = FrictionState::new();
+    let mut step = |position: f32| {
+        state.step(&model, &Measurement { position, velocity: 1.0, ..Measurement::default() }, DT).torque - 10.0
+    };
+    // The smoothed sign is 1. The first sample has no way.
+    assert!((step(0.5) + 4.0).abs() < 1.0e-5);
+    assert!((step(0.508) + 4.0 * (-1.0f32).exp()).abs() < 1.0e-3);
+    assert_eq!(step(f32::NAN), -10.0);
+    assert!((step(0.516) + 4.0 * (-2.0f32).exp()).abs() < 1.0e-3);
+}
+
 #[test]
 fn lag_delays_the_law() {
     let effect = Effect::FrictionalLag { time_constant: 0.02 };
     let velocities = (0..200).map(|step| at(if step < 1 { -0.01 } else { 0.01 }));
     let model = coulomb_model(10.0, &[effect]);
-    let mut state = FrictionState::new(&model.effects);
+    let mut state = FrictionState::new();
     let torques: std::vec::Vec<f32> = velocities.map(|m| state.step(&model, &m, DT).torque).collect();
     // v_L(t) = 0.01 (1 - 2 exp(-t / 20 ms)) crosses zero after 13.9 ms.
     assert!(torques[13] < 0.0 && torques[14] > 0.0, "{torques:?}");
@@ -79,7 +105,10 @@ fn dwell_raises_the_breakaway_and_travel_takes_it_away() {
             dwell_limit: 100.0,
             smoothing_velocity: SMOOTHING,
         };
-        added(effect, (0..rest + 100).map(|step| at(if step < rest { 0.0 } else { 0.2 })))
+        let speed = move |step: usize| if step < rest { 0.0 } else { 0.2 };
+        let position = move |step: usize| 0.2 * DT * (step + 1).saturating_sub(rest) as f32;
+        let sample = move |step| Measurement { position: position(step), ..at(speed(step)) };
+        added(effect, (0..rest + 100).map(sample))
     };
     for rest in [100, 1000, 3000] {
         let torques = dwell(rest);
@@ -101,7 +130,7 @@ fn warming_model(time_constant: f32) -> TestModel {
 fn warm_up_reaches_its_power_however_small_the_step() {
     // tau / dt = 1e6: increments are far below what the state resolves.
     let model = warming_model(1000.0);
-    let mut state = FrictionState::new(&model.effects);
+    let mut state = FrictionState::new();
     let mut torque = 0.0;
     let samples = if cfg!(miri) { 2_000 } else { 2_000_000 };
     for _ in 0..samples {
@@ -114,7 +143,7 @@ fn warm_up_reaches_its_power_however_small_the_step() {
 #[test]
 fn warmth_fades_in_a_rest_and_is_gone_after_one_of_unknown_length() {
     let model = warming_model(10.0);
-    let mut warm = FrictionState::new(&model.effects);
+    let mut warm = FrictionState::new();
     for _ in 0..200 {
         let _ = warm.step(&model, &at(1.0), 1.0);
     }
@@ -128,7 +157,7 @@ fn warmth_fades_in_a_rest_and_is_gone_after_one_of_unknown_length() {
 fn play_lags_by_half_its_width() {
     let effect = Effect::Play { half_width: 0.1, torque: 2.0 };
     let model = coulomb_model(10.0, &[effect]);
-    let mut state = FrictionState::new(&model.effects);
+    let mut state = FrictionState::new();
     let mut step = |position: f32| state.step(&model, &Measurement { position, ..Measurement::default() }, DT);
     assert_eq!(step(0.5).position, 0.0);
     assert!((step(0.7).position + 0.1).abs() < 1.0e-6);
@@ -154,8 +183,12 @@ fn static_terms_are_their_equations() {
         ),
         (Effect::PowerViscous { coefficient: 3.0, exponent: 0.7, smoothing_velocity }, 3.0 * v.powf(0.7) * s),
         (
-            Effect::Temperature { reference: 1.0, coulomb: 0.2, viscous: 0.1, smoothing_velocity },
+            Effect::Temperature { reference: 1.0, coulomb: 0.2, viscous: 0.1, decay: 0.0, smoothing_velocity },
             (0.2 * s + 0.1 * v) * 0.8,
+        ),
+        (
+            Effect::Temperature { reference: 1.0, coulomb: 0.2, viscous: 0.1, decay: 0.5, smoothing_velocity },
+            0.2 * s * 0.8 + 0.1 * v * (1.0 - (-0.4f32).exp()) / 0.5,
         ),
         (
             // Driving 0.3, backdriving 0.1; load and velocity have different signs here.
@@ -163,11 +196,11 @@ fn static_terms_are_their_equations() {
                 mean: 0.2,
                 difference: 0.1,
                 quadratic: 0.05,
-                stribeck: 0.0,
-                velocity: 0.1,
+                stribeck: 0.3,
+                velocity: 0.5,
                 smoothing_velocity,
             },
-            0.1 * 1.5 * s + 0.05 * 1.5 * 1.5 * s,
+            0.1 * 1.5 * s + 0.05 * 1.5 * 1.5 * s + 0.3 * (-(0.7f32 / 0.5).powi(2)).exp() * 1.5 * s,
         ),
         (Effect::Ripple { kind: Kind::Torque, smoothing_velocity, harmonics: harmonics.clone() }, ripple),
         (Effect::Ripple { kind: Kind::Friction, smoothing_velocity, harmonics }, ripple * s),

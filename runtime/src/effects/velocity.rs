@@ -7,6 +7,7 @@ use super::Motion;
 
 /// Torque of a velocity term; 0 for any other effect.
 #[must_use]
+#[inline(never)]
 pub fn torque(effect: &Effect, motion: &Motion) -> f32 {
     let v = motion.velocity;
     match *effect {

@@ -1,22 +1,15 @@
 //! Hysteretic windup of a transmission (Taghirad & Belanger 1998), as a Dahl element.
 
-use frikan_shared::elementary::{exp, sign};
+use frikan_shared::elementary::decay;
 
-use super::{Contribution, Motion};
-use crate::evaluate::limited;
+use super::presliding::turned_over;
+use super::{Contribution, Memory, Motion};
 
-/// How far it is wound, -1 to 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Winding {
-    share: f32,
-}
-
-/// `z <- S + (z - S) exp(-|dq| / distance)`, `S = sgn(dq)`; adds `torque z`.
+/// `z <- z r + (1 - r) S`, `r = exp(-|dq| / distance)`, `S` the sign of `dq`; adds `torque z`. The memory is how far it is wound, -1 to 1.
 #[must_use]
-pub fn step(torque: f32, distance: f32, winding: &mut Winding, motion: &Motion) -> Contribution {
-    let travelled = motion.velocity * motion.dt;
-    let target = sign(travelled);
-    let share = target + (winding.share - target) * exp(-(travelled.abs() / distance));
-    winding.share = limited(share, 1.0);
-    Contribution::torque(torque * winding.share)
+#[inline(never)]
+pub fn step(torque: f32, distance: f32, [share, ..]: &mut Memory, motion: &Motion) -> Contribution {
+    let now = turned_over(*share, motion.travel, decay(motion.travel.abs() / distance));
+    *share = motion.usable.or(now, *share);
+    Contribution::torque(torque * now)
 }

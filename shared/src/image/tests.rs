@@ -1,5 +1,5 @@
 use super::*;
-use crate::effect::{Effect, Harmonic, Kind};
+use crate::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS};
 use crate::expression::{Operation, Program, ProgramFault};
 use crate::model::{Input, Law, RigidBody};
 use crate::table::{Cell, Geometric, GeometricShape, Symmetry};
@@ -156,8 +156,16 @@ fn models_that_cannot_be_evaluated_are_refused() {
             let lag = Effect::FrictionalLag { time_constant: 0.01 };
             model.effects.extend([lag.clone(), lag]);
         },
-        InvalidModel::DuplicateEffect,
+        InvalidModel::LagNotFirst,
     );
+    let presliding = |elements: &[Element]| Effect::Presliding {
+        smoothing_velocity: 0.01,
+        elements: heapless::Vec::from_slice(elements).unwrap(),
+    };
+    for elements in [&[][..], &[Element { torque: 1.0, distance: 0.0 }], &[Element { torque: -1.0, distance: 1.0e-3 }]]
+    {
+        refused(&|model| model.effects.push(presliding(elements)).unwrap(), InvalidModel::EffectCoefficient);
+    }
 }
 
 #[test]
@@ -175,6 +183,10 @@ fn effects_are_written_and_read() {
             harmonics: heapless::Vec::from_slice(&harmonics).unwrap(),
         },
         Effect::Play { half_width: 1.0e-3, torque: 0.5 },
+        Effect::Presliding {
+            smoothing_velocity: 0.01,
+            elements: heapless::Vec::from_slice(&[Element { torque: 1.5, distance: 2.0e-4 }; MAX_ELEMENTS]).unwrap(),
+        },
     ]);
     assert_eq!(decode(&encoded(&image)).as_ref(), Ok(&image));
 }

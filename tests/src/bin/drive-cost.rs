@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use frikan_tests::cost::{count, count_integer, count_rows};
+use frikan_tests::cost::{count, count_integer, count_rows, count_steps};
 use frikan_tests::models::{self, TestModel, stribeck_friction};
 use frikan_tests::vectors::one_input;
 use frikan_trainer::emulator::{Answer, Emulator, Firmware, Footprint, footprint};
@@ -31,15 +31,19 @@ const HEAD: &str = "\
 
 Written by `cargo run --release -p frikan-tests --bin drive-cost`; nothing here is typed by hand.
 
-Instructions are counted under QEMU: SysTick on Arm, `minstret` on RISC-V, calibrated by 1024 `nop`, over 4096 rows that
-hold every special value (zeros, subnormals, infinities, NaN), a sweep beyond the trained range and random bit patterns. A
-count runs from the first instruction inside the call to its return, the loading of the input included; the table is read
-from the decoded image, not compiled in. Instructions are not cycles: a core that issues one at a time takes at least as
-many cycles, more for loads, divisions and taken branches.
+A step is what a control loop calls: channels, law, effects with their memory, limits. It is counted over 4096 samples of the sequence by
+which `trainer verify` proves a model: motions at every scale, reversals, dwells, missing samples, special values, resets, limits. A law
+is the table, network or formula alone, over 4096 rows that hold every special value (zeros, subnormals, infinities, NaN), a sweep beyond
+the trained range and random bit patterns.
 
-Flash is the code and constants of the smallest firmware that decodes and evaluates every kind of model, beyond one that
-does nothing (and so the same in every row); RAM is the decoded model with room for 128 cells. Stack is the depth that
-decoding and one evaluation reach.
+Instructions are counted under QEMU: SysTick on Arm, `minstret` on RISC-V, calibrated by 1024 `nop`. A count runs from the first instruction
+inside the call to its return, the loading of the sample and the storing of the answer included; the model is read from the decoded
+image, not compiled in. Instructions are not cycles: a core that issues one at a time takes at least as many cycles, more for loads,
+divisions and taken branches.
+
+Flash is the code and constants of the smallest firmware that decodes an image and steps every kind of model, beyond one that does nothing
+(and so the same in every row). RAM is the compensator with room for 128 cells, its last sample and answer. Stack is the depth that one step
+and decoding reach.
 ";
 
 fn main() -> Result<()> {
@@ -57,35 +61,37 @@ fn main() -> Result<()> {
 
 /// The section of one target.
 fn append_target(page: &mut String, firmware: &Firmware, name: &str) -> Result<()> {
-    let emulator = Emulator::new(name)?;
-    let Footprint { flash_bytes, .. } = emulator.footprint()?;
+    let (steps, laws) = (Emulator::with_binary(firmware, name, "emulate-step")?, Emulator::new(name)?);
+    let Footprint { flash_bytes, .. } = steps.footprint()?;
     append(page, format_args!("\n## {name}\n\nFlash {flash_bytes} B.\n\n"));
     append(
         page,
         format_args!(
-            "| model | instructions | image B | RAM B | stack, evaluate B | stack, decode B | decode, instructions |\n"
+            "| model | step, instructions | law, instructions | stack, step B | stack, decode B | RAM B | image B | decode, instructions |\n\
+             |---|---|---|---|---|---|---|---|\n"
         ),
     );
-    append(page, format_args!("|---|---|---|---|---|---|---|\n"));
-    for (kind, model) in models::every_kind() {
-        append_model(page, kind, &model, &count(&emulator, &model)?);
+    let kinds = models::every_kind().into_iter().map(|(kind, model)| (kind.to_owned(), model));
+    for (kind, model) in kinds.chain(models::with_every_effect()) {
+        let step = count_steps(&steps, &model)?;
+        append_model(page, &kind, &model, (&range(&step), &range(&count(&laws, &model)?)), &step);
     }
     let integer = Emulator::with_binary(firmware, name, "emulate-integer")?;
-    let model = models::integer_table();
-    append_model(page, "integer table, counts in and out", &model, &count_integer(&integer, &model)?);
+    let (kind, model) = ("integer table, counts in and out, without limits", models::integer_table());
+    let counted = count_integer(&integer, &model)?;
+    append_model(page, kind, &model, ("-", &range(&counted)), &counted);
     Ok(())
 }
 
-fn append_model(page: &mut String, kind: &str, model: &TestModel, answer: &Answer) {
+fn append_model(page: &mut String, kind: &str, model: &TestModel, (step, law): (&str, &str), answer: &Answer) {
     append(
         page,
         format_args!(
-            "| {kind} | {} | {} | {} | {} | {} | {} |\n",
-            range(answer),
-            models::image(model).len(),
-            answer.model_bytes,
+            "| {kind} | {step} | {law} | {} | {} | {} | {} | {} |\n",
             answer.evaluate_stack_bytes,
             answer.decode_stack_bytes,
+            answer.model_bytes,
+            models::image(model).len(),
             answer.decode_instructions
         ),
     );
@@ -98,7 +104,7 @@ fn append_peers(page: &mut String, firmware: &Firmware) -> Result<()> {
         format_args!(
             "\n## Peers on cortex-m4f\n\n\
          The law `(22 + 8 exp(-|v / 0.1|)) tanh(50 v) + 0.03 v` over `[-2, 2]` rad/s, in the same harness. Flash is what the\n\
-         peer adds to the harness; Frikan's row adds the code for every kind of model and the image. The error is the\n\
+         peer adds to the harness; Frikan's rows, the law alone without limits, add the code for every kind of model and the image. The error is the\n\
          largest distance from the law in double precision.\n\n\
          | what | instructions | flash B | largest error, N m |\n|---|---|---|---|\n"
         ),

@@ -25,7 +25,7 @@ pub struct Export {
     /// Form to export to
     #[arg(long, value_enum)]
     pub to: Format,
-    /// First address, for `hex`, `uf2` and the commands
+    /// First address: needed for `hex` and `uf2` (there a multiple of 256), else for the commands
     #[arg(long, value_parser = number, value_name = "ADDRESS")]
     pub address: Option<u32>,
     /// Put the header of a flash slot in front, with this sequence number
@@ -34,7 +34,7 @@ pub struct Export {
     /// Put the tag of the key in this file behind the image, for drives that ask for one
     #[arg(long, value_name = "KEY")]
     pub key_file: Option<PathBuf>,
-    /// Processor family, for `uf2` boot loaders that ask for one
+    /// Processor family, needed for `uf2`: a boot loader takes no file of another (github.com/microsoft/uf2, `utils/uf2families.json`)
     #[arg(long, value_parser = number, value_name = "NUMBER")]
     pub family: Option<u32>,
     /// Processor, for `elf`
@@ -94,17 +94,17 @@ pub enum ElfProcessor {
 ///
 /// # Errors
 /// `FRK-D020` for what is no image, `FRK-D022` for what is no key, `FRK-U001` and `FRK-U005` where the form does not suit the model
-/// or the options, `FRK-I...` when a file cannot be read or written.
+/// or the options, or the address does not suit the form, `FRK-I...` when a file cannot be read or written.
 pub fn run(arguments: &Export) -> Result<()> {
     let (image_bytes, image) = model::load(&arguments.model)?;
     let title = title(&image_bytes, &image);
     let bytes = flashed(arguments, image_bytes.clone())?;
-    let first = arguments.address.unwrap_or(0);
+    let place = place(arguments, bytes.len())?;
     let mut outputs = Outputs::default();
     let content = match arguments.to {
         Format::Bin => bytes.clone(),
-        Format::Hex => hex::intel_hex(&bytes, first).into_bytes(),
-        Format::Uf2 => uf2::uf2(&bytes, first, arguments.family),
+        Format::Hex => hex::intel_hex(&bytes, place.address).into_bytes(),
+        Format::Uf2 => uf2::uf2(&bytes, place.address, place.family),
         Format::Elf => object_file(&bytes, processor(arguments.processor))?,
         Format::CHeader => c_array::c_header(&bytes, &title).into_bytes(),
         Format::Json => readable::readable(&image_bytes, &image).into_bytes(),
@@ -174,13 +174,49 @@ fn flashed(arguments: &Export, image: Vec<u8>) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Where the bytes go in flash, as far as the form says it; 0 where it does not.
+struct Place {
+    address: u32,
+    family: u32,
+}
+
+/// Checks where `bytes` bytes are to go.
+fn place(arguments: &Export, bytes: usize) -> Result<Place> {
+    let missing = |option: &str, what: &str| {
+        let form = arguments.to.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        Error::new(&codes::USAGE, format!("`--to {form}` needs `{option}`, {what}"))
+    };
+    let holds_address = matches!(arguments.to, Format::Hex | Format::Uf2);
+    let address = match arguments.address {
+        None if holds_address => {
+            return Err(missing("--address", "the address in flash of the first byte, such as 0x08060000"));
+        }
+        address => address.unwrap_or(0),
+    };
+    let pages = if arguments.to == Format::Uf2 { bytes.next_multiple_of(uf2::PAGE_BYTES) } else { bytes };
+    if u64::from(address) + pages as u64 > 1 << 32 {
+        let message = format!("{pages} bytes from this address on leave the 32 bits of an address");
+        return Err(Error::new(&codes::USAGE, message).with_value(format!("{address:#010x}")));
+    }
+    let family = match (arguments.to, arguments.family) {
+        (Format::Uf2, None) => return Err(missing("--family", "the number of the processor family")),
+        (_, family) => family.unwrap_or(0),
+    };
+    if arguments.to == Format::Uf2 && !(address as usize).is_multiple_of(uf2::PAGE_BYTES) {
+        let message =
+            format!("a boot loader writes pages of {} bytes: `--address` must be a multiple", uf2::PAGE_BYTES);
+        return Err(Error::new(&codes::USAGE, message).with_value(format!("{address:#010x}")));
+    }
+    Ok(Place { address, family })
+}
+
 /// The commands by which the file gets into the drive.
 fn advice(arguments: &Export, bytes: usize) -> String {
     let file = arguments.output.display().to_string();
     let chip = arguments.chip.as_deref();
     match arguments.to {
         Format::Bin => commands(&file, arguments.address, bytes, Addressing::None, chip),
-        Format::Hex => commands(&file, Some(arguments.address.unwrap_or(0)), bytes, Addressing::Inside, chip),
+        Format::Hex => commands(&file, arguments.address, bytes, Addressing::Inside, chip),
         Format::Uf2 => format!("cp {file} /media/BOOT-LOADER/\n"),
         _ => String::new(),
     }

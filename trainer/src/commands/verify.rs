@@ -1,28 +1,30 @@
-//! `trainer verify`: the runtime against the trainer's own evaluator, bit for bit, here or on an emulated target.
+//! `trainer verify`: the step that a control loop calls against the trainer's own evaluator, bit for bit, here or on an emulated target.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Args;
-use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::friction::Measurement;
 use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
 use serde_json::{Value, json};
 
 use super::output::{Outputs, print};
 use super::progress::Reporter;
-use crate::compile::verify::{Comparison, Difference, compare, compare_exhaustively, sweep};
-use crate::emulator::{Emulator, Mode, Request};
+use crate::compile::steps::sequence::sequence;
+use crate::compile::steps::{
+    ANSWER_WORDS, Answer, CALL_WORDS, Call, LEAST_STEPS, StepDifference, compare as compare_steps, compare_answers,
+};
+use crate::compile::verify::{Comparison, compare, compare_exhaustively, sweep};
+use crate::emulator::{Emulator, Firmware, Mode, Request};
 use crate::error::{Error, Result, codes};
 use crate::fit::predict::every_row;
 use crate::fit::{HostModel, model};
 use crate::joint::Joint;
 use crate::recording;
 
-/// Points of the sweep besides the special values.
+/// Points at which the static law is compared besides the special values.
 const SWEEP_POINTS: usize = 200_000;
-/// Points whose instructions are counted on an emulated target.
-const COUNTED_POINTS: usize = 2_000;
 
 /// Prove that the drive's arithmetic gives the very bits that the trainer expects.
 #[derive(Args, Clone, Debug)]
@@ -30,16 +32,19 @@ pub struct Verify {
     /// Image to verify
     #[arg(value_name = "MODEL.frk")]
     pub model: PathBuf,
-    /// Compare at all 2^32 single-precision numbers (models of one input, on the host)
+    /// Compare the static law at all 2^32 single-precision numbers as well (models of one input, on the host)
     #[arg(long)]
     pub exhaustive: bool,
+    /// Steps to compare, at least 100000: motions at every scale, reversals, dwells, missing samples, special values, resets, limits
+    #[arg(long, value_name = "N", default_value_t = LEAST_STEPS as u64, value_parser = clap::value_parser!(u64).range(LEAST_STEPS as u64..=10_000_000))]
+    pub steps: u64,
     /// Compare along a recording as well
     #[arg(long, value_name = "RECORDING")]
     pub recording: Option<PathBuf>,
     /// joint.toml: column names, rigid body, drive, limits
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
-    /// Where to evaluate: host, or emulated: cortex-m0plus, cortex-m33, cortex-m4f, cortex-m7, riscv32imac, riscv32imc
+    /// Where to step: host, or emulated: cortex-m0plus, cortex-m33, cortex-m4f, cortex-m7, riscv32imac, riscv32imc
     #[arg(long, default_value = "host")]
     pub target: String,
     /// Also write the result as JSON; `-` for standard output
@@ -50,7 +55,15 @@ pub struct Verify {
     pub quiet: bool,
 }
 
-/// What a verification found beside the bits.
+/// What a verification found.
+struct Found {
+    steps: Comparison<StepDifference>,
+    /// Of the static law apart; on the host alone, for on a target the steps go through it.
+    law: Option<Comparison>,
+    cost: Cost,
+}
+
+/// What stepping takes.
 #[derive(Default)]
 struct Cost {
     instructions: Option<(u32, u32)>,
@@ -72,29 +85,31 @@ pub fn run(arguments: &Verify) -> Result<u8> {
         let message = "an exhaustive comparison needs a model of one input, on the host";
         return Err(Error::new(&codes::USAGE, message).with_value(format!("{} inputs", model.inputs.len())));
     }
-    let mut points = sweep(model, SWEEP_POINTS);
-    if let Some(path) = &arguments.recording {
-        points.extend(along(arguments, path, model)?);
-    }
+    let mut calls = match &arguments.recording {
+        Some(path) => along(arguments, path, model)?,
+        None => Vec::new(),
+    };
+    calls.extend(sequence(model, arguments.steps as usize));
     let reporter = Reporter::new(arguments.quiet);
-    let (comparison, cost) = if on_host {
-        let mut comparison = compare(model, &points);
-        if arguments.exhaustive {
-            comparison = exhaustive(model, &reporter);
-        }
+    let found = if on_host {
+        let law = if arguments.exhaustive {
+            exhaustive(model, &reporter)
+        } else {
+            compare(model, &sweep(model, SWEEP_POINTS))
+        };
         let ram_bytes = size_of_val(model) + size_of_val(&model.cells[..]) - size_of_val(&model.cells);
-        (comparison, Cost { flash_bytes: bytes.len() as u64, ram_bytes: ram_bytes as u64, ..Cost::default() })
+        let cost = Cost { flash_bytes: bytes.len() as u64, ram_bytes: ram_bytes as u64, ..Cost::default() };
+        Found { steps: compare_steps(model, &calls), law: Some(law), cost }
     } else {
         reporter.say("building the firmware and running it");
-        emulated(arguments, &bytes, model, &points)?
+        emulated(arguments, &bytes, model, &calls)?
     };
     drop(reporter);
-    let identical = comparison.identical();
-    let text = summary(arguments, &comparison, &cost);
+    let text = summary(arguments, &found);
     match &arguments.json {
         Some(path) => {
             let mut outputs = Outputs::default();
-            outputs.add(path, format!("{}\n", as_json(arguments, &comparison, &cost)));
+            outputs.add(path, format!("{}\n", as_json(arguments, &found)));
             outputs.refuse_overwriting(&[arguments.model.as_path()])?;
             outputs.write()?;
             if path.as_os_str() != "-" {
@@ -103,25 +118,49 @@ pub fn run(arguments: &Verify) -> Result<u8> {
         }
         None => print(&text)?,
     }
-    Ok(u8::from(!identical))
+    Ok(u8::from(!found.identical()))
 }
 
-/// Inputs of the model along a recording.
-fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<[f32; MAX_INPUTS]>> {
+impl Found {
+    fn identical(&self) -> bool {
+        self.steps.identical() && self.law.is_none_or(|law| law.identical())
+    }
+}
+
+/// A call for each sample of a recording, without limits.
+fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<Call>> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = recording::load(path, &joint)?;
     let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
-    let mut points = vec![[0.0; MAX_INPUTS]; samples.len()];
-    for (slot, input) in model.inputs.iter().enumerate() {
+    let limits = [1.0, 2.0 * model.output_limit, f32::MAX];
+    let mut calls = vec![Call { limits, ..Call::default() }; samples.len()];
+    for (call, two) in calls.iter_mut().skip(1).zip(samples.time.windows(2)) {
+        call.dt = (two[1] - two[0]) as f32;
+    }
+    let mut others = 0..MAX_INPUTS;
+    for input in &model.inputs {
         let name = match &input.quantity {
             Quantity::Load if samples.input("load").is_none() => "rigid_body_torque",
             quantity => quantity.name(),
         };
-        for (point, value) in points.iter_mut().zip(samples.require_input(name)?) {
-            point[slot] = *value as f32;
+        let other = if matches!(input.quantity, Quantity::Other(_)) { others.next() } else { None };
+        for (call, value) in calls.iter_mut().zip(samples.require_input(name)?) {
+            *channel(&mut call.measurement, &input.quantity, other.unwrap_or(0)) = *value as f32;
         }
     }
-    Ok(points)
+    Ok(calls)
+}
+
+/// The place of a quantity in a measurement; `other` is its number where it is no standard quantity.
+fn channel<'a>(measurement: &'a mut Measurement, quantity: &Quantity, other: usize) -> &'a mut f32 {
+    match quantity {
+        Quantity::Velocity => &mut measurement.velocity,
+        Quantity::Position => &mut measurement.position,
+        Quantity::Acceleration => &mut measurement.acceleration,
+        Quantity::Load => &mut measurement.load,
+        Quantity::Temperature => &mut measurement.temperature,
+        Quantity::Other(_) => &mut measurement.other[other],
+    }
 }
 
 fn exhaustive(model: &HostModel, reporter: &Reporter) -> Comparison {
@@ -133,75 +172,95 @@ fn exhaustive(model: &HostModel, reporter: &Reporter) -> Comparison {
     })
 }
 
-/// Evaluates on the emulated target and compares with the runtime on this host.
-fn emulated(
-    arguments: &Verify,
-    image: &[u8],
-    model: &HostModel,
-    points: &[[f32; MAX_INPUTS]],
-) -> Result<(Comparison, Cost)> {
-    let emulator = Emulator::new(&arguments.target)?;
-    let inputs = model.inputs.len();
-    let run = |points: &[[f32; MAX_INPUTS]], mode| {
-        let values: Vec<f32> = points.iter().flat_map(|point| point[..inputs].iter().copied()).collect();
-        emulator.run(&Request { image, values: &values, inputs, mode, floating_point_control: 0 })
-    };
-    let answer = run(points, Mode::Evaluate)?;
-    let mut comparison = Comparison { compared: 0, equal: 0, first_difference: None };
-    for (point, output) in points.iter().zip(&answer.outputs) {
-        let expected = evaluate(model, point);
-        let equal = expected.to_bits() == output.to_bits();
-        comparison = comparison.then(Comparison {
-            compared: 1,
-            equal: u64::from(equal),
-            first_difference: (!equal).then_some(Difference { inputs: *point, runtime: *output, reference: expected }),
-        });
-    }
-    let stride = points.len().div_ceil(COUNTED_POINTS).max(1);
-    let some: Vec<[f32; MAX_INPUTS]> = points.iter().step_by(stride).copied().collect();
-    let counted = run(&some, Mode::Count)?;
+/// Steps the compensator on the emulated target, counting, and compares its answers with the reference.
+fn emulated(arguments: &Verify, image: &[u8], model: &HostModel, calls: &[Call]) -> Result<Found> {
+    let emulator = Emulator::with_binary(&Firmware::find()?, &arguments.target, "emulate-step")?;
+    let values: Vec<f32> = calls.iter().flat_map(Call::words).collect();
+    let (inputs, outputs, mode) = (CALL_WORDS, ANSWER_WORDS, Mode::Count);
+    let answer = emulator.run(&Request { image, values: &values, inputs, outputs, mode, floating_point_control: 0 })?;
+    let (answers, _) = answer.outputs.as_chunks::<ANSWER_WORDS>();
+    let steps = compare_answers(model, calls, answers.iter().copied().map(Answer::from_words));
     let footprint = emulator.footprint()?;
     let cost = Cost {
-        instructions: counted.instruction_range(),
+        instructions: answer.instruction_range(),
         flash_bytes: footprint.flash_bytes + image.len() as u64,
-        ram_bytes: footprint.ram_bytes,
-        stack_bytes: u64::from(counted.evaluate_stack_bytes),
+        ram_bytes: footprint.ram_bytes + u64::from(answer.model_bytes),
+        stack_bytes: u64::from(answer.decode_stack_bytes.max(answer.evaluate_stack_bytes)),
     };
-    Ok((comparison, cost))
+    Ok(Found { steps, law: None, cost })
 }
 
-fn summary(arguments: &Verify, comparison: &Comparison, cost: &Cost) -> String {
-    let mut text = format!("{} of {} equal on {}\n", comparison.equal, comparison.compared, arguments.target);
-    if let Some(difference) = &comparison.first_difference {
+/// `N of N what equal`, or how many agree where not all do.
+fn line<D>(comparison: &Comparison<D>, what: &str) -> String {
+    let word = if comparison.identical() { "equal" } else { "agree" };
+    format!("{} of {} {what} {word}", comparison.equal, comparison.compared)
+}
+
+fn summary(arguments: &Verify, Found { steps, law, cost }: &Found) -> String {
+    let mut text = format!("{} on {}: law, effects, memory and limits\n", line(steps, "steps"), arguments.target);
+    if let Some(StepDifference { step, call, computed, expected }) = &steps.first_difference {
+        let number = |bits| format!("{:?} ({bits:08x})", f32::from_bits(bits));
         text += &format!(
-            "first difference at {:?}: {:?} ({:08x}) where {:?} ({:08x}) is expected\n",
-            difference.inputs,
-            difference.runtime,
-            difference.runtime.to_bits(),
-            difference.reference,
-            difference.reference.to_bits()
+            "first difference at step {step}: torque {}, position {}, status {} where {}, {}, {} is expected\n{call:?}\n",
+            number(computed.torque),
+            number(computed.position),
+            computed.status,
+            number(expected.torque),
+            number(expected.position),
+            expected.status
         );
     }
+    if let Some(law) = law {
+        text += &format!("{}\n", line(law, "values of the static law"));
+        if let Some(difference) = &law.first_difference {
+            text += &format!(
+                "first difference at {:?}: {:?} ({:08x}) where {:?} ({:08x}) is expected\n",
+                difference.inputs,
+                difference.runtime,
+                difference.runtime.to_bits(),
+                difference.reference,
+                difference.reference.to_bits()
+            );
+        }
+    }
     if let Some((least, most)) = cost.instructions {
-        text += &format!("{least} to {most} instructions an evaluation, {} bytes of stack\n", cost.stack_bytes);
+        text += &format!("{least} to {most} instructions a step, {} bytes of stack at the deepest\n", cost.stack_bytes);
     }
     text + &format!("{} bytes of flash, {} bytes of RAM\n", cost.flash_bytes, cost.ram_bytes)
 }
 
-fn as_json(arguments: &Verify, comparison: &Comparison, cost: &Cost) -> Value {
-    let difference = comparison.first_difference.as_ref().map(|difference| {
+fn as_json(arguments: &Verify, Found { steps, law, cost }: &Found) -> Value {
+    let of_step = steps.first_difference.as_ref().map(|difference| {
+        let answer =
+            |Answer { torque, position, status }| json!({"torque": torque, "position": position, "status": status});
+        json!({
+            "step": difference.step,
+            "call_bits": difference.call.words().map(f32::to_bits),
+            "computed_bits": answer(difference.computed),
+            "expected_bits": answer(difference.expected),
+        })
+    });
+    let of_law = law.and_then(|law| law.first_difference).map(|difference| {
         json!({
             "inputs_bits": difference.inputs.map(f32::to_bits),
             "computed_bits": difference.runtime.to_bits(),
             "expected_bits": difference.reference.to_bits(),
         })
     });
+    // What was asked for: the steps, or every value of the law.
+    let (compared, equal) = match law {
+        Some(law) if arguments.exhaustive => (law.compared, law.equal),
+        _ => (steps.compared, steps.equal),
+    };
     json!({
         "schema": "frikan.verify/1",
         "target": arguments.target,
-        "compared": comparison.compared,
-        "equal": comparison.equal,
-        "first_difference": difference,
+        "compared": compared,
+        "equal": equal,
+        "first_difference": of_step.clone().or(of_law.clone()),
+        "steps": steps.compared,
+        "steps_equal": steps.equal,
+        "law": law.map(|law| json!({"compared": law.compared, "equal": law.equal, "first_difference": of_law})),
         "instructions": cost.instructions.map(|(min, max)| json!({"min": min, "max": max})),
         "flash_bytes": cost.flash_bytes,
         "ram_bytes": cost.ram_bytes,

@@ -5,13 +5,16 @@ use super::interval::Interval;
 use super::series::{ORDERS, Series};
 use super::tables::compile_layout;
 use crate::physics::{Action, EffectId};
-use frikan_shared::effect::{Effect, Harmonic, Kind};
-use frikan_shared::model::RigidBody;
+use frikan_shared::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS, MAX_HARMONICS};
+use frikan_shared::model::{Law, Model, RigidBody};
 use frikan_shared::table::{Cell, Table, Uniform, UniformShape};
 use frikan_shared::units::Quantity;
 
 /// Cells of a table over position.
 const POSITION_CELLS: u16 = 24;
+
+/// Distance of a presliding element over that of the one before (the equation of `physics::presliding`).
+const DISTANCE_RATIO: f64 = 4.0;
 
 /// What the coefficients of the effects refer to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,6 +31,15 @@ pub struct Context {
     pub power_ratio: f64,
     /// Length of the recording, s.
     pub duration: f64,
+    /// Whether the model may read the position: it is recorded, and the law has room for another channel or reads it anyway.
+    pub may_read_position: bool,
+}
+
+/// Whether a model may read the position beside what it reads: a network reads what it was fitted on, and a model so many channels.
+#[must_use]
+pub fn has_room_for_position<const CELLS: usize>(model: &Model<CELLS>) -> bool {
+    let reads_position = model.inputs.iter().any(|input| input.quantity == Quantity::Position);
+    reads_position || !(model.inputs.is_full() || matches!(model.law, Law::Network(_)))
 }
 
 /// Terms collected for one image.
@@ -65,8 +77,14 @@ impl Terms {
         if self.correct_rigid_body(effect, shape, coefficients) {
             return Ok(());
         }
-        let term = self.term(effect, shape, coefficients, context)?;
-        self.effects.push(term);
+        match self.term(effect, shape, coefficients, context)? {
+            // The law sees the velocity that a lag gives: it is the first.
+            lag @ Effect::FrictionalLag { .. } => self.effects.insert(0, lag),
+            Effect::Ripple { kind, harmonics, .. } if self.has_room(kind, harmonics.len()) => {
+                self.ripple(kind).into_iter().for_each(|lines| lines.extend(harmonics.iter().copied()));
+            }
+            term => self.effects.push(term),
+        }
         Ok(())
     }
 
@@ -122,9 +140,9 @@ impl Terms {
             }
             EffectId::Temperature => {
                 self.read(Quantity::Temperature);
-                // A viscosity that decays is taken by its slope at the reference.
                 let (coulomb, viscous) = pair(shape[0]);
-                Effect::Temperature { reference: shape[1] as f32, coulomb, viscous, smoothing_velocity }
+                let (reference, decay) = (shape[1] as f32, shape[2] as f32);
+                Effect::Temperature { reference, coulomb, viscous, decay, smoothing_velocity }
             }
             EffectId::WarmUp => {
                 let (coulomb, viscous) = pair(shape[1]);
@@ -138,9 +156,8 @@ impl Terms {
                 let scaled = c[0] / if quadratic { context.load_scale.max(f64::MIN_POSITIVE) } else { 1.0 };
                 let (mean, quadratic) = if quadratic { (0.0, scaled) } else { (scaled, 0.0) };
                 let mut effect = self.load(mean, 0.0, quadratic, smoothing_velocity);
-                let extra = c.get(1).filter(|_| c[0] != 0.0);
-                if let (Some(extra), Effect::Load { stribeck, velocity, .. }) = (extra, &mut effect) {
-                    (*stribeck, *velocity) = ((extra / c[0]) as f32, shape[1] as f32);
+                if let (Some(extra), Effect::Load { stribeck, velocity, .. }) = (c.get(1), &mut effect) {
+                    (*stribeck, *velocity) = (*extra as f32, shape[1] as f32);
                 }
                 effect
             }
@@ -154,23 +171,22 @@ impl Terms {
                 let bend = c.get(1).map_or(0.0, |bend| bend * age * age);
                 Effect::Coulomb { coulomb: (c[0] * age + bend) as f32, viscous: 0.0, smoothing_velocity }
             }
-            EffectId::Presliding if c[0] > 0.0 => Effect::Presliding {
-                coulomb: c[0] as f32,
-                breakaway: c[0] as f32,
-                velocity: smoothing_velocity,
-                stiffness: (c[0] / shape[0]) as f32,
-                smoothing_velocity,
-            },
-            EffectId::Presliding => return Err("a bristle that pushes is not dissipative"),
+            EffectId::Presliding => {
+                self.read_way(context);
+                Effect::Presliding { smoothing_velocity, elements: elements(shape[0], c)? }
+            }
             EffectId::FrictionalLag => Effect::FrictionalLag { time_constant: (c[0] * shape[0]).max(1e-6) as f32 },
-            EffectId::DwellBreakaway => Effect::DwellBreakaway {
-                gain: c[0] as f32,
-                time: shape[1] as f32,
-                distance: shape[0] as f32,
-                rest_velocity: 0.5 * smoothing_velocity,
-                dwell_limit: context.longest_dwell.max(0.1) as f32,
-                smoothing_velocity,
-            },
+            EffectId::DwellBreakaway => {
+                self.read_way(context);
+                Effect::DwellBreakaway {
+                    gain: c[0] as f32,
+                    time: shape[1] as f32,
+                    distance: shape[0] as f32,
+                    rest_velocity: 0.5 * smoothing_velocity,
+                    dwell_limit: context.longest_dwell.max(0.1) as f32,
+                    smoothing_velocity,
+                }
+            }
             EffectId::PositionRipple => {
                 self.read(Quantity::Position);
                 let kind = if shape[1] == 1.0 { Kind::Friction } else { Kind::Torque };
@@ -213,11 +229,46 @@ impl Terms {
         Effect::PositionTable { kind: Kind::Friction, smoothing_velocity, table: compiled.table }
     }
 
+    /// Reads the position for what goes by a way, where it is recorded; by the velocity otherwise.
+    fn read_way(&mut self, context: &Context) {
+        if context.may_read_position {
+            self.read(Quantity::Position);
+        }
+    }
+
+    /// The lines of the ripple of a kind that there is.
+    fn ripple(&mut self, of: Kind) -> Option<&mut heapless::Vec<Harmonic, MAX_HARMONICS>> {
+        self.effects.iter_mut().find_map(|effect| match effect {
+            Effect::Ripple { kind, harmonics, .. } if *kind == of && harmonics.len() < MAX_HARMONICS => Some(harmonics),
+            _ => None,
+        })
+    }
+
+    /// Whether a ripple of a kind has room for `more` lines.
+    fn has_room(&mut self, kind: Kind, more: usize) -> bool {
+        self.ripple(kind).is_some_and(|lines| lines.len() + more <= MAX_HARMONICS)
+    }
+
     fn read(&mut self, quantity: Quantity) {
         if !self.channels.contains(&quantity) {
             self.channels.push(quantity);
         }
     }
+}
+
+/// The Maxwell slip elements of presliding: one a torque, the distance of each four times that of the one before. Those that hold no torque
+/// are left out.
+fn elements(first: f64, torques: &[f64]) -> Result<heapless::Vec<Element, MAX_ELEMENTS>, &'static str> {
+    if torques.iter().any(|torque| *torque < 0.0) {
+        return Err("an element that pushes is not dissipative");
+    }
+    let distances = std::iter::successors(Some(first), |distance| Some(DISTANCE_RATIO * distance));
+    let mut elements = heapless::Vec::new();
+    for (torque, distance) in torques.iter().zip(distances).filter(|(torque, _)| **torque > 0.0) {
+        let element = Element { torque: *torque as f32, distance: distance as f32 };
+        elements.push(element).map_err(|_| "presliding has more elements than an image holds")?;
+    }
+    if elements.is_empty() { Err("presliding without a torque is none") } else { Ok(elements) }
 }
 
 /// `sum c_j cos(j pi x)` with `x` from 0 to 1 over the travel.
@@ -240,40 +291,4 @@ impl Curve for CosineSeries {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn driving_and_backdriving_become_mean_and_difference() {
-        let mut terms = Terms::default();
-        terms.add(EffectId::DriveBackdrive, &[2.0], &[0.3, 0.1], &Context::default()).unwrap();
-        let Effect::Load { mean, difference, .. } = terms.effects[0] else { panic!("{:?}", terms.effects) };
-        assert!((mean - 0.2).abs() < 1e-6 && (difference - 0.1).abs() < 1e-6);
-        assert_eq!(terms.channels, [Quantity::Load]);
-    }
-
-    #[test]
-    fn a_scale_corrects_every_rigid_body_parameter() {
-        let mut terms = Terms::default();
-        terms.rigid_body.inertia = 2.0;
-        terms.add(EffectId::TorqueScale, &[], &[0.1], &Context::default()).unwrap();
-        assert!((terms.rigid_body.inertia - 2.2).abs() < 1e-6 && (terms.rigid_body.given_scale - 1.1).abs() < 1e-6);
-        assert!(terms.effects.is_empty());
-    }
-
-    #[test]
-    fn faults_are_not_compensated() {
-        assert!(Terms::default().add(EffectId::Contact, &[0.0, 1.0], &[9.0], &Context::default()).is_err());
-        assert!(Terms::default().add(EffectId::TimeMisalignment, &[], &[0.01], &Context::default()).is_err());
-    }
-
-    #[test]
-    fn the_table_over_position_is_its_series() {
-        let mut terms = Terms { first_cell: 3, ..Terms::default() };
-        terms.add(EffectId::PositionFriction, &[3.0, -1.0, 1.0], &[0.5, -0.2, 0.1], &Context::default()).unwrap();
-        assert_eq!(terms.cells.len(), usize::from(POSITION_CELLS));
-        // The coordinate of a cell runs from one to two.
-        let start: f32 = terms.cells[0].floats().iter().sum();
-        assert!((start - (0.5 - 0.2 + 0.1)).abs() < 1e-4, "{start}");
-    }
-}
+mod tests;

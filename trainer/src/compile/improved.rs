@@ -1,6 +1,6 @@
 //! The improved model: base law as refitted, rigid body as corrected, and every finding that a drive can run.
 
-use crate::compile::effects::{Context, Terms};
+use crate::compile::effects::{Context, Terms, has_room_for_position};
 use crate::compile::formula::{Curve, Parity};
 use crate::compile::interval::Interval;
 use crate::compile::series::{ORDERS, Series};
@@ -67,6 +67,7 @@ pub fn improve(diagnosis: &Diagnosis, comparison: &Comparison, origin: Origin<'_
         power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
         power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
         duration: state.time.last()? - state.time.first()?,
+        may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
     };
     let mut terms = Terms { rigid_body: rigid_body(diagnosis, &comparison.signals, origin), ..Terms::default() };
     if let Origin::Model(model) = origin {

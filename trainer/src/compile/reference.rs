@@ -106,7 +106,8 @@ fn cubic(cell: Cell, (_, t, turned): Found) -> f32 {
     if turned { -value } else { value }
 }
 
-fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
+/// The value of a single table at `input`.
+pub(super) fn single_table(table: &Table, cells: &[Cell], input: f32) -> f32 {
     let found = find(table, input);
     cubic(cells[found.0], found)
 }

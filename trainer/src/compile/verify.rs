@@ -20,19 +20,26 @@ pub struct Difference {
     pub reference: f32,
 }
 
-/// The outcome of a comparison.
+/// The outcome of a comparison, of the static law unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
+pub struct Comparison<D = Difference> {
     /// Inputs compared.
     pub compared: u64,
     /// Inputs at which all bits agree.
     pub equal: u64,
     /// The first difference, in the order of the inputs.
-    pub first_difference: Option<Difference>,
+    pub first_difference: Option<D>,
 }
 
-impl Comparison {
-    const NONE: Self = Self { compared: 0, equal: 0, first_difference: None };
+impl<D> Comparison<D> {
+    /// Of nothing.
+    pub const NONE: Self = Self { compared: 0, equal: 0, first_difference: None };
+
+    /// Of one input, with the difference that it showed.
+    #[must_use]
+    pub fn of_one(difference: Option<D>) -> Self {
+        Self { compared: 1, equal: u64::from(difference.is_none()), first_difference: difference }
+    }
 
     /// Whether every input agreed.
     #[must_use]
@@ -54,11 +61,7 @@ impl Comparison {
 fn compare_one<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS]) -> Comparison {
     let (runtime, reference) = (evaluate(model, inputs), evaluate_one(model, inputs));
     let equal = runtime.to_bits() == reference.to_bits();
-    Comparison {
-        compared: 1,
-        equal: u64::from(equal),
-        first_difference: (!equal).then_some(Difference { inputs: *inputs, runtime, reference }),
-    }
+    Comparison::of_one((!equal).then_some(Difference { inputs: *inputs, runtime, reference }))
 }
 
 /// Compares at each of `inputs`, for example those of a recording.

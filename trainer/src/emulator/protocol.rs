@@ -3,7 +3,7 @@
 //! All words are little-endian `u32`. Request: magic, mode, floating-point control bits, image length, rows, inputs a
 //! row, then the rows as `f32` bits. Answer: magic, status, ticks of an empty call, ticks of [`CALIBRATION_NOPS`] more
 //! instructions, ticks of decoding, stack of decoding, stack of evaluating, bytes of the decoded model; then for each
-//! row the output bits and, where they are counted, the ticks.
+//! row its outputs and, where they are counted, the ticks.
 
 use crate::error::{Error, Result, codes};
 
@@ -13,7 +13,7 @@ const CALIBRATION_NOPS: u32 = 1024;
 const BAD_REQUEST: u32 = u32::MAX;
 
 /// Most inputs a row.
-pub const MAX_INPUTS: usize = 4;
+pub const MAX_INPUTS: usize = 14;
 
 /// What a run brings back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +31,10 @@ pub struct Request<'a> {
     pub image: &'a [u8],
     /// Rows one after the other; a multiple of `inputs`.
     pub values: &'a [f32],
-    /// Inputs a row, 1 to [`MAX_INPUTS`]; as many as the model has.
+    /// Inputs a row, 1 to [`MAX_INPUTS`]; as many as the evaluator reads.
     pub inputs: usize,
+    /// Outputs a row, at least 1; as many as the evaluator has.
+    pub outputs: usize,
     /// Whether instructions are counted.
     pub mode: Mode,
     /// Bits set in the FPSCR of an Arm target with FPU: bit 24 flushes subnormals to zero, bit 25 makes every NaN the
@@ -50,8 +52,11 @@ impl Request<'_> {
     /// The request file.
     pub(super) fn to_bytes(self) -> Result<Vec<u8>> {
         let word = |value: usize| u32::try_from(value).map_err(|_| failure("the request is too large"));
-        if !(1..=MAX_INPUTS).contains(&self.inputs) || !self.values.len().is_multiple_of(self.inputs) {
-            return Err(failure("the rows do not have as many values as the model has inputs"));
+        if !(1..=MAX_INPUTS).contains(&self.inputs)
+            || self.outputs == 0
+            || !self.values.len().is_multiple_of(self.inputs)
+        {
+            return Err(failure("the rows do not have as many values as the evaluator reads"));
         }
         let mode = match self.mode {
             Mode::Evaluate => 0,
@@ -67,7 +72,7 @@ impl Request<'_> {
 /// What the target computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// One output a row, in the bits of the target.
+    /// The outputs of each row, in the bits of the target.
     pub outputs: Vec<f32>,
     /// Instructions of each evaluation, from the first inside the call to its return; empty unless counted.
     pub instructions: Vec<u32>,
@@ -105,15 +110,17 @@ impl Answer {
             }
             _ => return Err(failure("the firmware's answer is not an answer")),
         }
-        let row_words = if request.mode == Mode::Count { 2 } else { 1 };
+        let row_words = request.outputs + usize::from(request.mode == Mode::Count);
         if !rest.is_empty() || rows.len() != row_words * request.rows() {
             return Err(short());
         }
-        let outputs = rows.iter().step_by(row_words).map(|bits| f32::from_bits(*bits)).collect();
+        let rows = rows.chunks_exact(row_words);
+        let outputs = rows.clone().flat_map(|row| &row[..request.outputs]).map(|bits| f32::from_bits(*bits)).collect();
         let (instructions, decode_instructions) = if request.mode == Mode::Count {
             let clock = Clock { empty, calibration };
             // The empty call is one instruction: its return.
-            let counted = rows.iter().skip(1).step_by(2).map(|ticks| clock.instructions(*ticks).map(|count| count + 1));
+            let ticks = rows.flat_map(|row| row.last());
+            let counted = ticks.map(|ticks| clock.instructions(*ticks).map(|count| count + 1));
             (counted.collect::<Result<_>>()?, clock.instructions(decode)?)
         } else {
             (Vec::new(), 0)

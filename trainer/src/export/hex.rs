@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Records of sixteen bytes with extended linear addresses; the first byte goes to `first`.
+/// Records of sixteen bytes with extended linear addresses; the first byte goes to `first`, and the last one below 2^32.
 #[must_use]
 pub fn intel_hex(bytes: &[u8], first: u32) -> String {
     let mut text = String::new();

@@ -74,7 +74,7 @@ fn channels<'a>(model: &HostModel, samples: &'a Samples) -> Result<Vec<&'a [f64]
 fn friction(model: &HostModel, samples: &Samples, channels: &[&[f64]]) -> Vec<f64> {
     let at = |column: Option<&[f64]>, row: usize| column.map_or(0.0, |values| values[row] as f32);
     let mut friction = Vec::with_capacity(samples.len());
-    let mut state = FrictionState::new(&model.effects);
+    let mut state = FrictionState::new();
     for (segment, rest) in samples.segments.iter().zip(rests(&samples.time, &samples.segments)) {
         state = state.after_rest(&model.effects, rest as f32);
         for row in segment.clone() {

@@ -6,7 +6,7 @@
 //!
 //! `answer.bin`: [`MAGIC`], status (0, or the evaluator's error number), ticks of an empty call, ticks of
 //! [`CALIBRATION_NOPS`] more instructions, ticks of decoding, stack bytes of decoding, stack bytes of evaluating, bytes
-//! of the decoded model; then a row each: the output bits and, in mode [`COUNT`], the ticks.
+//! of the decoded model; then a row each: the outputs, as many as the evaluator has, and, in mode [`COUNT`], the ticks.
 
 /// First word of both files.
 pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"FRKQ");
@@ -23,7 +23,9 @@ pub(crate) const CALIBRATION_NOPS: usize = 1024;
 /// Status of a request that the harness cannot serve.
 pub(crate) const BAD_REQUEST: u32 = u32::MAX;
 /// Most inputs a row.
-pub(crate) const MAX_INPUTS: usize = 4;
+pub(crate) const MAX_INPUTS: usize = 14;
+/// Most outputs a row.
+pub(crate) const MAX_OUTPUTS: usize = 3;
 
-/// The inputs of one evaluation; those that the model does not have are zero.
+/// The inputs of one evaluation; those that the request does not have are zero.
 pub type Row = [f32; MAX_INPUTS];

@@ -2,22 +2,36 @@
 
 use crate::hardware::{calibration_call, clock, empty_call, flash, set_floating_point_control, stack_depth};
 use crate::measure::{Call, ticks, ticks_and_stack};
-use crate::protocol::{ANSWER_WORDS, BAD_REQUEST, COUNT, EVALUATE, MAGIC, MAX_INPUTS, REQUEST_WORDS, Row};
+use crate::protocol::{ANSWER_WORDS, BAD_REQUEST, COUNT, EVALUATE, MAGIC, MAX_INPUTS, MAX_OUTPUTS, REQUEST_WORDS, Row};
 use crate::semihosting::{File, Mode, exit};
 
 /// Rows that are read, evaluated and written at a time.
-const CHUNK_ROWS: usize = 64;
+const CHUNK_ROWS: usize = 32;
+
+/// Words that a row's answer takes at most: outputs and ticks.
+const ANSWER_ROW: usize = MAX_OUTPUTS + 1;
 
 /// What the harness runs.
 pub trait Evaluator: Sized {
+    /// Outputs a row.
+    const OUTPUTS: usize = 1;
+
     /// The evaluator of the image that stands in flash, or the number of the reason why there is none (not 0).
     fn decode(image: &'static [u8]) -> Result<Self, u32>;
 
     /// Inputs a row.
     fn inputs(&self) -> usize;
 
-    /// The output of one row.
+    /// What is done with a row before the clock starts.
+    fn prepare(&mut self, _row: &Row) {}
+
+    /// The output of one row; the call that is counted.
     fn evaluate(&mut self, row: &Row) -> f32;
+
+    /// The words of the answer to the row of which `output` came back; [`Evaluator::OUTPUTS`] of them are written.
+    fn outputs(&self, output: f32) -> [u32; MAX_OUTPUTS] {
+        [output.to_bits(), 0, 0]
+    }
 }
 
 /// Serves the request beside the emulator and ends the emulation: exit status 0, or 1 where a file failed.
@@ -67,6 +81,7 @@ fn measured<E: Evaluator>(image: &'static [u8], inputs: usize, call: Call<E>) ->
     }
     let (_, empty_ticks) = ticks(empty_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
     let (_, calibration_ticks) = ticks(calibration_call::<E>, &mut evaluator, &[0.0; MAX_INPUTS]);
+    evaluator.prepare(&[0.5; MAX_INPUTS]);
     let (_, evaluate_stack) = stack_depth(|| call(&mut evaluator, &[0.5; MAX_INPUTS]));
     Ok([MAGIC, 0, empty_ticks, calibration_ticks, decode_ticks, decode_stack, evaluate_stack, size_of::<E>() as u32])
 }
@@ -87,18 +102,18 @@ fn evaluate_rows<E: Evaluator>(
         let rows = left.min(CHUNK_ROWS);
         let mut inputs = [[0_u8; 4]; CHUNK_ROWS * MAX_INPUTS];
         requests.read(inputs.as_flattened_mut().get_mut(..4 * rows * inputs_a_row)?)?;
-        let mut outputs = [0_u32; 2 * CHUNK_ROWS];
+        let mut outputs = [0_u32; ANSWER_ROW * CHUNK_ROWS];
         let mut written = 0;
         for bits in inputs.chunks_exact(inputs_a_row).take(rows) {
             let mut row = [0.0; MAX_INPUTS];
             for (value, bits) in row.iter_mut().zip(bits) {
                 *value = f32::from_le_bytes(*bits);
             }
+            evaluator.prepare(&row);
             let (output, ticks) = ticks(call, &mut evaluator, &row);
-            *outputs.get_mut(written)? = output.to_bits();
-            written += 1;
-            if request.mode == COUNT {
-                *outputs.get_mut(written)? = ticks;
+            let words = evaluator.outputs(output).into_iter().take(E::OUTPUTS);
+            for word in words.chain((request.mode == COUNT).then_some(ticks)) {
+                *outputs.get_mut(written)? = word;
                 written += 1;
             }
         }
@@ -128,9 +143,9 @@ fn refuse(answers: &mut File, status: u32) -> Option<()> {
     write_words(answers, &[MAGIC, status, 0, 0, 0, 0, 0, 0])
 }
 
-/// Writes at most `2 * CHUNK_ROWS` words.
+/// Writes at most `ANSWER_ROW * CHUNK_ROWS` words.
 fn write_words(file: &mut File, words: &[u32]) -> Option<()> {
-    let mut buffer = [[0_u8; 4]; 2 * CHUNK_ROWS];
+    let mut buffer = [[0_u8; 4]; ANSWER_ROW * CHUNK_ROWS];
     for (bytes, word) in buffer.iter_mut().zip(words) {
         *bytes = word.to_le_bytes();
     }

@@ -2,23 +2,27 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod drive;
+
+pub use drive::Drive;
+
 use frikan_firmware_harness::{Evaluator, Row};
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::integer_table::evaluate_integer;
 use frikan_shared::image::{ImageError, decode};
 use frikan_shared::integer_table::IntegerTable;
-use frikan_shared::model::{Law, Model};
+use frikan_shared::model::{Law, MAX_INPUTS, Model};
 use frikan_shared::pool::Pool;
 
 /// Cells for which a drive has room.
 pub const CELLS: usize = 128;
 
-/// A drive that carries one joint's friction model.
-pub struct Drive {
+/// The static law of an image: a row holds the inputs of the model.
+pub struct StaticLaw {
     model: Model<CELLS>,
 }
 
-impl Evaluator for Drive {
+impl Evaluator for StaticLaw {
     fn decode(image: &'static [u8]) -> Result<Self, u32> {
         decode(image).map(|image| Self { model: image.model }).map_err(reason)
     }
@@ -28,7 +32,8 @@ impl Evaluator for Drive {
     }
 
     fn evaluate(&mut self, row: &Row) -> f32 {
-        evaluate(&self.model, row)
+        // A row is longer than the model's inputs; the rest of it is not looked at.
+        row.first_chunk::<MAX_INPUTS>().map_or(0.0, |inputs| evaluate(&self.model, inputs))
     }
 }
 

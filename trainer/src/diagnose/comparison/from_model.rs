@@ -86,7 +86,7 @@ fn measurement(state: &JointState, i: usize) -> Measurement {
 /// Law and effects over the recording; memories restart at each segment, but for the warmth that the rest before it leaves.
 fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<f64> {
     let mut friction = vec![0.0; state.len()];
-    let mut memory = FrictionState::new(&model.effects);
+    let mut memory = FrictionState::new();
     for (segment, rest) in state.segments.iter().zip(rests(&state.time, &state.segments)) {
         memory = memory.after_rest(&model.effects, rest as f32);
         for i in segment.clone() {

@@ -1,5 +1,5 @@
-//! A law as C source without dependency: one .c and one .h whose function computes the very bits of the runtime, where the compiler
-//! rounds every operation by itself (`-ffp-contract=off`, no `-ffast-math`).
+//! A law as C source without dependency: one .c and one .h whose function computes the very bits of the runtime. The source keeps the compiler
+//! from contracting a product and a sum, and refuses the options by which it would not round every operation by itself.
 
 mod program;
 
@@ -62,11 +62,14 @@ fn refusal(reason: &str) -> Error {
 fn preamble(name: &str, title: &str) -> String {
     format!(
         "/* {title}. Made by `trainer export --to c`; do not edit.\n \
-         * Every operation is rounded by itself: compile with -ffp-contract=off, without -ffast-math. */\n\
+         * Every operation is rounded by itself: no -ffast-math, nor what is part of it. */\n\
          #include \"{name}.h\"\n\n#include <float.h>\n#include <stdint.h>\n\n\
-         #if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0\n\
+         #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || FLT_EVAL_METHOD != 0\n\
          #error \"float operations must be rounded one by one, to float\"\n#endif\n\
-         #ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif\n\n"
+         #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0\n\
+         #error \"an input that is NaN must be told from a number: compile without -ffinite-math-only\"\n#endif\n\
+         #if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize (\"fp-contract=off\")\n\
+         #else\n#pragma STDC FP_CONTRACT OFF\n#endif\n\n"
     )
 }
 

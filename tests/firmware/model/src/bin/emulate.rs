@@ -1,11 +1,11 @@
-//! Evaluates the image in flash on the rows that the host sends, and counts.
+//! Evaluates the static law of the image in flash on the rows that the host sends, and counts.
 #![no_std]
 #![no_main]
 
-use frikan_firmware::Drive;
+use frikan_firmware::StaticLaw;
 use frikan_firmware_harness::{entry, serve};
 
 #[entry]
 fn main() -> ! {
-    serve::<Drive>()
+    serve::<StaticLaw>()
 }

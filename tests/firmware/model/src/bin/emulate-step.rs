@@ -1,0 +1,11 @@
+//! Steps the compensator of the image in flash through the samples that the host sends, and counts.
+#![no_std]
+#![no_main]
+
+use frikan_firmware::Drive;
+use frikan_firmware_harness::{entry, serve};
+
+#[entry]
+fn main() -> ! {
+    serve::<Drive>()
+}
