@@ -3,6 +3,7 @@
 mod compare;
 mod summary;
 
+use crate::commands::measurement::{self, Warning};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::diagnose::improve::{Origin, improve};
@@ -16,7 +17,7 @@ use crate::error::{Error, Result, codes};
 use crate::fit;
 use crate::joint::Joint;
 use crate::physics::JointState;
-use crate::recording::{self, Axis, Quantity, Recording};
+use crate::recording::{Axis, Quantity, Recording};
 use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
 use compare::{Compared, compared_signals};
@@ -89,8 +90,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let recordings =
-        arguments.recordings.iter().map(|path| recording::load(path, &joint)).collect::<Result<Vec<Recording>>>()?;
+    let (recordings, warnings) = load_all(&arguments.recordings, &joint)?;
     let real = &recordings[0];
     let (signals, compared) = compared_signals(arguments, &recordings, &joint)?;
     let units = units(real);
@@ -101,6 +101,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     };
     reporter.say("weighing every effect against the noise");
     let mut diagnosis = diagnose(&signals, units.actuator, &options).map_err(|refusal| refused(&refusal, real))?;
+    tell_measurement(&mut diagnosis, &warnings);
     reporter.say("choosing what to record next");
     let advice = advice(&signals, &diagnosis, &joint, (&compared, real));
     if let Some(plan) = &advice {
@@ -111,7 +112,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let mut outputs = Outputs::default();
     let seconds = begin.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
-        let summary = summary(&diagnosis, &story, advice.as_ref(), seconds, arguments.seed);
+        let summary = summary(&diagnosis, &story, (&warnings, advice.as_ref()), seconds, arguments.seed);
         outputs.add(path, summary.to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
@@ -163,6 +164,19 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         eprintln!("{}: {samples} samples, {rows} rows behind {hz:.0} Hz, {seconds:.1} s{memory}", real.label);
     }
     Ok(exit_status(diagnosis.verdict))
+}
+
+fn load_all(paths: &[PathBuf], joint: &Joint) -> Result<(Vec<Recording>, Vec<Warning>)> {
+    let loaded = paths.iter().map(|path| measurement::load_with_faults(path, joint)).collect::<Result<Vec<_>>>()?;
+    let (recordings, warnings): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
+    Ok((recordings, warnings.concat()))
+}
+
+/// Puts what the checks of the recordings found before what was found behind them.
+fn tell_measurement(diagnosis: &mut Diagnosis, warnings: &[Warning]) {
+    for warning in warnings.iter().rev() {
+        diagnosis.tell_first(warning.to_health(), warning.is_finding());
+    }
 }
 
 /// The motion that would tell apart what cannot be told, within the limits of the joint.

@@ -9,6 +9,7 @@ use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
 use serde_json::{Value, json};
 
+use super::measurement::motion;
 use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::compile::verify::{Comparison, Difference, compare, compare_exhaustively, sweep};
@@ -109,7 +110,7 @@ pub fn run(arguments: &Verify) -> Result<u8> {
 /// Inputs of the model along a recording.
 fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<[f32; MAX_INPUTS]>> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let recording = recording::load(path, &joint)?;
+    let recording = motion(recording::load(path, &joint)?, &joint)?.0;
     let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
     let mut points = vec![[0.0; MAX_INPUTS]; samples.len()];
     for (slot, input) in model.inputs.iter().enumerate() {

@@ -5,6 +5,7 @@ use super::base::BaseKind;
 use super::blocks::Lock;
 use super::channel::Channel;
 use super::conclude::{Fitted, Refit};
+use super::findings::measurement_finding;
 use super::health::HealthNote;
 use super::localise::Location;
 use super::prove::Proof;
@@ -164,6 +165,17 @@ impl Diagnosis {
         self.findings.insert(0, fault);
         self.traces.effects.insert(0, vec![0.0; self.traces.len()]);
         self.verdict = Verdict::of(&self.findings, self.health.iter().any(|note| note.blocking));
+    }
+
+    /// Puts a note on the measurement before all others; as a finding too, where it is one and no other says the same.
+    pub fn tell_first(&mut self, note: HealthNote, is_finding: bool) {
+        let is_said =
+            self.findings.iter().any(|found| found.effect == note.effect && found.action == Action::Measurement);
+        let finding = measurement_finding(&note);
+        self.health.insert(0, note);
+        if is_finding && !is_said {
+            self.put_first(finding);
+        }
     }
 }
 

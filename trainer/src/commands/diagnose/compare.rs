@@ -1,6 +1,7 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
 use super::{Diagnose, units};
+use crate::commands::measurement::motion;
 use crate::diagnose::simulation::{self, InverseLaw};
 use crate::diagnose::units::Units;
 use crate::diagnose::{Reference, Signals, model};
@@ -32,7 +33,7 @@ impl Compared {
 /// Signals of the real recordings beside what they are compared with.
 pub(super) fn compared_signals(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Signals, Compared)> {
     if let Some(path) = &arguments.simulation {
-        let simulated = recording::load(path, joint)?;
+        let simulated = motion(recording::load(path, joint)?, joint)?.0;
         same_units(&real[0], &simulated)?;
         let mut signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;

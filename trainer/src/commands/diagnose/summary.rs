@@ -1,7 +1,8 @@
 //! A diagnosis as JSON, schema `frikan.diagnose/1`.
 
+use crate::commands::measurement::Warning;
 use crate::diagnose::sentence::Story;
-use crate::diagnose::{BaseKind, Diagnosis, Finding, Plan, Region, Scored, Side};
+use crate::diagnose::{BaseKind, Diagnosis, Finding, HealthNote, Plan, Region, Scored, Side};
 use crate::physics::EffectId;
 use serde_json::{Value, json};
 
@@ -9,7 +10,13 @@ use serde_json::{Value, json};
 const STANDINGS: usize = 8;
 
 /// The whole summary.
-pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>, seconds: f64, seed: u64) -> Value {
+pub(super) fn summary(
+    diagnosis: &Diagnosis,
+    story: &Story,
+    (warnings, plan): (&[Warning], Option<&Plan>),
+    seconds: f64,
+    seed: u64,
+) -> Value {
     let held_out = diagnosis.proof.as_ref().map(|proof| {
         json!({
             "baseline_rmse": proof.baseline_rmse,
@@ -25,7 +32,7 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
         "schema": "frikan.diagnose/1",
         "verdict": diagnosis.verdict,
         "headline": story.headline,
-        "health": diagnosis.health,
+        "health": health(diagnosis, warnings),
         "findings": diagnosis.findings.iter().zip(&story.findings).map(finding_json).collect::<Vec<_>>(),
         "minor": diagnosis.minor.iter().map(|(effect, share)| json!({ "effect": effect, "share": share })).collect::<Vec<_>>(),
         "doubtful": explaining(&diagnosis.doubtful),
@@ -54,6 +61,17 @@ pub(super) fn summary(diagnosis: &Diagnosis, story: &Story, plan: Option<&Plan>,
         "seconds": seconds,
         "seed": seed,
     })
+}
+
+/// Notes on the measurement; the first ones are those of the checks, which know code and times.
+fn health(diagnosis: &Diagnosis, warnings: &[Warning]) -> Vec<Value> {
+    let note = |(index, note): (usize, &HealthNote)| {
+        let mut json = json!(note);
+        json["code"] = warnings.get(index).map_or(note.effect.code(), Warning::code).into();
+        json["when_s"] = json!(warnings.get(index).map_or(&[][..], Warning::when_s));
+        json
+    };
+    diagnosis.health.iter().enumerate().map(note).collect()
 }
 
 fn plan_json(plan: &Plan) -> Value {
