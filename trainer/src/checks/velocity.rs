@@ -60,7 +60,7 @@ fn contradiction(recording: &Recording) -> Option<Fault> {
     if !SAME_UNIT.contains(&factor) {
         let is_unit = |unit: &f64| [*unit, 1.0 / unit].iter().any(|unit| (factor.abs() / unit - 1.0).abs() < NEAR);
         let is_turned = (factor + 1.0).abs() < NEAR;
-        return if is_turned || UNIT_FACTORS.iter().any(|unit| is_unit(unit)) {
+        return if is_turned || UNIT_FACTORS.iter().any(is_unit) {
             Some(Fault::WrongUnit(WrongUnit::VelocityOverDerivative(factor)))
         } else {
             contradicts(Contradiction::Scaled(factor))

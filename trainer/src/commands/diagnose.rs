@@ -3,7 +3,7 @@
 mod compare;
 mod summary;
 
-use crate::commands::measurement::{self, Warning};
+use crate::commands::measurement::{self, Warning, load_all};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::diagnose::improve::{Origin, improve};
@@ -90,7 +90,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let (recordings, warnings) = load_all(&arguments.recordings, &joint)?;
+    let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
     let real = &recordings[0];
     let (signals, compared) = compared_signals(arguments, &recordings, &joint)?;
     let units = units(real);
@@ -164,12 +164,6 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         eprintln!("{}: {samples} samples, {rows} rows behind {hz:.0} Hz, {seconds:.1} s{memory}", real.label);
     }
     Ok(exit_status(diagnosis.verdict))
-}
-
-fn load_all(paths: &[PathBuf], joint: &Joint) -> Result<(Vec<Recording>, Vec<Warning>)> {
-    let loaded = paths.iter().map(|path| measurement::load_with_faults(path, joint)).collect::<Result<Vec<_>>>()?;
-    let (recordings, warnings): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
-    Ok((recordings, warnings.concat()))
 }
 
 /// Puts what the checks of the recordings found before what was found behind them.

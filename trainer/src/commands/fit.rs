@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::measurement::{self, Warning};
+use super::measurement::{self, Warning, load_all};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::error::{Error, Result, codes};
@@ -16,7 +16,6 @@ use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
 use crate::joint::Joint;
 use crate::kan::{Architecture, Sparsity};
-use crate::recording::Recording;
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]
@@ -129,8 +128,8 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let (recordings, mut warnings) = load_all(&arguments.recordings, &joint)?;
-    let (tests, of_tests) = load_all(&arguments.tests, &joint)?;
+    let (recordings, mut warnings) = load_all(&arguments.recordings, |path| measurement::load(path, &joint))?;
+    let (tests, of_tests) = load_all(&arguments.tests, |path| measurement::load(path, &joint))?;
     warnings.extend(of_tests);
     let options = Options {
         seed: arguments.seed,
@@ -154,12 +153,6 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
         Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
     })
-}
-
-fn load_all(paths: &[PathBuf], joint: &Joint) -> Result<(Vec<Recording>, Vec<Warning>)> {
-    let loaded = paths.iter().map(|path| measurement::load(path, joint)).collect::<Result<Vec<_>>>()?;
-    let (recordings, warnings): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
-    Ok((recordings, warnings.concat()))
 }
 
 fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {

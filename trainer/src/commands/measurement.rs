@@ -8,7 +8,7 @@ use crate::joint::Joint;
 use crate::physics::EffectId;
 use crate::recording::{self, Axis, Recording};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A note on a recording for a reader.
 #[derive(Clone, Debug)]
@@ -18,18 +18,35 @@ pub(super) struct Warning {
     pub(super) message: String,
 }
 
+/// Recordings of one joint, each read by `load`, with the warnings of all; where there are several, a warning names its own.
+///
+/// # Errors
+/// As `load`.
+pub(super) fn load_all(
+    paths: &[PathBuf],
+    load: impl Fn(&Path) -> Result<(Recording, Vec<Warning>)>,
+) -> Result<(Vec<Recording>, Vec<Warning>)> {
+    let loaded = paths.iter().map(|path| load(path)).collect::<Result<Vec<_>>>()?;
+    let (recordings, mut warnings): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
+    if paths.len() > 1 {
+        for (recording, warnings) in recordings.iter().zip(&mut warnings) {
+            warnings
+                .iter_mut()
+                .for_each(|warning| warning.message = format!("in {} {}", recording.label, warning.message));
+        }
+    }
+    Ok((recordings, warnings.concat()))
+}
+
 /// A recording that may be fitted to, with what was put right.
 ///
 /// # Errors
 /// As [`recording::load`] and [`checks::review`], and the code of a fault that cannot be put right.
 pub(super) fn load(path: &Path, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
-    let reviewed = checks::review(recording::load(path, joint)?, joint)?;
-    match reviewed.blocking() {
-        Some(note) => {
-            let message = sentence(&note.fault, &reviewed.recording);
-            Err(Error::new(note.fault.code(), message).in_file(reviewed.recording.file()))
-        }
-        None => Ok(with_warnings(reviewed)),
+    let (recording, warnings) = load_with_faults(path, joint)?;
+    match warnings.iter().find(|warning| warning.note.fault.is_blocking()) {
+        Some(warning) => Err(Error::new(warning.note.fault.code(), warning.message.clone()).in_file(recording.file())),
+        None => Ok((recording, warnings)),
     }
 }
 
@@ -50,10 +67,7 @@ pub(super) fn motion(recording: Recording, joint: &Joint) -> Result<(Recording, 
 }
 
 fn with_warnings(Reviewed { recording, notes }: Reviewed) -> (Recording, Vec<Warning>) {
-    let warning = |note: Note| {
-        let message = format!("{}: {}", recording.label, sentence(&note.fault, &recording));
-        Warning { note, message }
-    };
+    let warning = |note: Note| Warning { message: sentence(&note.fault, &recording), note };
     let warnings = notes.into_iter().map(warning).collect();
     (recording, warnings)
 }
@@ -169,6 +183,79 @@ fn sentence(fault: &Fault, recording: &Recording) -> String {
         }
         Fault::OneDirection => {
             format!("the joint moves in one direction only: friction cannot be told from an offset of the {name}")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::Fault::{
+        ContradictingVelocity, FrozenTorque, HeldSamples, OneDirection, RepeatedRows, RepeatedStamps, RezeroedPosition,
+        TurnedTorque, WrappedPosition, WrongSign,
+    };
+    use std::fmt::Write;
+
+    /// A slow swing of a joint with Coulomb friction; the torque is `sign` times what it is.
+    fn swing(sign: f64) -> String {
+        let mut text = String::from("time_s,position_rad,torque_Nm\n");
+        for row in 0..6000 {
+            let phase = 0.004 * f64::from(row);
+            let friction = 0.8 * (phase.cos() / 0.01).tanh() + 0.05 * (37.0 * phase).sin();
+            writeln!(text, "{},{},{}", 0.01 * f64::from(row), phase.sin(), sign * friction).unwrap();
+        }
+        text
+    }
+
+    #[test]
+    fn a_fault_that_cannot_be_put_right_is_an_error_for_a_fit_and_a_warning_for_a_diagnosis() {
+        let folder = tempfile::tempdir().unwrap();
+        let [good, turned] = [("good.csv", 1.0), ("turned.csv", -1.0)].map(|(name, sign)| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, swing(sign)).unwrap();
+            path
+        });
+        let joint = Joint::default();
+        assert!(load(&good, &joint).unwrap().1.is_empty());
+        let error = load(&turned, &joint).unwrap_err();
+        assert_eq!((error.code().id, error.exit_status()), ("FRK-D024", 3));
+        assert!(error.to_string().contains("turned.csv") && error.message().contains("wrong sign"), "{error}");
+        let (_, warnings) = load_all(&[good, turned], |path| load_with_faults(path, &joint)).unwrap();
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert!(warning.message.starts_with("in turned.csv the torque has the wrong sign"), "{}", warning.message);
+        assert!(warning.is_finding() && warning.to_health().blocking);
+    }
+
+    #[test]
+    fn every_fault_has_a_sentence_with_its_figures() {
+        let recording = recording::parse("swing.csv", swing(1.0).as_bytes(), &Joint::default()).unwrap();
+        let cases = [
+            (RepeatedRows { rows: 12 }, "12 rows"),
+            (RepeatedStamps { rows: 1 }, "1 row with"),
+            (
+                HeldSamples { channel: "position".into(), every: 10, rate_hz: 50.0 },
+                "one row of 10 only: the rows in which it is were used, at 50 Hz",
+            ),
+            (WrappedPosition { period: 6.5, times: 3 }, "every 6.5 rad (3 times)"),
+            (RezeroedPosition { by: 0.37 }, "jumps by 0.37 rad"),
+            (FrozenTorque { rows: 500, value: Some(0.0) }, "the torque stands still at 0 N m in 500 rows"),
+            (FrozenTorque { rows: 500, value: None }, "the torque stands still in 500 rows"),
+            (TurnedTorque { rows: 70 }, "opposite sign in 70 rows"),
+            (WrongSign { work: -63.0, dissipation: [-1.5, 0.1] }, "gives 1.5 W"),
+            (Fault::WrongUnit(WrongUnit::VelocityOverDerivative(0.01745)), "another unit"),
+            (Fault::WrongUnit(WrongUnit::VelocityOverDerivative(-1.0)), "opposite direction"),
+            (Fault::WrongUnit(WrongUnit::PositionInDegrees(0.1)), "in degrees"),
+            (ContradictingVelocity(Contradiction::Constant(0.0)), "velocity stays at 0"),
+            (ContradictingVelocity(Contradiction::Late(0.03)), "velocity comes 0.03 s after"),
+            (ContradictingVelocity(Contradiction::Late(-0.03)), "velocity comes 0.03 s before"),
+            (ContradictingVelocity(Contradiction::Scaled(50.0)), "velocity is 50 times"),
+            (ContradictingVelocity(Contradiction::Unrelated(0.1)), "(correlation 0.1)"),
+            (OneDirection, "one direction only"),
+        ];
+        for (fault, words) in cases {
+            let sentence = sentence(&fault, &recording);
+            assert!(sentence.contains(words), "{sentence}");
+            assert!(!sentence.ends_with('.') && !sentence.contains("  "), "{sentence}");
         }
     }
 }
