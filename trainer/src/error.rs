@@ -20,6 +20,8 @@ pub enum Class {
     NotIdentifiable,
     /// A file could not be read or written.
     InputOutput,
+    /// Told beside a result: what was wrong was put right or left out.
+    Warning,
 }
 
 impl Class {
@@ -31,6 +33,7 @@ impl Class {
             Self::Data => 3,
             Self::NotIdentifiable => 4,
             Self::InputOutput => 5,
+            Self::Warning => 0,
         }
     }
 }

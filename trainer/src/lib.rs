@@ -1,6 +1,7 @@
 //! Frikan trainer: a recording walks through these rooms in one direction,
-//! `recording -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
+//! `recording -> checks -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
 
+pub mod checks;
 pub mod commands;
 pub mod compile;
 pub mod diagnose;

@@ -4,10 +4,12 @@ mod compare;
 mod summary;
 mod trajectory;
 
+use crate::commands::measurement::{self, Warning, load_all, units};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::improved::{Origin, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
+use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::reference::Comparison;
@@ -20,9 +22,7 @@ use crate::fit;
 use crate::joint::Joint;
 use crate::physics::JointState;
 use crate::physics::names::capital;
-use crate::physics::units::Units;
-use crate::recording;
-use crate::recording::{Axis, Quantity, Recording};
+use crate::recording::{Quantity, Recording};
 use crate::report;
 use crate::report::DiagnosisPage;
 use crate::report::tell::evidence::planned_motion;
@@ -99,8 +99,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let recordings =
-        arguments.recordings.iter().map(|path| recording::load(path, &joint)).collect::<Result<Vec<Recording>>>()?;
+    let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
     let real = &recordings[0];
     let (comparison, compared) = comparison(arguments, &recordings, &joint)?;
     let units = units(real);
@@ -110,7 +109,8 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         settings: Settings { seed: arguments.seed, ..Settings::default() },
     };
     reporter.say("weighing every effect against the noise");
-    let diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
+    let mut diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
+    tell_measurement(&mut diagnosis, &warnings);
     reporter.say("choosing what to record next");
     let advice = advice(&comparison, &diagnosis, &joint, (&compared, real));
     let story = tell(&diagnosis, units);
@@ -176,6 +176,13 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     Ok(exit_status(diagnosis.verdict))
 }
 
+/// Puts what the checks of the recordings found before what was found behind them.
+fn tell_measurement(diagnosis: &mut Diagnosis, warnings: &[Warning]) {
+    for warning in warnings.iter().rev() {
+        tell_first(diagnosis, warning.to_health(), warning.is_finding());
+    }
+}
+
 /// The motion that would tell apart what cannot be told, within the limits of the joint.
 fn advice(
     comparison: &Comparison,
@@ -238,17 +245,6 @@ fn base_kind(arguments: &Diagnose) -> BaseKind {
         (false, StaticBase::CoulombViscous) => BaseKind::CoulombViscous,
         (false, StaticBase::Spline) => BaseKind::Spline,
     }
-}
-
-/// Unit of the actuator and kind of the axis.
-fn units(recording: &Recording) -> Units {
-    let channel = recording.actuator().or_else(|| recording.separated_friction());
-    let actuator = match channel.map(|channel| channel.unit) {
-        Some("N") => "N",
-        Some("A") => "A",
-        _ => "N m",
-    };
-    Units { actuator, rotary: recording.axis == Axis::Rotary }
 }
 
 fn refused(refusal: &Refusal, recording: &Recording) -> Error {

@@ -49,6 +49,7 @@ fn describe(code: &Code) -> String {
         Class::Data => "bad input data",
         Class::NotIdentifiable => "not identifiable or not converged",
         Class::InputOutput => "input or output",
+        Class::Warning => "warning",
     };
     format!(
         "{}: {} ({kind}, exit status {status})\n\nmeaning  {}\ncause    {}\nremedy   {}\n",

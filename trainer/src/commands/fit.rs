@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
+use super::measurement::{self, Warning, load_all};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::error::{Error, Result, codes};
@@ -15,8 +16,6 @@ use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
 use crate::joint::Joint;
 use crate::kan::{Architecture, Sparsity};
-use crate::recording;
-use crate::recording::Recording;
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]
@@ -129,8 +128,9 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let recordings = load_all(&arguments.recordings, &joint)?;
-    let tests = load_all(&arguments.tests, &joint)?;
+    let (recordings, mut warnings) = load_all(&arguments.recordings, |path| measurement::load(path, &joint))?;
+    let (tests, of_tests) = load_all(&arguments.tests, |path| measurement::load(path, &joint))?;
+    warnings.extend(of_tests);
     let options = Options {
         seed: arguments.seed,
         inputs: arguments.inputs.clone(),
@@ -147,16 +147,12 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         fit(&recordings, &tests, &joint, &options, &|progress| reporter.say(&line(progress)))
     })??;
     drop(reporter);
-    write(arguments, &outcome, start.elapsed().as_secs_f64())?;
+    write(arguments, &outcome, &warnings, start.elapsed().as_secs_f64())?;
     Ok(match &outcome.sound {
         Soundness::Sound => 0,
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
         Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
     })
-}
-
-fn load_all(paths: &[PathBuf], joint: &Joint) -> Result<Vec<Recording>> {
-    paths.iter().map(|path| recording::load(path, joint)).collect()
 }
 
 fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
@@ -173,11 +169,11 @@ fn line(progress: &Progress) -> String {
     }
 }
 
-fn write(arguments: &Fit, outcome: &Outcome, seconds: f64) -> Result<()> {
+fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Result<()> {
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, outcome.image.clone());
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", json::summary(outcome, seconds)));
+        outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
     }
     if let Some(path) = &arguments.report {
         outputs.add(path, crate::report::fit(outcome));
@@ -189,7 +185,7 @@ fn write(arguments: &Fit, outcome: &Outcome, seconds: f64) -> Result<()> {
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
-    print(&text::summary(outcome, &arguments.output, seconds))
+    print(&text::summary(outcome, warnings, &arguments.output, seconds))
 }
 
 fn unsound(arguments: &Fit, error: &Error) -> u8 {

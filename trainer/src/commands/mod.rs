@@ -4,6 +4,7 @@ pub mod diagnose;
 pub mod explain;
 pub mod export;
 pub mod fit;
+mod measurement;
 pub mod output;
 pub mod predict;
 mod progress;

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::measurement::motion;
 use super::output::Outputs;
 use crate::error::{Error, Result, codes};
 use crate::fit::predict::{every_row, predict};
 use crate::fit::{HostModel, model};
 use crate::joint::Joint;
-use crate::recording;
-use crate::recording::{Channel, Recording};
+use crate::recording::{self, Channel, Quantity, Recording};
+use crate::samples::interpolate;
 use frikan_shared::units::Unit;
 
 /// Copy a recording and add what the model predicts, `predicted_<quantity>_<unit>` and `residual_<unit>`.
@@ -41,12 +42,26 @@ pub fn run(arguments: &Predict) -> Result<()> {
     let (_, image) = model::load(&arguments.model)?;
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = recording::load(&arguments.recording, &joint)?;
-    let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
+    let (motion, warnings) = motion(recording.clone(), &joint)?;
+    let samples = every_row(&motion, &joint).map_err(|error| error.in_file(recording.file()))?;
     let prediction = predict(&image.model, &samples).map_err(|error| error.in_file(recording.file()))?;
+    let predicted = at_rows(&recording, &motion, prediction.total());
     let mut outputs = Outputs::default();
-    outputs.add(&arguments.output, table(&recording, &image.model, &prediction.total())?);
+    outputs.add(&arguments.output, table(&recording, &image.model, &predicted)?);
     outputs.refuse_overwriting(&[arguments.model.as_path(), arguments.recording.as_path()])?;
-    outputs.write()
+    outputs.write()?;
+    if !arguments.quiet {
+        warnings.iter().for_each(|warning| eprintln!("{} {}", warning.code(), warning.message));
+    }
+    Ok(())
+}
+
+/// The prediction at every row of the file: rows that the checks left out, since they repeat or hold others, lie between those.
+fn at_rows(recording: &Recording, motion: &Recording, predicted: Vec<f64>) -> Vec<f64> {
+    match (recording.values(Quantity::Time), motion.values(Quantity::Time)) {
+        (Some(all), Some(used)) if all.len() > used.len() => interpolate(used, &predicted, all),
+        _ => predicted,
+    }
 }
 
 /// Quantity, unit and way from SI of the predicted column.

@@ -9,6 +9,7 @@ use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
 use serde_json::{Value, json};
 
+use super::measurement::motion;
 use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::compile::steps::sequence::sequence;
@@ -130,7 +131,7 @@ impl Found {
 /// A call for each sample of a recording, without limits.
 fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<Call>> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
-    let recording = recording::load(path, &joint)?;
+    let recording = motion(recording::load(path, &joint)?, &joint)?.0;
     let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
     let limits = [1.0, 2.0 * model.output_limit, f32::MAX];
     let mut calls = vec![Call { limits, ..Call::default() }; samples.len()];

@@ -1,6 +1,6 @@
 //! Registry of the stable codes: what each means, its usual cause, what to do. Read by `trainer explain`.
 //!
-//! A code is never reused or renamed. `U` usage, `D` data, `N` not identifiable, `I` input and output.
+//! A code is never reused or renamed. `U` usage, `D` data, `N` not identifiable, `I` input and output, `W` warning.
 
 use super::Class;
 
@@ -135,6 +135,18 @@ registry! {
         "The torque, force or current has one and the same value in every row.",
         "A channel that was never connected or not enabled, a constant that stands for a missing signal, or the wrong column.",
         "Record the torque, or map its column in joint.toml.";
+    WRONG_SIGN = "FRK-D024" Data "torque of the wrong sign",
+        "As it is recorded, friction drives the joint: beside inertia, gravity, offset and recorded couplings, what is left of the torque has the direction opposite to the motion, inertia does not contradict it, and the actuator takes up energy all in all. Compensated in a drive, it would be positive feedback.",
+        "A motor mounted the other way round, a torque that is that of the load on the motor, or a sign convention of the drive.",
+        "Turn the sign in joint.toml: `[columns] torque = { name = \"torque_Nm\", unit = \"Nm\", scale = -1 }`. Where another joint or a load drives this one all the time, record it moving alone.";
+    WRONG_UNIT = "FRK-D025" Data "position and velocity in different units",
+        "The recorded velocity is the derivative of the position times the factor between two units (or the two have opposite directions), or gravity shows that a position in rad is in degrees. Which of the columns is wrong cannot be told; inertia, gravity and friction would all be wrong by that factor.",
+        "Degrees, turns or rpm in a column that says rad or rad/s; a clock in ms, us or ns in a column that says s; a velocity on the motor side.",
+        "Name the column by its real unit (`position_deg`, `time_ms`, `velocity_rpm`), or map it in joint.toml with `unit`, `side` and `scale`.";
+    IMPLAUSIBLE_CLOCK = "FRK-D026" Data "clock in another unit",
+        "The time advances by less than a microsecond a row, or by more than a second without a velocity that confirms it. No motion is sampled like that, and filters on that clock would be as long as memory is large.",
+        "Milli-, micro- or nanoseconds in a column that says s, or a row counter in place of the time.",
+        "Name the column by its real unit: `time_ms`, `time_us`, `time_ns`; a row counter has to be multiplied by the sample period.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",
@@ -195,6 +207,38 @@ registry! {
         "The form that `--to` names cannot hold what is in this image.",
         "A model with correction terms or with a network, exported to a form that has neither memory nor tables of tables.",
         "Take `bin`, `hex`, `uf2`, `elf` or `c-header`, which hold every image, and the library on the drive.";
+    REPEATED_ROWS = "FRK-W001" Warning "rows written twice",
+        "Rows that have the stamp of the row before, or that repeat position, velocity and torque of the row before while the joint moves, say nothing new. They were left out.",
+        "A logger that writes the last message again when no new one has come, a clock that is coarser than the sampling, or messages that arrive twice.",
+        "Nothing has to be done where they are few. A clock with more digits keeps rows of one stamp apart.";
+    HELD_SAMPLES = "FRK-W002" Warning "samples held for several rows",
+        "A channel is new only every so many rows, however fast the joint moves. Between them the recording says nothing: the rows in which it is new were used, at their own rate.",
+        "A sensor or a field bus that is slower than the log, or a log that was resampled without interpolation.",
+        "Record at the rate of the slowest channel, or make the sensor as fast as the log. Fast effects cannot be seen behind the lower rate.";
+    WRAPPED_POSITION = "FRK-W003" Warning "position that starts anew after a turn",
+        "The position jumps by a whole turn of the encoder while the motion goes on. The turns were put together again.",
+        "A single-turn encoder, or an angle that is normalised to 0..360 or -180..180 degrees.",
+        "Nothing has to be done. Above half a turn from one row to the next the direction could not be told.";
+    REZEROED_POSITION = "FRK-W004" Warning "position set anew in the run",
+        "The position jumps once, further than the joint can move in a row, while the motion before and after goes on. What follows was shifted back and the motion is taken as interrupted there; the zero is that of the beginning.",
+        "A homing or zeroing command in the run, a drive that was restarted, or two recordings joined in one file.",
+        "Where the later zero is the right one, cut the recording there: gravity depends on it.";
+    FROZEN_TORQUE = "FRK-W005" Warning "torque stands still while the joint moves",
+        "The torque is exactly zero, or exactly the same, for many rows in which the joint moves and its other rows say that the torque had to change. These rows were left out.",
+        "A channel that dropped out, a field bus that lost its connection, or a sensor that was being zeroed.",
+        "Record again where it is much of the recording. A torque that stands at a limit, or a drive that is switched off and coasts, is not meant.";
+    TURNED_TORQUE = "FRK-W006" Warning "torque with the sign turned for a while",
+        "In one stretch the torque is the negative of what all other rows say of the same joint. The stretch was left out.",
+        "A drive whose direction was changed in the run, or recordings of two conventions joined in one file.",
+        "Cut the recording there, or turn the sign of the stretch before it is used.";
+    CONTRADICTING_VELOCITY = "FRK-W007" Warning "velocity that contradicts the position",
+        "The recorded velocity is not the derivative of the position: it does not change, comes late, has another scale or nothing to do with it. It was left out, and the position is differentiated.",
+        "A channel that is not filled, a slow filter in the drive, a velocity on the motor side, or the velocity of another joint.",
+        "Nothing has to be done where the position is good. Otherwise map the right column in joint.toml, with its unit and side.";
+    ONE_DIRECTION = "FRK-W008" Warning "motion in one direction only",
+        "The joint never turns round. A Coulomb torque in one direction cannot be told from an offset, nor from a constant load.",
+        "A conveyor, a spindle, or an excerpt of a longer motion.",
+        "Record both directions. What is found holds for the recorded direction only.";
 }
 
 #[cfg(test)]
@@ -209,6 +253,7 @@ mod tests {
                 Class::Data => "D",
                 Class::NotIdentifiable => "N",
                 Class::InputOutput => "I",
+                Class::Warning => "W",
             };
             assert!(code.id.starts_with(&format!("FRK-{letter}")), "{}", code.id);
             assert!(ALL[..index].iter().all(|earlier| earlier.id != code.id), "{} twice", code.id);

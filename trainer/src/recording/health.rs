@@ -15,8 +15,11 @@ pub struct Health {
     pub period_s: Option<f64>,
     /// Largest deviation of a step of the clock from the median period, gaps left out, as a share of it.
     pub jitter: f64,
-    /// Indices of the rows that follow a gap of the clock.
+    /// Indices of the rows that follow a gap: of the clock, or one of the interruptions.
     pub gaps: Vec<usize>,
+    /// Indices of the rows before which the motion was interrupted whatever the clock says: rows were left out, or the position was
+    /// set anew.
+    pub interruptions: Vec<usize>,
     /// Rows whose standard channels other than time all equal those of the row before.
     pub repeated_rows: usize,
     /// Smallest non-zero step of the position, rad or m.
@@ -29,9 +32,9 @@ pub struct Health {
 
 impl Health {
     /// Takes stock of the channels of a recording.
-    pub(super) fn of(channels: &[Channel], notes: Vec<String>) -> Self {
+    pub(super) fn of(channels: &[Channel], notes: Vec<String>, interruptions: Vec<usize>) -> Self {
         let values = |wanted| channels.iter().find(|c| c.quantity == Some(wanted)).map(|c| c.values.as_slice());
-        let mut health = Self { notes, ..Self::default() };
+        let mut health = Self { notes, interruptions, ..Self::default() };
         if let Some(time) = values(Quantity::Time) {
             health.take_clock(time);
         }
@@ -47,7 +50,7 @@ impl Health {
         let Some(period) = median(&steps) else { return };
         self.period_s = Some(period);
         for (index, step) in steps.iter().enumerate() {
-            if *step > GAP_PERIODS * period {
+            if *step > GAP_PERIODS * period || self.interruptions.binary_search(&(index + 1)).is_ok() {
                 self.gaps.push(index + 1);
             } else {
                 self.jitter = self.jitter.max((step - period).abs() / period);

@@ -7,6 +7,7 @@ mod columns;
 mod health;
 mod lines;
 mod quantity;
+mod select;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -17,6 +18,7 @@ use std::path::Path;
 pub use health::Health;
 pub use lines::RECORD_LIMIT_BYTES;
 pub use quantity::{Axis, Quantity, Unit};
+pub use select::Omission;
 pub use table::TextTable;
 pub use text::MINIMUM_ROWS;
 
@@ -86,7 +88,7 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
     if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
         refuse_backward_time(time, &raw.table)?;
     }
-    let health = Health::of(&channels, assigned.notes);
+    let health = Health::of(&channels, assigned.notes, Vec::new());
     Ok(Recording {
         label: label.to_owned(),
         axis: assigned.axis,
@@ -99,8 +101,9 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
     })
 }
 
+/// A stamp that stands twice is left to the checks.
 fn refuse_backward_time(time: &Channel, table: &TextTable) -> Result<()> {
-    match time.values.windows(2).position(|pair| pair[1] <= pair[0]) {
+    match time.values.windows(2).position(|pair| pair[1] < pair[0]) {
         None => Ok(()),
         Some(before) => {
             let column = table.header().iter().position(|name| *name == time.column).unwrap_or(0);

@@ -53,6 +53,16 @@ impl TextTable {
         (index * width..(index + 1) * width).map(|field| self.field(field))
     }
 
+    /// The same columns with the rows `kept` only (increasing indices); a row keeps its line number.
+    pub(super) fn with_rows(&self, kept: &[usize]) -> Self {
+        let mut table = Self::new(self.header.clone());
+        for row in kept {
+            table.begin_row(self.line(*row));
+            self.row(*row).for_each(|field| table.push_field(field));
+        }
+        table
+    }
+
     fn field(&self, index: usize) -> &str {
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         &self.text[start..self.ends[index]]

@@ -54,7 +54,9 @@ fn values_that_are_not_finite_name_the_place() {
 #[test]
 fn time_has_to_increase() {
     refused(with_line(9, "0.01,0,0"), &codes::TIME_NOT_INCREASING, 9, "time_s", "0.01");
-    refused(with_line(9, "0.06,0,0"), &codes::TIME_NOT_INCREASING, 9, "time_s", "0.06");
+    refused(with_line(9, "0.0599,0,0"), &codes::TIME_NOT_INCREASING, 9, "time_s", "0.0599");
+    // A stamp that stands twice is left to the checks.
+    assert!(read(with_line(9, "0.06,0,0")).is_ok());
 }
 
 #[test]
@@ -194,6 +196,22 @@ fn health_states_gaps_resolution_and_clipping() {
     assert!((health.period_s.unwrap() - 0.01).abs() < 1e-9 && health.jitter < 1e-9);
     assert!((health.position_resolution.unwrap() - 0.01).abs() < 1e-9);
     assert!(health.clipped_rows > 50, "{}", health.clipped_rows);
+}
+
+#[test]
+fn rows_that_are_left_out_interrupt_the_motion_where_they_say_so() {
+    let recording = read(with_line(1, "time_s,position_rad,torque_Nm")).unwrap();
+    let kept: Vec<usize> = (0..ROWS).filter(|row| !matches!(row, 10 | 11 | 40)).collect();
+    let bridged = recording.clone().with_rows(&kept, Omission::Bridged);
+    assert_eq!((bridged.len(), bridged.health.gaps.len()), (ROWS - 3, 0));
+    let interrupted = recording.clone().with_rows(&kept, Omission::Interrupted);
+    assert_eq!(interrupted.health.gaps, [10, 38]);
+    assert!(interrupted.health.jitter < 1e-9, "the steps across are no jitter");
+    assert_eq!((interrupted.table.row(10).nth(2), interrupted.table.line(10)), (Some("12"), 14));
+    assert_eq!(interrupted.values(Quantity::Torque).unwrap()[38], 41.0);
+    // What was interrupted before stays so, wherever its row has moved to.
+    let again = interrupted.with_interruptions(&[20]).with_rows(&(5..57).collect::<Vec<_>>(), Omission::Interrupted);
+    assert_eq!(again.health.gaps, [5, 15, 33]);
 }
 
 proptest! {

@@ -79,7 +79,7 @@ impl Grid {
 }
 
 /// Linear interpolation of `values` at increasing `time` onto increasing `at`; beyond the ends the last value holds.
-pub(super) fn interpolate(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+pub(crate) fn interpolate(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let mut left = 0;
     at.iter()

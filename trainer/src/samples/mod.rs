@@ -20,6 +20,7 @@ mod tests;
 use std::ops::Range;
 
 pub use even::EvenClock;
+pub(crate) use grid::interpolate;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 

@@ -1,6 +1,7 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
-use super::{Diagnose, units};
+use super::Diagnose;
+use crate::commands::measurement::{motion, units};
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::InverseLaw;
@@ -40,7 +41,7 @@ impl Compared {
 /// The real recordings and what they are compared with.
 pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
     if let Some(path) = &arguments.simulation {
-        let simulated = recording::load(path, joint)?;
+        let simulated = motion(recording::load(path, joint)?, joint)?.0;
         same_units(&real[0], &simulated)?;
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;

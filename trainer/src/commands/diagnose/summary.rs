@@ -3,7 +3,7 @@
 use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::answer::region::{Region, Side};
-use crate::diagnose::checks::note::HealthNote;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::search::round::Scored;
 use crate::physics::EffectId;
@@ -86,7 +86,13 @@ fn plan_json(plan: &Plan) -> Value {
 }
 
 fn health_json(note: &HealthNote, units: Units) -> Value {
-    json!({ "effect": note.effect, "blocking": note.blocking, "sentence": observation(&note.observation, units) })
+    let (code, when_s) = match &note.observation {
+        Observation::Recording(found) => (found.note.fault.code().id, found.note.when_s.clone()),
+        Observation::LockedEvent { when_s, .. } => (note.effect.code(), vec![*when_s]),
+        _ => (note.effect.code(), Vec::new()),
+    };
+    let sentence = observation(&note.observation, units);
+    json!({ "code": code, "effect": note.effect, "blocking": note.blocking, "sentence": sentence, "when_s": when_s })
 }
 
 fn finding_json(told: &Told, index: usize) -> Value {

@@ -3,11 +3,12 @@
 use frikan_shared::image::image_crc32;
 use serde_json::{Value, json};
 
+use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Soundness, Trace};
 
 /// The object that `--json` writes.
-pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Value {
+pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Value {
     let inputs: Vec<&str> = outcome.inputs.iter().map(|input| input.name.as_str()).collect();
     let tests: Vec<Value> = outcome.tests.iter().map(recording).collect();
     let train: Vec<Value> = outcome.train.iter().map(recording).collect();
@@ -25,6 +26,7 @@ pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Value {
         "expression_nodes": outcome.law.nodes,
         "parameters": outcome.parameters,
         "remarks": outcome.remarks,
+        "warnings": warnings.iter().map(Warning::to_json).collect::<Vec<_>>(),
         "sound": match &outcome.sound {
             Soundness::Sound => json!(true),
             Soundness::NotIdentifiable(why) | Soundness::NotConverged(why) => json!({"why": why}),

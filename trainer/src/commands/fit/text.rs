@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Trace};
 use crate::law::significant;
@@ -12,8 +13,9 @@ use crate::parameter::Parameter;
 const DIGITS: usize = 4;
 
 /// What `trainer fit` prints.
-pub(super) fn summary(outcome: &Outcome, image: &Path, seconds: f64) -> String {
-    let mut text = String::new();
+pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], image: &Path, seconds: f64) -> String {
+    let mut text: String =
+        warnings.iter().map(|warning| format!("warning     {} {}\n", warning.code(), warning.message)).collect();
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, outcome, image, seconds);
     text

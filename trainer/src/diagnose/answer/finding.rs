@@ -3,7 +3,7 @@
 use crate::diagnose::answer::formula;
 use crate::diagnose::answer::location::{Location, locate};
 use crate::diagnose::answer::nearest_named::nearest;
-use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
+use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Evidence, Finding};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::stated_probability::{alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
@@ -102,6 +102,16 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
 
 /// Probability of a fault that the signals show by themselves.
 const MEASUREMENT_FAULT_PROBABILITY: f64 = 0.99;
+
+/// Puts a note on the measurement before all others; as a finding too, where it is one and no other finding is the same effect.
+pub(crate) fn tell_first(diagnosis: &mut Diagnosis, note: HealthNote, is_finding: bool) {
+    let is_found = |found: &Finding| found.effect == note.effect && found.action == Action::Measurement;
+    let finding = (is_finding && !diagnosis.findings.iter().any(is_found)).then(|| measurement_finding(&note));
+    diagnosis.health.insert(0, note);
+    if let Some(finding) = finding {
+        diagnosis.put_first(finding);
+    }
+}
 
 /// A fault of the measurement as a finding.
 pub(crate) fn measurement_finding(note: &HealthNote) -> Finding {

@@ -1,11 +1,14 @@
 //! A note on the measurement chain, as values: a sentence is made of it elsewhere.
 
+use crate::checks::Note;
 use crate::physics::EffectId;
 use crate::samples::spikes::Spikes;
 
 /// What was seen of the measurement. Torques are in the unit of the actuator, positions in rad or m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Observation {
+    /// A fault of the recording that was found before its signals were built.
+    Recording(RecordingNote),
     /// Samples that no motion of the joint can explain and that were replaced.
     Glitches(Spikes),
     /// The torque stands at its largest value in a share of the samples.
@@ -80,6 +83,17 @@ pub enum Observation {
         /// Root mean square of what the model leaves there.
         rms: f64,
     },
+}
+
+/// A fault of one recording, with what it takes to tell it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordingNote {
+    /// The fault and its times.
+    pub note: Note,
+    /// Name of the actuator channel, e.g. `torque`.
+    pub actuator: String,
+    /// Name of the recording where it is one of several.
+    pub recording: Option<String>,
 }
 
 /// Part of the torque that is given beside friction.

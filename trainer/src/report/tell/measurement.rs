@@ -3,6 +3,7 @@
 use crate::diagnose::checks::note::{Observation, TorquePart};
 use crate::figures::{digits, quantity};
 use crate::physics::units::Units;
+use crate::report::tell::recording_note::recording_note;
 use crate::samples::spikes::Spikes;
 
 /// Ratios between the units of a velocity, or of a position and a velocity, and what was confused.
@@ -23,6 +24,7 @@ pub fn observation(seen: &Observation, units: Units) -> String {
     let torque = |value: f64| quantity(value, units.actuator);
     let percent = |share: f64| 100.0 * share;
     match seen {
+        Observation::Recording(note) => recording_note(note, units),
         Observation::Glitches(spikes) => glitches(spikes),
         Observation::ClippedTorque { limit, share } => {
             format!("the torque stands at its limit of {} in {:.1} % of the samples", torque(*limit), percent(*share))

@@ -3,6 +3,7 @@
 mod certainty;
 pub mod evidence;
 pub mod measurement;
+pub mod recording_note;
 #[cfg(test)]
 mod tests;
 

@@ -1,0 +1,70 @@
+//! A recording with some of its rows, or with the values of a channel put right: what the checks hand on.
+
+use super::{Channel, Health, Quantity, Recording};
+
+/// What becomes of the motion where rows are left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Omission {
+    /// It goes on: the rows said nothing new.
+    Bridged,
+    /// It is interrupted: the next row kept begins a new stretch.
+    Interrupted,
+}
+
+impl Recording {
+    /// The same recording with the rows `kept` only (increasing indices).
+    #[must_use]
+    pub fn with_rows(mut self, kept: &[usize], omission: Omission) -> Self {
+        if kept.len() == self.len() {
+            return self;
+        }
+        for channel in &mut self.channels {
+            channel.values = kept.iter().map(|row| channel.values[*row]).collect();
+        }
+        self.table = self.table.with_rows(kept);
+        let moved = |row: &usize| kept.partition_point(|kept| kept < row);
+        let mut interruptions: Vec<usize> = self.health.interruptions.iter().map(moved).collect();
+        if omission == Omission::Interrupted {
+            interruptions.extend((1..kept.len()).filter(|index| kept[*index] > kept[index - 1] + 1));
+        }
+        self.interrupted_at(interruptions)
+    }
+
+    /// The same recording whose motion is interrupted before each of `rows` as well.
+    #[must_use]
+    pub fn with_interruptions(self, rows: &[usize]) -> Self {
+        let interruptions = self.health.interruptions.iter().chain(rows).copied().collect();
+        self.interrupted_at(interruptions)
+    }
+
+    /// The same recording with other values of a quantity, one a row; without the channel where there is none of it.
+    #[must_use]
+    pub fn with_values(mut self, quantity: Quantity, values: Vec<f64>) -> Self {
+        if let Some(channel) = self.channels.iter_mut().find(|channel| channel.quantity == Some(quantity)) {
+            channel.values = values;
+        }
+        self.with_health()
+    }
+
+    /// The same recording without a channel; its column stays in the text.
+    #[must_use]
+    pub fn without(mut self, quantity: Quantity) -> Self {
+        self.channels.retain(|channel: &Channel| channel.quantity != Some(quantity));
+        self.with_health()
+    }
+
+    fn interrupted_at(mut self, mut interruptions: Vec<usize>) -> Self {
+        let rows = self.len();
+        interruptions.retain(|row| (1..rows).contains(row));
+        interruptions.sort_unstable();
+        interruptions.dedup();
+        self.health.interruptions = interruptions;
+        self.with_health()
+    }
+
+    fn with_health(mut self) -> Self {
+        let Health { notes, interruptions, .. } = std::mem::take(&mut self.health);
+        self.health = Health::of(&self.channels, notes, interruptions);
+        self
+    }
+}
