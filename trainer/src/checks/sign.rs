@@ -4,7 +4,8 @@
 //! actuator. So the law carries gravity, recorded couplings and inertia, and a sign is called wrong only where friction gives energy, the
 //! actuator as recorded takes up more than it gives, and inertia or a given body have the wrong sign as well. Where the motion is too slow
 //! for inertia to show, Coulomb friction has to be a good part of what the torque does: a controller that brakes a driven joint looks
-//! viscous. Beside another joint that moves, only a given body is a witness: that joint may drive this one.
+//! viscous. Beside another joint that is recorded the inertia is no witness, and Coulomb friction has to be a larger part: that joint may
+//! drive this one.
 
 use super::direction::lesser_share;
 use super::law::Law;
@@ -22,6 +23,7 @@ const CLEAR: f64 = 4.0;
 /// Power of friction over the power that the torque exchanges, least; and that of its Coulomb part where nothing else is a witness.
 const LEAST_POWER_SHARE: f64 = 0.05;
 const COULOMB_POWER_SHARE: f64 = 0.25;
+const COULOMB_POWER_SHARE_BESIDE_OTHERS: f64 = 0.4;
 /// Share of the torque, root mean square, from which an inertia shows: hysteresis passes for a few per cent of either sign.
 const LEAST_INERTIA_SHARE: f64 = 0.1;
 /// Share of the travel that has to go in the lesser direction: in one alone a load that is let down is no friction.
@@ -49,7 +51,8 @@ pub(super) fn wrong_sign(recording: &Recording, joint: &Joint) -> Option<Note> {
     let witnesses = [law.inertia(torque), law.body(), law.gravity(recording, joint)];
     let agrees = witnesses.into_iter().skip(usize::from(!is_alone)).flatten().any(is_negative);
     let contradicts = witnesses.into_iter().flatten().any(is_positive);
-    let is_friction = is_alone && is_negative(of_coulomb) && of_coulomb.0 < -COULOMB_POWER_SHARE * exchanged;
+    let least_coulomb = if is_alone { COULOMB_POWER_SHARE } else { COULOMB_POWER_SHARE_BESIDE_OTHERS };
+    let is_friction = is_negative(of_coulomb) && of_coulomb.0 < -least_coulomb * exchanged;
     let is_wrong = is_negative(dissipation)
         && dissipation.0 < -LEAST_POWER_SHARE * exchanged
         && work < 0.0
