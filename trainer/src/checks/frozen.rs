@@ -6,8 +6,7 @@
 use super::law::{Columns, PositionTerms};
 use super::motion::{smooth, top_speed};
 use super::note::{Fault, Note};
-use super::steps::{others, stretches};
-use crate::numerics::statistics::quantile;
+use super::steps::{others, resolution, stretches};
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
 use std::ops::Range;
@@ -21,6 +20,8 @@ const USUAL: f64 = 0.9;
 const MOVING: f64 = 0.05;
 /// Distance of the law from the value over what the law leaves elsewhere, root mean square, at least.
 const OVER_RESIDUAL: f64 = 4.0;
+/// The same over the step of the converter: within it a torque that changes is recorded as one that does not.
+const OVER_STEP: f64 = 1.5;
 /// Share of a stretch in which the law asks for more than a limit gives.
 const AT_LIMIT: f64 = 0.9;
 /// Share of the rows that may be left out: beyond it the rest is no recording.
@@ -43,6 +44,7 @@ pub(super) fn without_frozen_torque(recording: &Recording) -> Option<(Option<Rec
     let terms = PositionTerms::Gravity(1.0);
     let fit = Columns::of(&rest, top, terms)?.fit(&rest, top)?.fit;
     let law = Columns::of(&all, top, terms)?.predict(&fit.coefficients);
+    let least = (OVER_RESIDUAL * fit.rmse).max(OVER_STEP * resolution(torque));
     let is_frozen = |run: &Range<usize>| {
         let value = torque[run.start];
         let begin = all.time.partition_point(|at| *at < time[run.start]);
@@ -53,9 +55,7 @@ pub(super) fn without_frozen_torque(recording: &Recording) -> Option<(Option<Rec
         let mean = |of: &dyn Fn(usize) -> f64| samples.clone().map(of).sum::<f64>() / count;
         let distance = mean(&|sample| (law[sample] - value).powi(2)).sqrt();
         let beyond = mean(&|sample| f64::from(law[sample] * value.signum() > value.abs() && value != 0.0));
-        mean(&|sample| velocity[sample].abs()) > MOVING * top
-            && distance > OVER_RESIDUAL * fit.rmse
-            && beyond < AT_LIMIT
+        mean(&|sample| velocity[sample].abs()) > MOVING * top && distance > least && beyond < AT_LIMIT
     };
     let frozen: Vec<Range<usize>> = candidates.into_iter().filter(is_frozen).collect();
     let first = torque[frozen.first()?.start];

@@ -3,6 +3,7 @@
 
 use crate::numerics::statistics::{mean, quantile, root_mean_square};
 use crate::recording::{Quantity, Recording};
+use crate::samples::spikes::without_spikes;
 use crate::samples::{Preparation, Samples, VelocitySource, prepare};
 
 /// Standard deviation of the filter as a share of the time scale of the motion, rms(position) / rms(velocity): a swing of one frequency
@@ -20,7 +21,8 @@ const FEWEST_SAMPLES: usize = 100;
 pub(super) fn smooth(recording: &Recording, velocity: VelocitySource) -> Option<Samples> {
     let sigma_s = sigma_s(recording)?;
     let preparation = Preparation { sigma_s: Some(sigma_s), rate_hz: Some(1.0 / sigma_s), velocity };
-    let samples = prepare(recording, &preparation).ok()?;
+    let (recording, _) = without_spikes(recording);
+    let samples = prepare(&recording, &preparation).ok()?;
     (samples.len() >= FEWEST_SAMPLES).then_some(samples)
 }
 

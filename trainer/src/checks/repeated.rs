@@ -28,8 +28,14 @@ pub(super) fn without_repeated_rows(recording: &Recording) -> Option<(Option<Rec
     let position = recording.values(Quantity::Position)?;
     recording.actuator().or_else(|| recording.separated_friction())?;
     let fast = MOVING_STEPS * resolution(position);
-    let far = |from: usize, to: usize| (position[to] - position[from]).abs() > fast;
-    let moves = |row: usize| row >= 2 && row + 1 < position.len() && far(row - 2, row - 1) && far(row, row + 1);
+    // On to the same side before and after: where a joint turns round it is twice at one place.
+    let moves = |row: usize| {
+        let step = |to: usize| position[to] - position[to - 1];
+        row >= 2
+            && row + 1 < position.len()
+            && step(row - 1).abs().min(step(row + 1).abs()) > fast
+            && step(row - 1) * step(row + 1) > 0.0
+    };
     let rows: Vec<usize> = (1..position.len())
         .filter(|row| position[*row] == position[row - 1] && moves(*row) && is_equal(recording, *row))
         .collect();

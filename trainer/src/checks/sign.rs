@@ -1,17 +1,18 @@
 //! A torque of the wrong sign: recorded so, friction would drive the joint and inertia help it along.
 //!
 //! Work alone proves nothing: a load that is lowered, a body that another joint swings, gravity and what an inertia gives back all drive an
-//! actuator. So the law carries gravity, recorded couplings and inertia, and a sign is called wrong only where friction gives energy,
-//! Coulomb friction in particular (a controller that brakes a driven joint looks viscous), the actuator as recorded takes up more than it
-//! gives, and inertia or a given body have the wrong sign as well. Where the motion is too slow for inertia to show, Coulomb friction has
-//! to be most of what the torque does. Beside another joint that moves, only a given body is a witness: that joint may drive this one.
+//! actuator. So the law carries gravity, recorded couplings and inertia, and a sign is called wrong only where friction gives energy, the
+//! actuator as recorded takes up more than it gives, and inertia or a given body have the wrong sign as well. Where the motion is too slow
+//! for inertia to show, Coulomb friction has to be a good part of what the torque does: a controller that brakes a driven joint looks
+//! viscous. Beside another joint that is recorded the inertia is no witness, and Coulomb friction has to be a larger part: that joint may
+//! drive this one.
 
 use super::direction::lesser_share;
 use super::law::Law;
 use super::motion::{smooth, torque};
 use super::note::{Fault, Note};
 use crate::joint::Joint;
-use crate::numerics::statistics::mean;
+use crate::numerics::statistics::{mean, root_mean_square};
 use crate::recording::Recording;
 use crate::samples::VelocitySource;
 
@@ -19,9 +20,12 @@ use crate::samples::VelocitySource;
 const LEAST_EXPLAINED: f64 = 0.5;
 /// Standard errors from which a figure has a sign, those of blocks being few and their noise coloured.
 const CLEAR: f64 = 4.0;
-/// Power of friction over the power that the torque exchanges: least, and from which friction is most of it.
+/// Power of friction over the power that the torque exchanges, least; and that of its Coulomb part where nothing else is a witness.
 const LEAST_POWER_SHARE: f64 = 0.05;
-const MOST_POWER_SHARE: f64 = 0.5;
+const COULOMB_POWER_SHARE: f64 = 0.25;
+const COULOMB_POWER_SHARE_BESIDE_OTHERS: f64 = 0.4;
+/// Share of the torque, root mean square, from which an inertia shows: hysteresis passes for a few per cent of either sign.
+const LEAST_INERTIA_SHARE: f64 = 0.1;
 /// Share of the travel that has to go in the lesser direction: in one alone a load that is let down is no friction.
 const LEAST_RETURN: f64 = 0.05;
 
@@ -41,16 +45,15 @@ pub(super) fn wrong_sign(recording: &Recording, joint: &Joint) -> Option<Note> {
     let [coulomb, viscous] = [law.columns.coulomb, law.columns.viscous];
     let dissipation = law.combination(&[(coulomb, power(coulomb)), (viscous, power(viscous))]);
     let of_coulomb = law.combination(&[(coulomb, power(coulomb))]);
-    let inertia = law.columns.inertia.map(|column| law.combination(&[(column, 1.0)]));
-    let [body, gravity] = [law.body(), law.gravity(recording, joint)];
     let is_negative = |(value, error): (f64, f64)| value < -CLEAR * error;
     let is_positive = |(value, error): (f64, f64)| value > CLEAR * error;
     let is_alone = law.columns.couplings.is_empty();
-    let agrees = [inertia.filter(|_| is_alone), body, gravity].into_iter().flatten().any(is_negative);
-    let contradicts = [inertia, body, gravity].into_iter().flatten().any(is_positive);
-    let is_friction = is_alone && of_coulomb.0 < -MOST_POWER_SHARE * exchanged;
+    let witnesses = [law.inertia(torque), law.body(), law.gravity(recording, joint)];
+    let agrees = witnesses.into_iter().skip(usize::from(!is_alone)).flatten().any(is_negative);
+    let contradicts = witnesses.into_iter().flatten().any(is_positive);
+    let least_coulomb = if is_alone { COULOMB_POWER_SHARE } else { COULOMB_POWER_SHARE_BESIDE_OTHERS };
+    let is_friction = is_negative(of_coulomb) && of_coulomb.0 < -least_coulomb * exchanged;
     let is_wrong = is_negative(dissipation)
-        && is_negative(of_coulomb)
         && dissipation.0 < -LEAST_POWER_SHARE * exchanged
         && work < 0.0
         && !contradicts
@@ -64,6 +67,14 @@ impl Law {
         let mut weights = vec![0.0; self.columns.values.len()];
         weighted.iter().for_each(|(column, weight)| weights[*column] = *weight);
         self.fit.combination(&weights)
+    }
+
+    /// The inertia, where it shows in the torque.
+    fn inertia(&self, torque: &[f64]) -> Option<(f64, f64)> {
+        let column = self.columns.inertia?;
+        let share = self.fit.coefficients[column].abs() * root_mean_square(&self.columns.values[column])
+            / root_mean_square(torque);
+        (share > LEAST_INERTIA_SHARE).then(|| self.combination(&[(column, 1.0)]))
     }
 
     /// Factor of a recorded rigid body.

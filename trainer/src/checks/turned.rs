@@ -4,6 +4,7 @@ use super::law::{Law, moving};
 use super::motion::{smooth, top_speed, torque};
 use super::note::{Fault, Note};
 use super::steps::{others, stretches};
+use crate::numerics::statistics::mean;
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
 use nalgebra::{DMatrix, DVector};
@@ -13,9 +14,11 @@ use std::ops::Range;
 const MOST_PIECES: usize = 240;
 const SHORTEST_PIECE_S: f64 = 0.2;
 /// Fewest pieces of a stretch.
-const FEWEST_PIECES: usize = 3;
-/// What the law leaves of the torque with the stretch turned back, over what it leaves as recorded, energy, at most.
-const CLEARLY_BETTER: f64 = 0.25;
+const FEWEST_PIECES: usize = 5;
+/// Mean square of what the law leaves of the stretch turned back over what it leaves of the rest, at most; and of the stretch as recorded
+/// over both, at least.
+const AS_THE_REST: f64 = 4.0;
+const CLEARLY_WORSE: f64 = 16.0;
 /// Share of the torque's energy that the law may leave then: of a torque that it does not describe it tells no sign.
 const MOST_LEFT: f64 = 0.3;
 /// Share of the torque's energy below which nothing that the law leaves can be a turned stretch of any length.
@@ -77,9 +80,21 @@ fn turned_stretch(recording: &Recording) -> Option<[f64; 2]> {
     let stretches =
         (0..count).flat_map(|from| (from + FEWEST_PIECES..=(from + longest).min(count)).map(move |to| (from, to)));
     let (from, to) = stretches.min_by(|a, b| left(a.0, a.1).total_cmp(&left(b.0, b.1)))?;
-    let is_turned = left(from, to) < (CLEARLY_BETTER * left(0, 0)).min(MOST_LEFT * energy);
-    // The sign may have changed within a piece.
+    // What the law of that stretch turned back leaves, per sample in motion, of the stretch as recorded and turned, and of the rest.
+    let scaled = &inverse * (&sums[count] - 2.0 * (&sums[to] - &sums[from]));
+    let law = |row: usize| (0..width).map(|i| scaled[i] / scale[i] * columns[i][row]).sum::<f64>();
+    // The sign may have changed within the first and the last piece, or just before and after them.
+    let stretch = pieces[from + 1].start..pieces[to - 2].end;
     let (first, last) = (pieces[from.saturating_sub(1)].start, pieces[to.min(count - 1)].end - 1);
+    let inside: Vec<usize> = moving.iter().copied().filter(|row| stretch.contains(row)).collect();
+    let outside: Vec<usize> = moving.iter().copied().filter(|row| !(first..=last).contains(row)).collect();
+    let left_of = |rows: &[usize], sign: f64| {
+        mean(&rows.iter().map(|row| (sign * torque[*row] - law(*row)).powi(2)).collect::<Vec<_>>())
+    };
+    let (recorded, turned, rest) = (left_of(&inside, 1.0), left_of(&inside, -1.0), left_of(&outside, 1.0));
+    let is_turned = left(from, to) < MOST_LEFT * energy
+        && turned < AS_THE_REST * rest
+        && recorded > CLEARLY_WORSE * rest.max(turned);
     is_turned.then(|| [samples.time[first], samples.time[last]])
 }
 

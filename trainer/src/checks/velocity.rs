@@ -18,6 +18,8 @@ const SAME_UNIT: std::ops::Range<f64> = 0.8..1.25;
 /// periods of the clock.
 const MATTERING_LAG: f64 = 0.08;
 const LEAST_LAG_PERIODS: f64 = 2.0;
+/// Distance of a derivative from a constant velocity, as a share of it (root mean square), from which the motion is not steady.
+const UNSTEADY: f64 = 0.1;
 /// Factors between units: degrees, turns and revolutions a minute for radians; milli, micro and nano, of time too; and the other way
 /// round for a velocity.
 const UNIT_FACTORS: [f64; 7] = [360.0 / TAU, TAU, 60.0 / TAU, 6.0, 1e3, 1e6, 1e9];
@@ -49,7 +51,8 @@ fn contradiction(recording: &Recording) -> Option<Fault> {
     }
     let contradicts = |how| Some(Fault::ContradictingVelocity(how));
     if velocity.iter().all(|value| *value == velocity[0]) {
-        return contradicts(Contradiction::Constant(velocity[0]));
+        let apart: f64 = derived.iter().map(|derived| (derived - velocity[0]).powi(2)).sum();
+        return if apart > UNSTEADY.powi(2) * dd { contradicts(Contradiction::Constant(velocity[0])) } else { None };
     }
     // recorded = factor * (derived - lag * acceleration)
     let factor = (rd * aa - ra * da) / determinant;

@@ -132,7 +132,7 @@ registry! {
         "Another file is named, or the key was made in another form.",
         "`openssl rand -hex 32 > drive.key` makes one.";
     NOT_MEASURED = "FRK-D023" Data "torque was not measured",
-        "The torque, force or current has one and the same value in every row.",
+        "The torque, force or current is zero in every row, the same in every row although the speed changes, or smaller than any number that a converter gives.",
         "A channel that was never connected or not enabled, a constant that stands for a missing signal, or the wrong column.",
         "Record the torque, or map its column in joint.toml.";
     WRONG_SIGN = "FRK-D024" Data "torque of the wrong sign",

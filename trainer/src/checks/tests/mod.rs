@@ -65,6 +65,12 @@ fn what_a_joint_does_is_no_fault() {
         })
         .collect();
     assert_eq!(faults(plant.recording(&rested)), []);
+    // Where it turns round it is twice at one place, with one torque where that is recorded in coarse steps.
+    let position = |row: usize| ((0.9 * (0.9012 * (row as f64 - 700.5)).cos()) / 1e-5).round() * 1e-5;
+    let coarse = plant.changed(|row, [t, ..]| [t, position(row), 0.0, (position(row) / 0.5).round()]);
+    assert!(position(700) == position(701) && position(702) != position(701));
+    let found = faults(coarse);
+    assert!(!found.iter().any(|fault| matches!(fault, Fault::RepeatedRows { .. })), "{found:?}");
     // Its drive has a limit.
     assert_eq!(faults(plant.changed(|_, [t, q, v, u]| [t, q, v, u.clamp(-1.5, 1.5)])), []);
     // Its torque is recorded in coarse steps.

@@ -12,6 +12,11 @@ fn a_torque_that_was_not_measured_is_refused() {
         let memory = [0.0, 5e-324, 1e-321, 1.2e-314, 3e-40];
         refused(plant.changed(|row, [t, q, v, _]| [t, q, v, memory[row * row % 5]]), &codes::NOT_MEASURED);
     }
+    // At one speed a constant torque may be right, and so may one level of friction.
+    let steady = |row: usize, [t, ..]: plant::Row| [t, 0.5 * t + 1e-6 * (row % 3) as f64, 0.5, 2.0];
+    assert_eq!(faults(robot().changed(steady)), [Fault::OneDirection]);
+    let level = Plant { columns: ["time_s", "position_rad", "velocity_rad_s", "friction_torque_Nm"], ..robot() };
+    assert_eq!(faults(level.changed(|_, [t, q, v, _]| [t, q, v, 2.0])), []);
     // A tiny torque is one.
     let tiny = robot().changed(|_, [t, q, v, u]| [t, q, v, 1e-9 * u]);
     assert_eq!(faults(tiny), []);
