@@ -7,7 +7,7 @@ use frikan_shared::model::{Law, Model};
 use frikan_shared::network::Network;
 
 /// Of a program of no operations, the call included.
-const PROGRAM: u32 = 76;
+const PROGRAM: u32 = 74;
 /// Of a table with cells that grow from zero, of equal cells, and of integers from and to floating point.
 const GEOMETRIC_TABLE: u32 = 42;
 const UNIFORM_TABLE: u32 = 34;
