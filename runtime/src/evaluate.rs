@@ -68,10 +68,12 @@ fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_I
 
 #[inline(never)]
 fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_INPUTS], program: &Program) -> f32 {
-    let mut inputs = *inputs;
-    for (value, input) in inputs.iter_mut().zip(&model.inputs) {
-        *value = held(input, *value);
+    // Channels that the model does not have are 0, whatever they hold.
+    let mut channels = [0.0; MAX_INPUTS];
+    for ((channel, value), input) in channels.iter_mut().zip(inputs).zip(&model.inputs) {
+        *channel = held(input, *value);
     }
+    let inputs = channels;
     let any_nan = inputs.iter().fold(false, |any, input| any | input.is_nan());
     limited(unless(any_nan, run(program, &inputs)), model.output_limit)
 }

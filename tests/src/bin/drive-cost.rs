@@ -44,6 +44,9 @@ divisions and taken branches.
 Flash is the code and constants of the smallest firmware that decodes an image and steps every kind of model, beyond one that does nothing
 (and so the same in every row). RAM is the compensator with room for 128 cells, its last sample and answer. Stack is the depth that one step
 and decoding reach.
+
+Rows that name effects are the symmetric table with these effects; it then reads velocity, position, load and temperature, unless the row says
+how many inputs.
 ";
 
 fn main() -> Result<()> {

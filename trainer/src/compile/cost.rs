@@ -9,7 +9,7 @@ use frikan_shared::network::Network;
 /// Of a program of no operations, the call included.
 const PROGRAM: u32 = 74;
 /// Of a table with cells that grow from zero, of equal cells, and of integers from and to floating point.
-const GEOMETRIC_TABLE: u32 = 41;
+const GEOMETRIC_TABLE: u32 = 42;
 const UNIFORM_TABLE: u32 = 34;
 const INTEGER_TABLE: u32 = 77;
 /// Of a network of one input and one hidden layer of sums, and of each of its nodes.

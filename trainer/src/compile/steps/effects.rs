@@ -96,10 +96,10 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
         Effect::DwellBreakaway { gain, time, distance, rest_velocity, dwell_limit, smoothing_velocity } => {
             let [dwell, travelled, latched, _] = memory.unwrap_or_default();
             let now = if v.abs() < *rest_velocity {
-                let dwell = (dwell + seen.dt).min(*dwell_limit);
+                let dwell = lower(dwell + seen.dt, *dwell_limit);
                 [dwell, 0.0, gain * log(1.0 + dwell / time), 0.0]
             } else {
-                [0.0, (travelled + seen.travel.abs() / distance).min(SPENT), latched, 0.0]
+                [0.0, lower(travelled + seen.travel.abs() / distance, SPENT), latched, 0.0]
             };
             *memory = Some(now);
             now[2] * exp(-now[1]) * smooth(*smoothing_velocity)
@@ -117,7 +117,8 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
         Effect::Play { half_width, torque } => {
             let q = seen.position;
             let [link, ..] = memory.unwrap_or([q, 0.0, 0.0, 0.0]);
-            let link = link.max(q - half_width).min(q + half_width);
+            let (low, high) = (q - half_width, q + half_width);
+            let link = lower(if link > low { link } else { low }, high);
             *memory = Some([link, 0.0, 0.0, 0.0]);
             return Added { torque: torque * ((q - link) / half_width), position: -(q - link), velocity: 0.0 };
         }
@@ -132,6 +133,11 @@ pub fn added(effect: &Effect, memory: &mut Memory, seen: &Seen<'_>) -> Added {
     Added { torque, ..Added::default() }
 }
 
+/// `x` below `limit`, else `limit`: [`f32::min`] may take either of two zeros.
+fn lower(x: f32, limit: f32) -> f32 {
+    if x < limit { x } else { limit }
+}
+
 /// `z r + (1 - r) S` with `r = exp(-|dq| / distance)` and `S` the sign of `dq`.
 fn turned_over(z: f32, travel: f32, distance: f32) -> f32 {
     let left = exp(-(travel.abs() / distance));
@@ -141,11 +147,11 @@ fn turned_over(z: f32, travel: f32, distance: f32) -> f32 {
 /// The filtered power, W; the second number of the memory is what rounding put in too much (Kahan 1965).
 fn warmed(memory: &mut Memory, (time_constant, power_limit): (f32, f32), seen: &Seen<'_>) -> f32 {
     let [heat, excess, ..] = memory.unwrap_or_default();
-    let power = (seen.law * seen.velocity).abs().min(power_limit);
+    let power = lower((seen.law * seen.velocity).abs(), power_limit);
     let increment = lag_share(seen.dt / time_constant) * (power - heat) - excess;
     let sum = heat + increment;
     let excess = (sum - heat) - increment;
-    let heat = sum.max(0.0).min(power_limit);
+    let heat = if sum > 0.0 { lower(sum, power_limit) } else { 0.0 };
     *memory = Some([heat, excess, 0.0, 0.0]);
     heat
 }

@@ -39,7 +39,7 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
             self.position = None;
             self.torque = 0.0;
         }
-        let [gain, most, slew] = call.limits.map(|limit| if limit.is_finite() { limit.max(0.0) } else { 0.0 });
+        let [gain, most, slew] = call.limits.map(|limit| if limit > 0.0 && limit.is_finite() { limit } else { 0.0 });
         let channels = channels(self.model, &call.measurement);
         let is_usable = channels.iter().all(|channel| channel.is_finite())
             && (0.0..=LONGEST_SAMPLE).contains(&call.dt)
