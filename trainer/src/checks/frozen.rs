@@ -7,6 +7,7 @@ use super::law::{Columns, PositionTerms};
 use super::motion::{smooth, top_speed};
 use super::note::{Fault, Note};
 use super::steps::{others, resolution, stretches};
+use crate::numerics::statistics::quantile;
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
 use std::ops::Range;
