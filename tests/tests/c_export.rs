@@ -169,7 +169,8 @@ fn nothing_is_contracted_on_a_processor_that_could() {
         let source = write(folder.path(), &model);
         for level in ["-O1", "-O2", "-O3", "-Os"] {
             let assembly = cortex_m4f_assembly(&source, &[level]).unwrap();
-            assert!(assembly.contains("vmul.f32"), "{level}: it multiplies");
+            // A `vmla` rounds its product as a `vmul` does, a `vfma` does not.
+            assert!(["vmul.f32", "vmla.f32"].iter().any(|multiply| assembly.contains(multiply)), "{level}");
             let contracted = assembly.lines().filter(|line| line.contains("vfm") || line.contains("vfnm"));
             assert_eq!(contracted.collect::<Vec<_>>(), Vec::<&str>::new(), "{level}");
         }
