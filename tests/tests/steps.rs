@@ -166,7 +166,8 @@ fn a_wrong_compensator_is_caught() {
         compare_answers(&model, &calls, answers.collect::<Vec<_>>())
     };
     assert!(with(|_| ()).identical());
-    let wrong: [(&str, fn(&mut Call)); 5] = [
+    type Alter = fn(&mut Call);
+    let wrong: [(&str, Alter); 5] = [
         ("no reset", |call| call.reset = false),
         ("no gain", |call| call.limits[0] = 1.0),
         ("no limit of the torque", |call| call.limits[1] = f32::MAX),
@@ -197,7 +198,8 @@ fn one_model_has_one_sequence_that_meets_everything() {
     let calls = sequence(&model, 20_000);
     let words = |calls: &[Call]| calls.iter().flat_map(|call| call.words().map(f32::to_bits)).collect::<Vec<_>>();
     assert_eq!(words(&calls), words(&sequence(&model, 20_000)));
-    let meets: [(&str, fn(&Call) -> bool); 8] = [
+    type Holds = fn(&Call) -> bool;
+    let meets: [(&str, Holds); 8] = [
         ("reset", |call| call.reset),
         ("rest", |call| call.measurement.velocity == 0.0),
         ("missing velocity", |call| call.measurement.velocity.is_nan()),

@@ -114,7 +114,7 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
     let cut_off = prepared.filter.cut_off_hz;
     let is_coarse = signals.position_resolution > COARSE_STEP_SHARE * prepared.state.span();
     let coarse = is_coarse && prepared.quantisation_limited && cut_off < LEAST_BAND_HZ;
-    coarse.then(|| HealthNote {
+    coarse.then_some(HealthNote {
         effect: EffectId::Quantisation,
         blocking: true,
         observation: Observation::CoarsePosition { step: signals.position_resolution, cut_off_hz: cut_off },
@@ -124,7 +124,7 @@ pub(crate) fn coarse_position(signals: &Signals, prepared: &Prepared) -> Option<
 /// A position that was sampled at other instants than the clock says.
 pub(crate) fn scattered_sampling(signals: &Signals, prepared: &Prepared) -> Option<HealthNote> {
     let deviation_s = prepared.sampling_jitter;
-    (deviation_s > 0.0).then(|| HealthNote {
+    (deviation_s > 0.0).then_some(HealthNote {
         effect: EffectId::TimeMisalignment,
         blocking: false,
         observation: Observation::SamplingJitter { deviation_s, period_s: signals.period },
@@ -140,7 +140,7 @@ fn clipped_torque(signals: &Signals, step: Option<TorqueStep>) -> Option<HealthN
     let share = share_from(top * (1.0 - PRINTED));
     // Of a torque in coarse steps some samples are the highest anyway: at a limit there are twice as many as a step below it.
     let is_coarse_peak = step.is_some_and(|TorqueStep { step, .. }| share_from(top - 1.5 * step) > 1.5 * share);
-    (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then(|| HealthNote {
+    (top > 0.0 && share > CLIPPED_SHARE && !is_coarse_peak).then_some(HealthNote {
         effect: EffectId::Saturation,
         blocking: false,
         observation: Observation::ClippedTorque { limit: top, share },
