@@ -47,11 +47,11 @@ pub fn exp(x: f32) -> f32 {
     exp_of_held(at_least(at_most(x, 88.37), -87.0))
 }
 
-/// `exp(-x)` of what decays, to the bit, for `x` from 0 on; some finite number for any other.
+/// `exp(-|x|)` of what decays, to the bit: above zero and at most 1.
 #[must_use]
 #[inline]
 pub fn decay(x: f32) -> f32 {
-    exp_of_held(at_least(-x, -87.0))
+    exp_of_held(at_least(-x.abs(), -87.0))
 }
 
 /// `exp(x)` from -87 to 88.37. Polynomial of Cephes `expf` (Moshier 1992).

@@ -16,7 +16,7 @@ pub fn step(smoothing_velocity: f32, elements: &[Element], memory: &mut Memory, 
     let smooth_sign = motion.smooth_sign(smoothing_velocity);
     // One element is the commonest: it takes no loop and no call.
     if let ([element], [share, ..]) = (elements, &mut *memory) {
-        let now = turned_over(*share, motion.travel, decay(motion.travel.abs() / element.distance));
+        let now = turned_over(*share, motion.travel, decay(motion.travel / element.distance));
         *share = motion.usable.or(now, *share);
         return Contribution::torque(element.torque * now - element.torque * smooth_sign);
     }

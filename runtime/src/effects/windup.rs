@@ -9,7 +9,7 @@ use super::{Contribution, Memory, Motion};
 #[must_use]
 #[inline(never)]
 pub fn step(torque: f32, distance: f32, [share, ..]: &mut Memory, motion: &Motion) -> Contribution {
-    let now = turned_over(*share, motion.travel, decay(motion.travel.abs() / distance));
+    let now = turned_over(*share, motion.travel, decay(motion.travel / distance));
     *share = motion.usable.or(now, *share);
     Contribution::torque(torque * now)
 }
