@@ -2,6 +2,7 @@
 
 use crate::compile::effects::{Context, Terms, has_room_for_position};
 use crate::compile::formula::{Curve, Parity};
+use crate::compile::host_model::HostModel;
 use crate::compile::interval::Interval;
 use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::compile_layout;
@@ -16,7 +17,6 @@ use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::refit::Refit;
-use crate::fit::HostModel;
 use crate::numerics::statistics::quantile;
 use crate::physics::names::plain_name;
 use crate::physics::{EffectId, JointState};

@@ -8,6 +8,7 @@ pub mod cells;
 pub mod cost;
 pub mod effects;
 pub mod formula;
+pub mod host_model;
 pub mod improved;
 pub mod integers;
 pub mod interval;

@@ -2,20 +2,15 @@
 
 use crc::{CRC_64_XZ, Crc};
 use frikan_shared::image::{Image, decode, encode};
-use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
+use frikan_shared::model::{Input, Law, Provenance, RigidBody};
 use frikan_shared::pool::Pool;
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
 
 use super::inputs::ChosenInput;
+pub use crate::compile::host_model::{CELLS, HostModel};
 use crate::error::{Error, Result, codes};
 use crate::recording::Recording;
-
-/// Cells for which the trainer has room; more than any drive.
-pub const CELLS: usize = 4096;
-
-/// A model as the trainer holds it.
-pub type HostModel = Model<CELLS>;
 
 /// Largest image that is read, in bytes.
 const IMAGE_LIMIT_BYTES: u64 = 1 << 20;
