@@ -1,6 +1,6 @@
 //! Which physics is missing where a recording and a model of its joint differ.
 //!
-//! A recording walks through the rooms in one direction, and [`run`] tells the story:
+//! A recording walks through the rooms in one direction, and `run` tells the story:
 //! `measurement` -> `preparation` -> `checks` -> `comparison` (what is already modelled) -> `hypotheses` and `noise` -> `evidence` ->
 //! `search` -> `proof` -> `answer` -> `advice`. Knows no file, no command line and no picture.
 
