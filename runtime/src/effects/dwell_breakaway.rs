@@ -9,7 +9,7 @@ use super::{Contribution, Memory, Motion};
 const TRAVEL_LIMIT: f32 = 20.0;
 
 /// While at rest the dwell grows and with it the torque; in motion the torque decays over the distance. The memory is the time at rest, s,
-/// at most the dwell limit, the way since rest in breakaway distances, at most [`TRAVEL_LIMIT`], and the torque latched at the end of the
+/// at most the dwell limit, the way since rest in breakaway distances, at most `TRAVEL_LIMIT`, and the torque latched at the end of the
 /// rest, N m.
 #[must_use]
 #[inline(never)]
