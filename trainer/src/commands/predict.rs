@@ -40,7 +40,7 @@ pub fn run(arguments: &Predict) -> Result<()> {
     let (_, image) = model::load(&arguments.model)?;
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = recording::load(&arguments.recording, &joint)?;
-    let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
+    let samples = every_row(&image.model, &recording).map_err(|error| error.in_file(recording.file()))?;
     let prediction = predict(&image.model, &samples).map_err(|error| error.in_file(recording.file()))?;
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, table(&recording, &image.model, &prediction.total())?);

@@ -110,7 +110,7 @@ pub fn run(arguments: &Verify) -> Result<u8> {
 fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<[f32; MAX_INPUTS]>> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = recording::load(path, &joint)?;
-    let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
+    let samples = every_row(model, &recording).map_err(|error| error.in_file(recording.file()))?;
     let mut points = vec![[0.0; MAX_INPUTS]; samples.len()];
     for (slot, input) in model.inputs.iter().enumerate() {
         let name = match &input.quantity {

@@ -7,6 +7,7 @@ use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::NetworkStory;
 use crate::error::{Error, Result, codes};
 use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
+use crate::samples::blocks::Split;
 use crate::samples::rigid_body::TermKind;
 
 /// Points of a drawn curve.
@@ -32,6 +33,8 @@ pub(super) struct Learnt {
     /// One coefficient for each column of the material.
     pub(super) coefficients: Vec<f64>,
     pub(super) settled: bool,
+    /// Root mean square of what it leaves of the samples that it was trained on, unit of the target.
+    pub(super) rmse: f64,
 }
 
 impl Lesson {
@@ -64,8 +67,8 @@ impl Lesson {
     }
 
     /// Trains on the training blocks and prunes as the validation blocks allow.
-    pub(super) fn train(&self, material: &Material, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
-        let blocks = Blocks { train: material.split.train.clone(), validation: material.split.validation.clone() };
+    pub(super) fn train(&self, split: &Split, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
+        let blocks = Blocks { train: split.train.clone(), validation: split.validation.clone() };
         let dataset = self.dataset(&blocks);
         let told = |stage| {
             move |step: &kan::Progress| {
@@ -96,6 +99,7 @@ impl Lesson {
             network: result.network.clone(),
             coefficients,
             settled: result.convergence.status.is_settled(),
+            rmse: result.train_rmse,
         }
     }
 
