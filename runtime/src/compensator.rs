@@ -4,10 +4,10 @@ use frikan_shared::authentication::Trust;
 use frikan_shared::image::ImageError;
 use frikan_shared::model::Model;
 
-use crate::common::{TableWithPresliding, table_alone};
 use crate::evaluate::within;
 use crate::friction::{Friction, FrictionState, Measurement};
 use crate::slots::load;
+use crate::table_models::{TableWithPresliding, table_alone};
 use crate::usable::from_0_to;
 
 /// Longest sample period that a step takes for real, s.

@@ -9,7 +9,6 @@
 #[cfg(test)]
 extern crate std;
 
-mod common;
 pub mod compensator;
 pub mod effects;
 pub mod evaluate;
@@ -20,6 +19,7 @@ pub mod joints;
 pub mod network;
 pub mod slots;
 pub mod table;
+mod table_models;
 pub mod usable;
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! should be; it is no model of anything.
 
 use super::motion::{top_speed, torque};
+use crate::numerics::least_squares::weighted;
 use crate::numerics::statistics::mean;
 use crate::recording::{Axis, Quantity};
 use crate::samples::Samples;
@@ -103,11 +104,7 @@ impl Columns {
 
     /// What coefficients make of these columns at every sample.
     pub(super) fn predict(&self, coefficients: &[f64]) -> Vec<f64> {
-        let mut predicted = vec![0.0; self.values[0].len()];
-        for (column, coefficient) in self.values.iter().zip(coefficients) {
-            predicted.iter_mut().zip(column).for_each(|(sum, value)| *sum += coefficient * value);
-        }
-        predicted
+        weighted(&self.values, coefficients)
     }
 }
 

@@ -7,6 +7,7 @@ use super::steps::{others, stretches};
 use crate::numerics::statistics::mean;
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
+use crate::samples::regression::{dot, norm};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -61,7 +62,7 @@ fn turned_stretch(recording: &Recording) -> Option<[f64; 2]> {
         (0..count).map(|piece| piece * samples.len() / count..(piece + 1) * samples.len() / count).collect();
     // Turning rows leaves the Gram matrix as it is and turns their share of the moments: every stretch costs one product.
     let width = columns.len();
-    let scale: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
+    let scale: Vec<f64> = columns.iter().map(|column| norm(column).max(f64::MIN_POSITIVE)).collect();
     let gram = DMatrix::from_fn(width, width, |i, j| dot(&columns[i], &columns[j]) / (scale[i] * scale[j]));
     let inverse = gram.pseudo_inverse(1e-9).ok()?;
     let moment = |rows: &Range<usize>| {
@@ -96,12 +97,4 @@ fn turned_stretch(recording: &Recording) -> Option<[f64; 2]> {
         && turned < AS_THE_REST * rest
         && recorded > CLEARLY_WORSE * rest.max(turned);
     is_turned.then(|| [samples.time[first], samples.time[last]])
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt().max(f64::MIN_POSITIVE)
 }

@@ -3,8 +3,7 @@
 use crate::error::{Error, Result, codes};
 use crate::files::write_whole;
 use crate::joint;
-use crate::plant;
-use crate::plant::{Hidden, NoiseKind, PlantError, SimulatedRecording};
+use crate::plant::{self, Hidden, NoiseKind, PlantError, SimulatedRecording};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -43,8 +43,8 @@ impl Realignment {
 
     /// The delay to begin with, s: the sampling's own where it is felt, and none of a longer shift, which may be physics.
     pub(crate) fn first_delay_s(self) -> f64 {
-        let is_of_sampling = (LEAST_SAMPLING_DELAY..=LONGEST_SAMPLING_DELAY).contains(&self.samples().abs());
-        if is_of_sampling && self.samples().abs() > LEAST_SAMPLING_DELAY { self.shift_s } else { 0.0 }
+        let samples = self.samples().abs();
+        if samples > LEAST_SAMPLING_DELAY && samples <= LONGEST_SAMPLING_DELAY { self.shift_s } else { 0.0 }
     }
 
     /// The delay to begin with again where the first beginning found no misalignment, s: what is left of a longer shift is short

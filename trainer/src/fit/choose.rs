@@ -5,14 +5,12 @@ use super::model::HostModel;
 use super::outcome::Representation;
 use super::predict::predict;
 use crate::error::Result;
+use crate::numerics::statistics::NORMAL_95;
 
 /// An expression may be worse by this share and is still taken: it is shorter, and holds beyond the data.
 const TOLERATED_SHARE: f64 = 0.02;
 /// Where the difference does not stand out of its scatter over blocks, it may be worse by this share.
 const TOLERATED_SHARE_UNCERTAIN: f64 = 0.10;
-/// Two-sided 95 % point of the normal distribution.
-const NORMAL_95: f64 = 1.96;
-
 /// Errors of a candidate on the locked rows.
 pub(super) struct Trial {
     pub(super) squares: Vec<f64>,

@@ -6,12 +6,9 @@ use super::inputs::ChosenInput;
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{CURVE_POINTS, NetworkSummary};
 use crate::error::{Error, Result, codes};
-use crate::kan;
-use crate::kan::{Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
+use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
+use crate::numerics::statistics::NORMAL_95;
 use crate::samples::rigid_body::TermKind;
-
-/// Two-sided 95 % point of the normal distribution.
-const NORMAL_95: f64 = 1.96;
 
 /// The columns that a network learns from, at the rows of the material.
 pub(super) struct TrainingData {

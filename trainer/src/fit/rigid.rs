@@ -4,6 +4,7 @@ use frikan_shared::model::RigidBody;
 
 use super::gather::Material;
 use crate::joint::Joint;
+use crate::numerics::statistics::NORMAL_95;
 use crate::parameter::Parameter;
 use crate::recording::Axis;
 use crate::samples::regression::least_squares;
@@ -48,7 +49,7 @@ pub(super) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Ve
                 symbol: symbol.to_owned(),
                 value,
                 unit: unit(column.kind, material.samples.axis, material.samples.actuator_unit),
-                ci95: [value - 1.96 * standard_error, value + 1.96 * standard_error],
+                ci95: [value - NORMAL_95 * standard_error, value + NORMAL_95 * standard_error],
             }
         })
         .collect()

@@ -93,12 +93,12 @@ fn pseudo_inverse(gram: DMatrix<f64>) -> (DMatrix<f64>, usize) {
 }
 
 /// Inner product, summed in order.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Euclidean norm.
-pub(super) fn norm(a: &[f64]) -> f64 {
+pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 

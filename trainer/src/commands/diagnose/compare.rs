@@ -8,14 +8,11 @@ use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
-use crate::fit;
-use crate::fit::HostModel;
-use crate::joint;
-use crate::joint::Joint;
+use crate::fit::{self, HostModel};
+use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
-use crate::recording;
-use crate::recording::{Quantity, Recording};
+use crate::recording::{self, Quantity, Recording};
 use frikan_shared::model::RigidBody;
 
 /// What the recording is compared with.

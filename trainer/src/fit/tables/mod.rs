@@ -8,8 +8,7 @@ use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table, Uni
 
 use crate::compile::formula::Curve;
 use crate::compile::networks::{COORDINATE_ERROR, Edge, Edges, Nodes, assemble, node_ranges};
-use crate::compile::tables;
-use crate::compile::tables::compile_table;
+use crate::compile::tables::{self, compile_table};
 use crate::kan::{GraphSummary, Network};
 
 use piecewise::{NetworkCurve, Piecewise};
