@@ -50,7 +50,7 @@ fn the_emps_axis_differs_between_its_directions() {
     let image = improve(&diagnosis, &signals.clone().into(), Origin::Recording(RigidBody::default()), Unit::Newton)
         .unwrap()
         .model;
-    let error = |recording| trace(&image, recording, &joint).unwrap().filtered_score.relative_error;
+    let error = |recording| trace(&image, recording).unwrap().filtered_score.relative_error;
     let (on_train, on_pulses) = (error(&train), error(&pulses));
     println!("{names:?}: {:.2} % train, {:.2} % pulses", 100.0 * on_train, 100.0 * on_pulses);
     assert!(on_train <= 0.032 && on_pulses <= 0.055);

@@ -59,6 +59,9 @@ pub struct Fit {
     /// Threads to use; all when absent. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Write the image also where the torque seems to have the wrong sign
+    #[arg(long)]
+    pub force: bool,
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
@@ -152,6 +155,14 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         Soundness::Sound => 0,
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
         Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
+        Soundness::NotPhysical { what, withheld } => {
+            let error = Error::new(&codes::NOT_PHYSICAL, what.clone());
+            // That there is no image is no message but the result.
+            if *withheld && !arguments.force && arguments.quiet {
+                eprintln!("{error}");
+            }
+            unsound(arguments, &error)
+        }
     })
 }
 
@@ -171,7 +182,10 @@ fn line(progress: &Progress) -> String {
 
 fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Result<()> {
     let mut outputs = Outputs::default();
-    outputs.add(&arguments.output, outcome.image.clone());
+    let withheld = matches!(outcome.sound, Soundness::NotPhysical { withheld: true, .. }) && !arguments.force;
+    if !withheld {
+        outputs.add(&arguments.output, outcome.image.clone());
+    }
     if let Some(path) = &arguments.json {
         outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
     }

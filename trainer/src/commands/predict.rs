@@ -43,7 +43,7 @@ pub fn run(arguments: &Predict) -> Result<()> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = recording::load(&arguments.recording, &joint)?;
     let (motion, warnings) = motion(recording.clone(), &joint)?;
-    let samples = every_row(&motion, &joint).map_err(|error| error.in_file(recording.file()))?;
+    let samples = every_row(&image.model, &motion).map_err(|error| error.in_file(recording.file()))?;
     let prediction = predict(&image.model, &samples).map_err(|error| error.in_file(recording.file()))?;
     let predicted = at_rows(&recording, &motion, prediction.total());
     let mut outputs = Outputs::default();

@@ -132,7 +132,7 @@ impl Found {
 fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<Call>> {
     let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
     let recording = motion(recording::load(path, &joint)?, &joint)?.0;
-    let samples = every_row(&recording, &joint).map_err(|error| error.in_file(recording.file()))?;
+    let samples = every_row(model, &recording).map_err(|error| error.in_file(recording.file()))?;
     let limits = [1.0, 2.0 * model.output_limit, f32::MAX];
     let mut calls = vec![Call { limits, ..Call::default() }; samples.len()];
     for (call, two) in calls.iter_mut().skip(1).zip(samples.time.windows(2)) {

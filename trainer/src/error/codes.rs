@@ -155,6 +155,10 @@ registry! {
         "The optimiser stopped before the gradient became small.",
         "A target that is almost all noise, or inputs that are collinear.",
         "Look at the report's residuals; fewer inputs or a cleaner recording usually help.";
+    NOT_PHYSICAL = "FRK-N003" NotIdentifiable "not physical",
+        "The law that the recording asks for has a negative inertia, or friction that drives the joint.",
+        "A torque of the wrong sign, a column that is not what it is taken for, or a force from outside: a spring, another joint.",
+        "Look at sign and columns. Where the torque seems reversed no image is written; `--force` writes it all the same.";
     INPUT_OUTPUT = "FRK-I001" InputOutput "file cannot be read or written",
         "The operating system refused to read or write a file.",
         "Missing rights, a full disk, or a device that went away.",

@@ -1,68 +1,188 @@
-//! Table or expression: both are built from the open blocks and compared on the locked ones as the drive computes them.
+//! Which law goes into the image: the simplest, unless locked rows prefer another by more than their error.
 
 use super::gather::Material;
 use super::model::HostModel;
-use super::outcome::Representation;
 use super::predict::predict;
 use crate::error::Result;
-use crate::numerics::statistics::NORMAL_95;
+use crate::numerics::statistics::{NORMAL_95, mean};
+use crate::samples::blocks::Split;
+use crate::samples::regression::least_squares;
 
-/// An expression may be worse by this share and is still taken: it is shorter, and holds beyond the data.
-const TOLERATED_SHARE: f64 = 0.02;
-/// Where the difference does not stand out of its scatter over blocks, it may be worse by this share.
-const TOLERATED_SHARE_UNCERTAIN: f64 = 0.10;
-/// Errors of a candidate on the locked rows.
+/// Blocks from which on their scatter is an error to go by.
+const LEAST_BLOCKS: usize = 3;
+/// With fewer blocks the mean square has to fall by this share instead.
+const CLEAR_SHARE: f64 = 0.1;
+/// A law that breaks physics has to be better by this many times the error that another needs.
+const WANTED: f64 = 2.0;
+
+/// Squared errors of one candidate on the rows that it is judged by, with their blocks: on the torque as filtered, where a
+/// difference stands out of less noise, and as recorded, where nothing hides behind the filter.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Trial {
-    pub(super) squares: Vec<f64>,
+    filtered: Vec<f64>,
+    recorded: Vec<f64>,
+    labels: Vec<usize>,
 }
 
 impl Trial {
-    /// Evaluates a model on the locked rows.
-    pub(super) fn of(model: &HostModel, material: &Material) -> Result<Self> {
+    /// Adds a model that was fitted without the locked blocks of `split`; where none is locked, all rows count.
+    pub(super) fn add(&mut self, model: &HostModel, material: &Material, split: &Split) -> Result<()> {
         let predicted = predict(model, &material.samples)?.total();
         let samples = &material.samples;
-        let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-        let square = |position: usize| {
+        let recorded = samples.recorded.as_deref().unwrap_or_default();
+        let filtered = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+        let locked: Vec<usize> = split.locked.iter().cloned().flatten().collect();
+        let judged = if locked.is_empty() { (0..material.rows.len()).collect() } else { locked };
+        for position in judged {
             let row = material.rows[position];
-            (measured[row] - predicted[row]).powi(2)
-        };
-        Ok(Self { squares: material.locked().into_iter().map(square).collect() })
+            self.filtered.push((filtered[row] - predicted[row]).powi(2));
+            self.recorded.push((recorded[row] - predicted[row]).powi(2));
+            self.labels.push(material.labels[position]);
+        }
+        Ok(())
     }
 
+    /// On the torque as recorded.
+    pub(super) fn mean_square(&self) -> f64 {
+        mean(&self.recorded)
+    }
+
+    /// On the torque as recorded.
     pub(super) fn rmse(&self) -> f64 {
-        (self.squares.iter().sum::<f64>() / self.squares.len().max(1) as f64).sqrt()
+        self.mean_square().sqrt()
+    }
+
+    /// By how much `other` has the smaller mean square as filtered, and as recorded.
+    fn gains_of(&self, other: &Self) -> [Gain; 2] {
+        let gain = |own: &[f64], rival: &[f64]| Gain::of(&self.labels, own, rival);
+        [gain(&self.filtered, &other.filtered), gain(&self.recorded, &other.recorded)]
     }
 }
 
-/// The better form and why, in one sentence.
-pub(super) fn decide(table: &Trial, expression: &Trial, material: &Material, unit: &str) -> (Representation, String) {
-    let (by_table, by_expression) = (table.rmse(), expression.rmse());
-    let figures = format!("{by_expression:.4} {unit} against {by_table:.4} {unit} of the table on held-out blocks");
-    if by_expression <= by_table * (1.0 + TOLERATED_SHARE) {
-        return (Representation::Expression, format!("the expression is as good or better: {figures}"));
-    }
-    let (mean, standard_error) = difference(table, expression, material);
-    if mean < NORMAL_95 * standard_error && by_expression <= by_table * (1.0 + TOLERATED_SHARE_UNCERTAIN) {
-        let reason = format!("the expression is not distinguishably worse: {figures}");
-        return (Representation::Expression, reason);
-    }
-    (Representation::Table, format!("the expression misses something that the network sees: {figures}"))
+/// A difference of mean squares over blocks.
+struct Gain {
+    mean: f64,
+    /// Standard error over blocks; with too few of them a share of the mean square.
+    error: f64,
 }
 
-/// Mean and standard error over blocks of what the expression's squared error exceeds the table's by.
-fn difference(table: &Trial, expression: &Trial, material: &Material) -> (f64, f64) {
-    let locked = material.locked();
-    let mut blocks: Vec<(usize, f64, usize)> = Vec::new();
-    for ((position, a), b) in locked.iter().zip(&expression.squares).zip(&table.squares) {
-        let label = material.labels[*position];
-        match blocks.last_mut().filter(|(last, _, _)| *last == label) {
-            Some((_, sum, count)) => (*sum, *count) = (*sum + a - b, *count + 1),
-            None => blocks.push((label, a - b, 1)),
+impl Gain {
+    /// By how much `rival` is smaller than `own`, of a ratio of sums over blocks of unequal size (Cochran 1977).
+    fn of(labels: &[usize], own: &[f64], rival: &[f64]) -> Self {
+        let count = own.len().max(1) as f64;
+        let mut blocks: Vec<(usize, f64, f64)> = Vec::new();
+        for ((label, own), rival) in labels.iter().zip(own).zip(rival) {
+            match blocks.last_mut().filter(|(last, _, _)| last == label) {
+                Some((_, sum, rows)) => (*sum, *rows) = (*sum + own - rival, *rows + 1.0),
+                None => blocks.push((*label, own - rival, 1.0)),
+            }
+        }
+        let gain = blocks.iter().map(|(_, sum, _)| sum).sum::<f64>() / count;
+        if blocks.len() < LEAST_BLOCKS {
+            return Self { mean: gain, error: CLEAR_SHARE * mean(own) / NORMAL_95 };
+        }
+        let scatter: f64 = blocks.iter().map(|(_, sum, rows)| (sum - gain * rows).powi(2)).sum();
+        let inflation = blocks.len() as f64 / (blocks.len() - 1) as f64;
+        Self { mean: gain, error: (inflation * scatter).sqrt() / count }
+    }
+}
+
+/// What is known of a candidate when it is judged.
+pub(super) struct Entry<'a> {
+    pub(super) trial: &'a Trial,
+    /// Constants that it was given freedom by.
+    pub(super) constants: usize,
+    pub(super) breaks_physics: bool,
+}
+
+/// How two candidates are compared.
+pub(super) enum Judge {
+    /// On rows that neither saw.
+    Locked,
+    /// On the rows that they were fitted to, of which so many are independent: constants are paid for (Schwarz 1978).
+    Penalty { effective: f64 },
+}
+
+impl Judge {
+    /// Whether `other` is better than `held` by more than the error of the comparison.
+    pub(super) fn prefers(&self, other: &Entry<'_>, held: &Entry<'_>) -> bool {
+        let factor = if other.breaks_physics && !held.breaks_physics { WANTED } else { 1.0 };
+        match self {
+            Self::Locked => {
+                let [filtered, recorded] = held.trial.gains_of(other.trial);
+                filtered.mean > factor * NORMAL_95 * filtered.error && recorded.mean > -NORMAL_95 * recorded.error
+            }
+            Self::Penalty { effective } => {
+                let gain =
+                    effective * (held.trial.mean_square() / other.trial.mean_square().max(f64::MIN_POSITIVE)).ln();
+                gain > factor * effective.ln() * (other.constants as f64 - held.constants as f64).max(1.0)
+            }
         }
     }
-    let means: Vec<f64> = blocks.iter().map(|(_, sum, count)| sum / *count as f64).collect();
-    let count = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / count;
-    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    (mean, (variance / count).sqrt())
+
+    /// The candidate that is left when each has to be preferred to the one before it: those that keep to physics first, in
+    /// their order, then those that break it.
+    pub(super) fn choose(&self, entries: &[Option<Entry<'_>>]) -> Option<usize> {
+        let mut order: Vec<usize> = (0..entries.len()).filter(|&index| entries[index].is_some()).collect();
+        order.sort_by_key(|&index| entries[index].as_ref().is_some_and(|entry| entry.breaks_physics));
+        order.into_iter().reduce(|held, index| match (&entries[index], &entries[held]) {
+            (Some(entry), Some(before)) if self.prefers(entry, before) => index,
+            _ => held,
+        })
+    }
+}
+
+/// Rows that count as independent: those that show something new (a share of all), over the correlation length of what a linear
+/// fit leaves.
+pub(super) fn effective_rows(material: &Material, new_share: f64) -> f64 {
+    let mut columns: Vec<Vec<f64>> = material.columns.iter().map(|column| material.pick(&column.values)).collect();
+    let velocity = material.pick(material.samples.velocity.as_deref().unwrap_or_default());
+    columns.push(velocity.iter().map(|v| v.signum()).collect());
+    columns.push(velocity);
+    let whole: Vec<_> = std::iter::once(0..material.rows.len()).collect();
+    let fit = least_squares(&columns, &material.pick(&material.target), &whole);
+    let length = crate::samples::blocks::correlation_time(&fit.residuals, &whole);
+    (new_share * material.rows.len() as f64 / length as f64).max(std::f64::consts::E)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(mean: f64, scatter: f64) -> Trial {
+        let square = |i: usize| mean + scatter * ((i / 10) as f64 * 2.4).sin();
+        let squares: Vec<f64> = (0..100).map(square).collect();
+        Trial { filtered: squares.clone(), recorded: squares, labels: (0..100).map(|i| i / 10).collect() }
+    }
+
+    fn entry(trial: &Trial, breaks_physics: bool) -> Entry<'_> {
+        Entry { trial, constants: 3, breaks_physics }
+    }
+
+    #[test]
+    fn a_gain_within_its_error_changes_nothing() {
+        let (simple, other) = (trial(1.0, 0.0), trial(0.9, 0.5));
+        assert!(!Judge::Locked.prefers(&entry(&other, false), &entry(&simple, false)));
+        let clear = trial(0.9, 0.05);
+        assert!(Judge::Locked.prefers(&entry(&clear, false), &entry(&simple, false)));
+        let entries = [Some(entry(&simple, false)), Some(entry(&other, false)), None, Some(entry(&clear, false))];
+        assert_eq!(Judge::Locked.choose(&entries), Some(3));
+    }
+
+    #[test]
+    fn what_breaks_physics_has_to_be_wanted_clearly() {
+        let (simple, other) = (trial(1.0, 0.0), trial(0.9, 0.17));
+        assert!(Judge::Locked.prefers(&entry(&other, false), &entry(&simple, false)));
+        assert!(!Judge::Locked.prefers(&entry(&other, true), &entry(&simple, false)));
+        assert!(Judge::Locked.prefers(&entry(&other, true), &entry(&simple, true)));
+    }
+
+    #[test]
+    fn under_a_penalty_constants_are_paid_for() {
+        let judge = Judge::Penalty { effective: 100.0 };
+        let (simple, other) = (trial(1.0, 0.0), trial(0.9, 0.0));
+        let rich = Entry { trial: &other, constants: 30, breaks_physics: false };
+        assert!(!judge.prefers(&rich, &entry(&simple, false)));
+        assert!(judge.prefers(&entry(&other, false), &entry(&simple, false)));
+    }
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::gather::Material;
 use super::inputs::{ChosenInput, symbol};
 use super::outcome::{ClassicalLaw, FrontLaw, LawSummary};
-use super::rigid;
+use super::{rigid, turns};
 use crate::compile::formula::{Formula, Function, Operator};
 use crate::error::{Error, Result, codes};
 use crate::law::{
@@ -14,6 +14,7 @@ use crate::law::{
     SearchOptions, Start, Unary, discover, fit_form, refit, render,
 };
 use crate::parameter::Parameter;
+use crate::samples::blocks::Split;
 
 /// Most samples that constants are fitted to; more would change no digit that is printed.
 const MOST_SAMPLES: usize = 12_000;
@@ -59,8 +60,8 @@ pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
 
 /// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
 /// constants paid for, takes its place.
-pub(super) fn search(material: &Material, data: &LawData, starts: Vec<Start>) -> Result<Found> {
-    let open_data = data.select(&material.open());
+pub(super) fn search(split: &Split, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+    let open_data = data.select(&turns::open(split));
     let options = SearchOptions { starts, ..SearchOptions::default() };
     let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
     let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
@@ -99,7 +100,7 @@ fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
 }
 
 /// Every `k`-th sample, so that at most `most` are left.
-fn thinned(data: &LawData, most: usize) -> LawData {
+pub(super) fn thinned(data: &LawData, most: usize) -> LawData {
     let stride = data.rows().div_ceil(most).max(1);
     data.select(&(0..data.rows()).step_by(stride).collect::<Vec<_>>())
 }
@@ -129,21 +130,21 @@ pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
     carried.collect()
 }
 
-/// What a report shows of the search.
-pub(super) fn summary(found: &Found, inputs: &[ChosenInput]) -> LawSummary {
+/// What a report shows of the search, with the formula that is told at last.
+pub(super) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInput]) -> LawSummary {
     let front = found.discovery.front.iter().map(|entry| FrontLaw {
         expression: text(&entry.expression, inputs),
         nodes: entry.nodes,
         rmse: entry.rmse,
         held_out_rmse: entry.held_out_rmse,
     });
-    let expression = &found.last.law.expression;
+    let expression = &fit.law.expression;
     let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
     LawSummary {
         expression: text(expression, inputs),
         latex: render(expression, Language::Latex, "friction", &symbols),
         nodes: expression.node_count(),
-        rmse: found.last.rmse,
+        rmse: fit.rmse,
         front: front.collect(),
         explored: found.discovery.explored,
     }

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::options::Options;
+use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::Recording;
-use crate::samples::blocks::{Split, blocks, correlation_time, split};
+use crate::samples::blocks::{Split, blocks, correlation_time};
 use crate::samples::rigid_body::{Separation, TermKind, separate};
 use crate::samples::{Preparation, Request, Samples, prepare};
 
@@ -40,12 +41,18 @@ pub(super) struct Material {
     /// Samples that are learnt from: those in motion, of a very long recording every `stride`-th.
     pub(super) rows: Vec<usize>,
     pub(super) stride: usize,
-    /// Blocks of those rows by role, as positions in `rows`.
-    pub(super) split: Split,
+    /// Blocks of those rows by role, as positions in `rows`: once, or several times with other blocks locked.
+    pub(super) turns: Vec<Split>,
     /// Block of each row.
     pub(super) labels: Vec<usize>,
+    /// Noise of the acceleration in the samples, rad/s2 or m/s2.
+    pub(super) acceleration_noise: f64,
+    /// Why nothing can be locked; `None` where something is.
+    pub(super) repeats: Option<Repetition>,
 }
 
+/// # Errors
+/// As [`fit`](super::fit).
 pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options) -> Result<Material> {
     let borrowed: Vec<&Recording> = recordings.iter().collect();
     for recording in recordings.iter().filter(|recording| recording.separated_friction().is_none()) {
@@ -88,8 +95,21 @@ pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options)
     for (label, piece) in pieces.iter().enumerate() {
         labels[piece.clone()].fill(label);
     }
-    let split = split(&pieces, correlation, options.seed);
-    Ok(Material { samples, target, friction, columns, separation, rows, stride, split, labels })
+    let (turns, repeats) = turns::take(&samples, &rows, &pieces, correlation);
+    let acceleration_noise = preparation.acceleration_noise;
+    Ok(Material {
+        samples,
+        target,
+        friction,
+        columns,
+        separation,
+        rows,
+        stride,
+        turns,
+        labels,
+        acceleration_noise,
+        repeats,
+    })
 }
 
 /// Blocks that can be shared out, with the correlation time that they were cut by: a recording of few correlation times is
@@ -122,18 +142,5 @@ impl Material {
     /// The values of a column at the rows that are learnt from.
     pub(super) fn pick(&self, column: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|&row| column[row]).collect()
-    }
-
-    /// Positions in `rows` that nothing is held out of: training and validation.
-    pub(super) fn open(&self) -> Vec<usize> {
-        let mut open: Vec<usize> = self.split.train.iter().chain(&self.split.validation).cloned().flatten().collect();
-        open.sort_unstable();
-        open
-    }
-
-    /// Positions in `rows` that candidates are compared on; all of them where there are too few blocks to lock one.
-    pub(super) fn locked(&self) -> Vec<usize> {
-        let locked: Vec<usize> = self.split.locked.iter().cloned().flatten().collect();
-        if locked.is_empty() { (0..self.rows.len()).collect() } else { locked }
     }
 }

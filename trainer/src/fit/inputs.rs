@@ -26,7 +26,11 @@ pub(super) fn choose(material: &Material, asked: Option<&[String]>) -> Result<(V
     let mut table = relevance(&material.samples, &material.friction)?;
     let names = match asked {
         Some(names) => names.to_vec(),
-        None => picked_inputs(&table).into_iter().take(MAX_INPUTS).collect(),
+        None => {
+            // Over a motion that repeats itself the position only says at which phase of it a row stands.
+            let is_label = |name: &String| name == "position" && material.repeats.is_some();
+            picked_inputs(&table).into_iter().filter(|name| !is_label(name)).take(MAX_INPUTS).collect()
+        }
     };
     if !names.iter().any(|name| name == "velocity") {
         let message = "a friction law needs `velocity` among its inputs";

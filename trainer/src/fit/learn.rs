@@ -8,6 +8,7 @@ use super::outcome::{CURVE_POINTS, NetworkSummary};
 use crate::error::{Error, Result, codes};
 use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
 use crate::numerics::statistics::NORMAL_95;
+use crate::samples::blocks::Split;
 use crate::samples::rigid_body::TermKind;
 
 /// The columns that a network learns from, at the rows of the material.
@@ -27,6 +28,8 @@ pub(super) struct TrainedNetwork {
     /// One coefficient for each column of the material.
     pub(super) coefficients: Vec<f64>,
     pub(super) settled: bool,
+    /// Root mean square of what it leaves of the samples that it was trained on, unit of the target.
+    pub(super) rmse: f64,
 }
 
 impl TrainingData {
@@ -59,8 +62,8 @@ impl TrainingData {
     }
 
     /// Trains on the training blocks and prunes as the validation blocks allow.
-    pub(super) fn train(&self, material: &Material, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
-        let blocks = Blocks { train: material.split.train.clone(), validation: material.split.validation.clone() };
+    pub(super) fn train(&self, split: &Split, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
+        let blocks = Blocks { train: split.train.clone(), validation: split.validation.clone() };
         let dataset = self.dataset(&blocks);
         let told = |stage| {
             move |step: &kan::Progress| {
@@ -91,6 +94,7 @@ impl TrainingData {
             network: result.network.clone(),
             coefficients,
             settled: result.convergence.status.is_settled(),
+            rmse: result.train_rmse,
         }
     }
 

@@ -3,6 +3,7 @@
 //! [`fit`] is the way, [`predict`](predict::predict) what a model makes of samples, [`Outcome`] all that is to be told.
 
 mod activations;
+mod builder;
 mod choose;
 mod formula;
 mod gather;
@@ -11,11 +12,16 @@ mod learn;
 pub mod model;
 mod options;
 pub mod outcome;
+mod physical;
 pub mod predict;
 mod rigid;
 mod rivals;
 mod run;
+mod score;
+mod simple;
 mod tables;
+mod turn;
+mod turns;
 
 pub use activations::label_activations;
 pub use formula::formula_of;

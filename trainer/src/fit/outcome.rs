@@ -17,6 +17,41 @@ pub enum Representation {
     Expression,
 }
 
+/// A law that may go into the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Coulomb and viscous friction, with every sign as physics has it.
+    Simple,
+    /// The same as the data have it, where a sign is wrong.
+    SimpleAsFitted,
+    /// The formula that was found.
+    Found,
+    /// The network, as tables.
+    Network,
+}
+
+impl Form {
+    /// All of them, in the order in which each has to beat the one before.
+    pub const ALL: [Self; 4] = [Self::Simple, Self::SimpleAsFitted, Self::Found, Self::Network];
+
+    /// How an image holds it.
+    #[must_use]
+    pub fn representation(self) -> Representation {
+        if self == Self::Network { Representation::Table } else { Representation::Expression }
+    }
+
+    /// Name in reports and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Simple => "Coulomb and viscous",
+            Self::SimpleAsFitted => "Coulomb and viscous, signs as fitted",
+            Self::Found => "the formula found",
+            Self::Network => "the table of the network",
+        }
+    }
+}
+
 impl Representation {
     /// Name in JSON: `table` or `expression`.
     #[must_use]
@@ -57,6 +92,8 @@ pub struct Outcome {
     pub candidates: Vec<Candidate>,
     /// Form of the law in the image.
     pub representation: Representation,
+    /// Whether the candidates were compared on rows that they had not seen.
+    pub held_out: bool,
     /// Why this form was chosen, one sentence.
     pub choice: String,
     /// What the data do not determine and what else was noticed, in sentences.
@@ -67,6 +104,8 @@ pub struct Outcome {
     pub train: Vec<Trace>,
     /// Score of the exported image over all training recordings together.
     pub train_score: Score,
+    /// The same, rows in motion and rows at rest apart.
+    pub train_split: SplitScore,
     /// Recordings that were not fitted, as the exported image predicts them.
     pub tests: Vec<Trace>,
     /// Samples of training: velocity and separated friction, at most a few thousand, for a picture over velocity.
@@ -88,6 +127,13 @@ pub enum Soundness {
     NotIdentifiable(String),
     /// An optimiser ran out of steps; which, in a sentence.
     NotConverged(String),
+    /// The law does what no joint can do; what, in a sentence, and whether its image is to be kept back.
+    NotPhysical {
+        /// What it does.
+        what: String,
+        /// Whether an image would be that of a torque of the wrong sign.
+        withheld: bool,
+    },
 }
 
 /// An input of the model with its trained range.
@@ -167,15 +213,20 @@ pub struct ClassicalLaw {
     pub parameters: Vec<Parameter>,
 }
 
-/// One form that could go into the image.
+/// One law that could go into the image.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Its form.
+    /// Which.
+    pub form: Form,
+    /// How an image holds it.
     pub representation: Representation,
     /// One line: cells, or the formula's complexity.
     pub description: String,
-    /// Root mean square error on blocks that neither was fitted to, evaluated in the arithmetic of the drive.
+    /// Root mean square error on the recorded, unfiltered torque of blocks that it was not fitted to (of all, where nothing can
+    /// be held out), evaluated in the arithmetic of the drive.
     pub held_out_rmse: f64,
+    /// What no joint can do and it does, in a sentence.
+    pub violation: Option<String>,
     /// Size of its image, provenance not counted.
     pub bytes: usize,
     /// Instructions of one evaluation on a Cortex-M4F.
@@ -199,6 +250,24 @@ pub struct Score {
     pub relative_error: f64,
 }
 
+/// How well a prediction agrees where the joint moves, and where it rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SplitScore {
+    /// Rows in motion.
+    pub moving: Score,
+    /// Rows at rest.
+    pub rest: RestScore,
+}
+
+/// Rows at rest, where friction is any value within break-away.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RestScore {
+    /// Number of rows.
+    pub n: usize,
+    /// Share of them, 0 to 1, that friction at break-away could hold; 1 where there is none.
+    pub inside_breakaway: f64,
+}
+
 /// A recording as the exported image predicts it, one value a row.
 #[derive(Clone, Debug)]
 pub struct Trace {
@@ -218,6 +287,8 @@ pub struct Trace {
     pub predicted_friction: Vec<f64>,
     /// On the rows as recorded.
     pub score: Score,
+    /// The same, rows in motion and rows at rest apart.
+    pub split: SplitScore,
     /// After a low-pass, at 100 samples a second: what is left of noise beyond the motion's band does not count.
     pub filtered_score: Score,
 }

@@ -5,18 +5,12 @@ use frikan_shared::model::{MAX_INPUTS, RigidBody};
 use frikan_shared::units::{Quantity, Unit};
 
 use super::model::HostModel;
-use super::outcome::{Score, Trace};
+use super::outcome::{Score, SplitScore, Trace};
+use super::score::low_passed;
 use crate::error::{Error, Result, codes};
-use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::samples::blocks::rests;
-use crate::samples::filter::{GaussianFilter, Order};
-use crate::samples::{Preparation, Request, Samples, prepare_every_row};
-
-/// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
-const COMPARISON_RATE_HZ: f64 = 100.0;
-/// Standard deviation of the low-pass before it, s: 10 dB down at half that rate.
-const COMPARISON_SIGMA_S: f64 = 0.2415 / (0.5 * COMPARISON_RATE_HZ);
+use crate::samples::{Preparation, Samples, prepare_every_row};
 
 /// A prediction, one value a sample, in the unit of the model's output.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -130,27 +124,33 @@ fn rigid_body(body: &RigidBody, samples: &Samples) -> Result<Vec<f64>> {
     Ok((0..samples.len()).map(torque).collect())
 }
 
-/// Samples at every row of a recording, prepared by a filter that is planned for it alone, as `trainer predict` sees it.
+/// Samples at every row of a recording, as `trainer predict` sees it. Filter and source of the velocity are those with which the
+/// model leaves least of the recorded actuator; without one, those that keep the noise of the motion small.
 ///
 /// # Errors
-/// As [`Preparation::plan`] and [`prepare_every_row`].
-pub fn every_row(recording: &Recording, joint: &Joint) -> Result<Samples> {
-    let preparation = Preparation::plan(&[recording], joint, &Request::default())?;
-    prepare_every_row(recording, &preparation)
+/// As [`Preparation::plan_prediction`] and [`prepare_every_row`].
+pub fn every_row(model: &HostModel, recording: &Recording) -> Result<Samples> {
+    let residual = |samples: &Samples| {
+        let recorded = samples.recorded.as_deref().ok_or_else(nothing_recorded)?;
+        let predicted = predict(model, samples)?.total();
+        Ok(recorded.iter().zip(predicted).map(|(measured, total)| measured - total).collect())
+    };
+    prepare_every_row(recording, &Preparation::plan_prediction(recording, &residual)?)
+}
+
+fn nothing_recorded() -> Error {
+    Error::new(&codes::MISSING_COLUMN, "scoring needs the actuator's torque, force or current")
 }
 
 /// What a model makes of a recording, and how well it agrees.
 ///
 /// # Errors
 /// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
-pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint) -> Result<Trace> {
+pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
-    let rows = every_row(recording, joint).map_err(in_file)?;
+    let rows = every_row(model, recording).map_err(in_file)?;
     let prediction = predict(model, &rows).map_err(in_file)?;
-    let channel = recording.separated_friction().or_else(|| recording.actuator()).ok_or_else(|| {
-        in_file(Error::new(&codes::MISSING_COLUMN, "scoring needs the actuator's torque, force or current"))
-    })?;
-    let measured = channel.values.clone();
+    let measured = rows.recorded.clone().ok_or_else(|| in_file(nothing_recorded()))?;
     let predicted = prediction.total();
     let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
     let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
@@ -159,44 +159,11 @@ pub fn trace(model: &HostModel, recording: &Recording, joint: &Joint) -> Result<
         time,
         velocity: rows.velocity.clone().unwrap_or_default(),
         score: Score::of(&measured, &predicted),
+        split: SplitScore::of(rows.velocity.as_deref(), &measured, &prediction),
         filtered_score: Score::of(&slow_measured, &slow_predicted),
         friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
         predicted_friction: prediction.friction,
         measured,
         predicted,
     })
-}
-
-/// A column of a recording's rows after a zero-phase low-pass, at the rate of comparison and without the ends that the
-/// filter does not reach; as it is where the recording is not faster.
-fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
-    let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
-    let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
-    let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
-    let segment = |range: &std::ops::Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
-    let long_enough = rows.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
-    long_enough.flat_map(segment).collect()
-}
-
-impl Score {
-    /// Agreement of a prediction with a measurement of the same length.
-    #[must_use]
-    pub fn of(measured: &[f64], predicted: &[f64]) -> Self {
-        let n = measured.len();
-        let count = n.max(1) as f64;
-        let mean = measured.iter().sum::<f64>() / count;
-        let residual: f64 = measured.iter().zip(predicted).map(|(m, p)| (m - p).powi(2)).sum();
-        let spread: f64 = measured.iter().map(|m| (m - mean).powi(2)).sum();
-        let power: f64 = measured.iter().map(|m| m * m).sum();
-        let share = |of: f64| if of > 0.0 { residual / of } else { 0.0 };
-        Self { n, r2: 1.0 - share(spread), rmse: (residual / count).sqrt(), relative_error: share(power).sqrt() }
-    }
-
-    /// Agreement over several recordings taken as one.
-    #[must_use]
-    pub fn over(traces: &[Trace]) -> Self {
-        let join =
-            |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
-        Self::of(&join(|trace| &trace.measured), &join(|trace| &trace.predicted))
-    }
 }

@@ -13,6 +13,9 @@ use crate::samples::rigid_body::TermKind;
 /// A column of which the others and friction leave less than this share of its square cannot be told from them.
 const COLLINEAR_SHARE: f64 = 1e-4;
 
+/// An inertia of which noise takes more than this share is not known at all.
+const MOST_ATTENUATION: f64 = 0.9;
+
 /// The rigid body for an image from one coefficient for each column of the material.
 pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
     let Some(separation) = &material.separation else { return RigidBody::default() };
@@ -41,6 +44,7 @@ pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64])
 /// Coefficients with standard errors as named parameters, one for each column.
 pub(super) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Vec<Parameter> {
     let named = material.columns.iter().zip(coefficients);
+    let attenuation = attenuation(material);
     named
         .map(|(column, &(value, standard_error))| {
             let (name, symbol) = names(column.kind, material.samples.axis);
@@ -49,10 +53,43 @@ pub(super) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Ve
                 symbol: symbol.to_owned(),
                 value,
                 unit: unit(column.kind, material.samples.axis, material.samples.actuator_unit),
-                ci95: [value - NORMAL_95 * standard_error, value + NORMAL_95 * standard_error],
+                ci95: interval(value, standard_error, if column.kind.is_inertia() { attenuation } else { 0.0 }),
             }
         })
         .collect()
+}
+
+/// 95 % interval of a coefficient of which the noise of its column may have taken this share.
+fn interval(value: f64, standard_error: f64, attenuation: f64) -> [f64; 2] {
+    let whole = value / (1.0 - attenuation.min(MOST_ATTENUATION));
+    [value.min(whole) - NORMAL_95 * standard_error, value.max(whole) + NORMAL_95 * standard_error]
+}
+
+/// Share of the inertia that the noise of the acceleration takes at most: its power over that of the acceleration which the other
+/// columns, velocity and its sign do not hold (errors in variables; Fuller 1987). Zero where no inertia is identified.
+pub(super) fn attenuation(material: &Material) -> f64 {
+    let Some(index) = material.columns.iter().position(|column| column.kind.is_inertia()) else { return 0.0 };
+    let own = left_by_others(material, index);
+    let power = own.iter().map(|x| x * x).sum::<f64>() / own.len().max(1) as f64;
+    if power > 0.0 { (material.acceleration_noise.powi(2) / power).min(1.0) } else { 0.0 }
+}
+
+/// What the other columns, velocity and its sign leave of a column.
+fn left_by_others(material: &Material, index: usize) -> Vec<f64> {
+    let velocity = material.pick(material.samples.velocity.as_deref().unwrap_or_default());
+    let columns = material.columns.iter().enumerate();
+    let mut others: Vec<Vec<f64>> =
+        columns.filter(|(other, _)| *other != index).map(|(_, column)| material.pick(&column.values)).collect();
+    others.push(velocity.iter().map(|v| v.signum()).collect());
+    others.push(velocity);
+    let whole: Vec<_> = std::iter::once(0..material.rows.len()).collect();
+    least_squares(&others, &material.pick(&material.columns[index].values), &whole).residuals
+}
+
+/// Whether this is the name of the coefficient that is the whole inertia, which no joint has negative; what is added to that
+/// of a recorded rigid-body torque may be.
+pub(super) fn is_inertia(name: &str) -> bool {
+    name == TermKind::Inertia.name()
 }
 
 fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
@@ -92,19 +129,11 @@ pub(super) fn printed(suffix: &str) -> &'static str {
 /// Name of the first column that the others, velocity and its sign hold almost entirely.
 pub(super) fn collinear(material: &Material) -> Option<String> {
     let separation = material.separation.as_ref()?;
-    let velocity = material.pick(material.samples.velocity.as_deref()?);
-    let sign: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
-    let own: Vec<Vec<f64>> = material.columns.iter().map(|column| material.pick(&column.values)).collect();
-    let all = std::iter::once(0..velocity.len()).collect::<Vec<_>>();
     let left_of = |index: usize| {
-        let mut others: Vec<Vec<f64>> =
-            own.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, column)| column.clone()).collect();
-        others.extend([velocity.clone(), sign.clone()]);
-        let fit = least_squares(&others, &own[index], &all);
-        let power: f64 = own[index].iter().map(|x| x * x).sum();
-        fit.residuals.iter().map(|x| x * x).sum::<f64>() / power.max(f64::MIN_POSITIVE)
+        let power: f64 = material.pick(&material.columns[index].values).iter().map(|x| x * x).sum();
+        left_by_others(material, index).iter().map(|x| x * x).sum::<f64>() / power.max(f64::MIN_POSITIVE)
     };
-    let lost = (0..own.len()).find(|&index| left_of(index) < COLLINEAR_SHARE);
+    let lost = (0..material.columns.len()).find(|&index| left_of(index) < COLLINEAR_SHARE);
     let name = |index: usize| names(material.columns[index].kind, material.samples.axis).0.to_owned();
     lost.map(name).or_else(|| (separation.rank_deficiency > 0).then(|| "a parameter of the rigid body".to_owned()))
 }

@@ -1,28 +1,33 @@
-//! Table and expression side by side: what each costs on a drive, which of them the budget allows, which goes into the image.
+//! The laws side by side: what each costs on a drive, which of them the budget allows, which goes into the image.
 
 use frikan_shared::image::Image;
 use frikan_shared::model::Law;
 
-use super::choose::{Trial, decide};
+use super::choose::{Entry, Judge, Trial, effective_rows};
 use super::gather::Material;
 use super::model::{HostModel, provenance, to_bytes};
 use super::options::Budget;
-use super::outcome::{Candidate, Representation};
+use super::outcome::{Candidate, Form, Representation};
+use super::physical::Violation;
 use super::rigid;
+use super::turns::Repetition;
 use crate::compile::cost::instructions;
 use crate::error::{Error, Result, codes};
 
-/// Both forms, fitted to the open blocks; `None` where a form does not fit into an image.
-pub(super) struct Rivals {
-    pub(super) table: Option<Box<HostModel>>,
-    pub(super) expression: Option<Box<HostModel>>,
-}
-
-/// Which form was chosen, and why.
+/// Which law was chosen, and why.
 pub(super) struct Verdict {
-    pub(super) representation: Representation,
+    pub(super) form: Form,
     pub(super) reason: String,
     pub(super) candidates: Vec<Candidate>,
+}
+
+/// What a law was free to choose, and how it used that.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Freedom {
+    /// Constants beside the rigid body.
+    pub(super) constants: usize,
+    /// Whether friction is less at rest than in motion, which has to be wanted clearly.
+    pub(super) stribeck_is_negative: bool,
 }
 
 impl Budget {
@@ -41,75 +46,77 @@ fn size(model: &HostModel) -> Result<usize> {
     Ok(to_bytes(&Image { provenance: provenance("", &[], 0), model: model.clone() })?.len())
 }
 
-impl Rivals {
-    /// Compares the forms on the locked rows and takes the better one that is asked for, can be had and may be afforded.
-    pub(super) fn judge(&self, material: &Material, asked: Option<Representation>, budget: &Budget) -> Result<Verdict> {
-        let unit = rigid::printed(material.samples.actuator_unit);
-        let trial = |model: &Option<Box<HostModel>>| model.as_ref().map(|m| Trial::of(m, material)).transpose();
-        let (table, expression) = (trial(&self.table)?, trial(&self.expression)?);
-        let mut candidates = Vec::new();
-        let forms =
-            [(Representation::Table, &self.table, &table), (Representation::Expression, &self.expression, &expression)];
-        for (form, model, trial) in forms {
-            let Some((model, trial)) = model.as_ref().zip(trial.as_ref()) else { continue };
-            let bytes = size(model)?;
-            candidates.push(Candidate {
-                representation: form,
-                description: describe(&model.law, model.cells.len()),
-                held_out_rmse: trial.rmse(),
-                bytes,
-                instructions: instructions(model),
-                within_budget: budget.covers(bytes, instructions(model)),
-                chosen: false,
-            });
-        }
-        if candidates.is_empty() {
-            return Err(no_image());
-        }
-        if candidates.iter().all(|candidate| !candidate.within_budget) {
-            return Err(beyond(&candidates));
-        }
-        let affordable = |form| candidates.iter().any(|c| c.representation == form && c.within_budget);
-        let (representation, reason) = match (asked, &table, &expression) {
-            (Some(asked), _, _) if affordable(asked) => (asked, format!("{} was asked for", named(asked))),
-            (_, Some(table), Some(expression))
-                if affordable(Representation::Table) && affordable(Representation::Expression) =>
-            {
-                decide(table, expression, material, unit)
-            }
-            _ => {
-                let (only, other) = if affordable(Representation::Table) {
-                    (Representation::Table, Representation::Expression)
-                } else {
-                    (Representation::Expression, Representation::Table)
-                };
-                let there = candidates.iter().any(|c| c.representation == other);
-                let why = if there { "is beyond the budget" } else { "does not fit into an image" };
-                (only, format!("{} {why}", named(other)))
-            }
+/// Compares the laws on rows that they have not seen, or by what their constants cost where there are none, and takes the simplest
+/// that none of those asked for and within the budget beats. `models` are those of the first turn, `freedom` what each was free to choose, both in the order of [`Form::ALL`].
+pub(super) fn judge(
+    material: &Material,
+    models: &[Option<Box<HostModel>>; 4],
+    trials: &[Option<Trial>; 4],
+    freedom: [Freedom; 4],
+    asked: Option<Representation>,
+    budget: &Budget,
+) -> Result<Verdict> {
+    let unit = rigid::printed(material.samples.actuator_unit);
+    let mut candidates = Vec::new();
+    let mut entries: [Option<Entry<'_>>; 4] = std::array::from_fn(|_| None);
+    for (index, form) in Form::ALL.into_iter().enumerate() {
+        let Some((model, trial)) = models[index].as_ref().zip(trials[index].as_ref()) else { continue };
+        let bytes = size(model)?;
+        let violation = Violation::of(model, material);
+        let candidate = Candidate {
+            form,
+            representation: form.representation(),
+            description: describe(&model.law, model.cells.len()),
+            held_out_rmse: trial.rmse(),
+            violation: violation.sentence(),
+            bytes,
+            instructions: instructions(model),
+            within_budget: budget.covers(bytes, instructions(model)),
+            chosen: false,
         };
-        candidates.iter_mut().for_each(|candidate| candidate.chosen = candidate.representation == representation);
-        let reason = format!("{reason}; {}", costs(&candidates));
-        Ok(Verdict { representation, reason, candidates })
+        if candidate.within_budget && asked.is_none_or(|asked| asked == candidate.representation) {
+            let Freedom { constants, stribeck_is_negative } = freedom[index];
+            let breaks_physics = violation.is_any() || stribeck_is_negative;
+            entries[index] = Some(Entry { trial, constants, breaks_physics });
+        }
+        candidates.push(candidate);
     }
-}
-
-fn named(form: Representation) -> &'static str {
-    match form {
-        Representation::Table => "the table",
-        Representation::Expression => "the expression",
+    if candidates.is_empty() {
+        return Err(no_image());
     }
-}
-
-/// What each form costs, in words.
-fn costs(candidates: &[Candidate]) -> String {
-    let cost = |c: &Candidate| {
-        format!("{} takes {} instructions and {} bytes", named(c.representation), c.instructions, c.bytes)
+    let judge = match &material.repeats {
+        Some(repetition) => Judge::Penalty { effective: effective_rows(material, repetition.new_share) },
+        None => Judge::Locked,
     };
+    let Some(chosen) = judge.choose(&entries) else { return Err(beyond(&candidates, asked)) };
+    let form = Form::ALL[chosen];
+    candidates.iter_mut().for_each(|candidate| candidate.chosen = candidate.form == form);
+    let reason = reason(form, &candidates, material.repeats.as_ref(), unit);
+    Ok(Verdict { form, reason: format!("{reason}; {}", costs(&candidates)), candidates })
+}
+
+/// Why this one, with the figures of the others.
+fn reason(form: Form, candidates: &[Candidate], repeats: Option<&Repetition>, unit: &str) -> String {
+    let figure = |candidate: &Candidate| format!("{:.4} {unit} of {}", candidate.held_out_rmse, candidate.form.name());
+    let own = candidates.iter().find(|candidate| candidate.form == form).map(figure).unwrap_or_default();
+    let others: Vec<String> = candidates.iter().filter(|candidate| candidate.form != form).map(figure).collect();
+    let rows = match repeats {
+        Some(repeats) => format!("on the rows that were fitted, constants being paid for ({})", repeats.sentence),
+        None => "on held-out blocks".to_owned(),
+    };
+    if others.is_empty() { format!("{own} {rows}") } else { format!("{own} against {} {rows}", others.join(", ")) }
+}
+
+/// What each costs, in words.
+fn costs(candidates: &[Candidate]) -> String {
+    let cost = |c: &Candidate| format!("{} takes {} instructions and {} bytes", c.form.name(), c.instructions, c.bytes);
     candidates.iter().map(cost).collect::<Vec<_>>().join(", ")
 }
 
-fn beyond(candidates: &[Candidate]) -> Error {
+fn beyond(candidates: &[Candidate], asked: Option<Representation>) -> Error {
+    if candidates.iter().all(|candidate| asked.is_some_and(|asked| candidate.representation != asked)) {
+        return no_image();
+    }
     Error::new(&codes::USAGE, format!("no form of the law keeps within the budget: {}", costs(candidates)))
 }
 

@@ -2,39 +2,34 @@
 
 use frikan_runtime::evaluate::evaluate;
 use frikan_shared::image::Image;
-use frikan_shared::model::{Law, MAX_INPUTS};
+use frikan_shared::model::MAX_INPUTS;
 
-use super::activations;
-use super::formula::{self, Found, classical, formula_of, law_data, law_parameters, search};
+use super::builder::Builder;
+use super::choose::Trial;
+use super::formula::{self, classical, law_data, law_parameters};
 use super::gather::{Material, gather};
-use super::inputs::{ChosenInput, choose, output_unit};
+use super::inputs::{ChosenInput, choose};
 use super::learn::{TrainedNetwork, TrainingData};
-use super::model::{HostModel, Parts, assemble, from_bytes, provenance, to_bytes};
+use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{CURVE_POINTS, InputRange, Outcome, Representation, Score, Soundness};
+use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore};
+use super::physical::Violation;
 use super::predict::trace;
-use super::rivals::{Rivals, no_image};
-use super::{rigid, tables};
-use crate::compile::program::compile_program;
+use super::rigid;
+use super::rivals::{Freedom, judge, no_image};
+use super::simple::{Simple, simple};
+use super::turn::{self, Turn};
 use crate::error::Result;
 use crate::joint::Joint;
-use crate::law::{Expr, FormFit};
+use crate::law::{FormFit, Law, LawData};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
+use crate::samples::blocks::Split;
 
-/// Tables follow the network to within this share of the residual, and of the range of friction where there is none.
-const TABLE_SHARE_OF_RESIDUAL: f64 = 0.03;
-const TABLE_SHARE_OF_RANGE: f64 = 1e-5;
-/// On the samples a coarser table may be off by this share of the residual, in the root mean square, to save cells.
-const COARSER_SHARE_OF_RESIDUAL: f64 = 0.15;
-/// Where no table comes that close, one that is off by this share still serves.
-const COARSEST_SHARE_OF_RESIDUAL: f64 = 0.5;
-/// How often the bound of a table is doubled at most, so that its cells fit into the smallest drive.
-const DOUBLINGS: i32 = 12;
-/// Most samples on which a table is compared with its network.
-const COMPARED_SAMPLES: usize = 2000;
-/// The drive never puts out more than this multiple of the largest friction that was seen.
-const LIMIT_OVER_LARGEST: f64 = 1.5;
+/// The law refitted to all rows may leave this much more of them, as a ratio of mean squares, than the one that was compared.
+const WORSE_SHARE: f64 = 1.05;
+/// Share of the inertia that noise may take untold.
+const TOLD_ATTENUATION: f64 = 0.01;
 /// Most points of a picture.
 const CLOUD_POINTS: usize = 4000;
 
@@ -77,38 +72,34 @@ fn fit_once(
     let (inputs, relevance) = choose(&material, options.inputs.as_deref())?;
     let builder = Builder { material: &material, inputs: &inputs, joint, cells: options.budget.cells() };
 
-    tell(Stage::Training);
     let training = TrainingData::new(&material, &inputs, options)?;
-    let (fitted, pruned) = training.train(&material, progress)?;
-    tell(Stage::Searching);
     let data = law_data(&material, &inputs);
-    let open = training.learnt(&pruned.result);
-    let found = search(&material, &data, activations::starts(&open.network, &open.graph, &inputs))?;
+    let turns = material.turns.iter().map(|split| Turn::take(&builder, &training, &data, split, progress));
+    let turns = turns.collect::<Result<Vec<_>>>()?;
+    let trials = turn::trials(&turns, &material.turns, &material)?;
+    let first = turns.first().ok_or_else(no_image)?;
     tell(Stage::Comparing);
     let classical = classical(&material, &data);
 
     tell(Stage::Compiling);
-    let refitted = training.refit(&pruned.result)?;
+    let refitted = training.refit(&first.pruned.result)?;
     let learnt = training.learnt(&refitted);
-    let rivals =
-        Rivals { table: builder.table(&open, pruned.result.train_rmse), expression: builder.expression(&found.open) };
-    let verdict = rivals.judge(&material, options.representation, &options.budget)?;
-    let (last, compared) = match verdict.representation {
-        Representation::Table => (builder.table(&learnt, refitted.train_rmse), rivals.table),
-        Representation::Expression => (builder.expression(&found.last), rivals.expression),
-    };
-    let model = last.filter(|model| options.budget.allows(model)).or(compared).ok_or_else(no_image)?;
+    let verdict =
+        judge(&material, &first.models, &trials, freedom(first, &learnt), options.representation, &options.budget)?;
+    let Shipped { model, fit } = shipped(&builder, verdict.form, first, &learnt, &data, options)?;
+    let violation = Violation::of(&model, &material);
 
     let name = joint.name.clone().unwrap_or_default();
     let image = to_bytes(&Image { provenance: provenance(&name, recordings, options.seed), model: *model })?;
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;
     tell(Stage::Scoring);
-    let score = |recording: &Recording| trace(&model, recording, joint);
+    let score = |recording: &Recording| trace(&model, recording);
     let train = recordings.iter().map(score).collect::<Result<Vec<_>>>()?;
     let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
 
-    let by_expression = verdict.representation == Representation::Expression;
+    let by_expression = verdict.form != Form::Network;
+    let sound = soundness(&material, &fit, &learnt, verdict.form, violation);
     Ok(Outcome {
         joint: name,
         axis: material.samples.axis,
@@ -117,125 +108,95 @@ fn fit_once(
         filter: material.samples.filter.clone(),
         inputs: input_ranges(&model, &inputs),
         relevance,
-        network: training.summary(&fitted, &pruned, &refitted),
-        law: formula::summary(&found, &inputs),
+        network: training.summary(&first.fitted, &first.pruned, &refitted),
+        law: formula::summary(&first.found, &fit, &inputs),
         classical,
-        parameters: parameters(&material, &found, &learnt, by_expression),
+        parameters: parameters(&material, &fit, &learnt, by_expression),
         candidates: verdict.candidates,
-        representation: verdict.representation,
+        representation: verdict.form.representation(),
+        held_out: material.repeats.is_none(),
         choice: verdict.reason,
-        remarks: remarks(&material, &found, recordings),
-        sound: soundness(&material, &found, &learnt, by_expression),
+        remarks: remarks(&material, first, verdict.form, recordings),
+        sound,
         train_score: Score::over(&train),
+        train_split: SplitScore::over(&train),
         train,
         tests,
         cloud: cloud(&material),
         law_curve: law_curve(&model, &inputs),
-        band: training.band(&refitted, found.last.uncertainty.correlation_length)?,
+        band: training.band(&refitted, first.found.last.uncertainty.correlation_length)?,
         image,
     })
 }
 
-/// Turns laws into models of one joint.
-struct Builder<'a> {
-    material: &'a Material,
-    inputs: &'a [ChosenInput],
-    joint: &'a Joint,
-    /// Cells that a table may have.
-    cells: usize,
+/// The law that goes into the image, with the formula that is told of it.
+struct Shipped {
+    model: Box<HostModel>,
+    fit: FormFit,
 }
 
-impl Builder<'_> {
-    fn expression(&self, fit: &FormFit) -> Option<Box<HostModel>> {
-        let expression = &fit.law.expression;
-        let used: Vec<usize> = (0..self.inputs.len()).filter(|&index| reads(expression, index)).collect();
-        // A law that reads nothing still needs a channel to be a model.
-        let used = if used.is_empty() { vec![0] } else { used };
-        let renumbered = expression.map_leaves(&|leaf| match leaf {
-            Expr::Input(index) => Expr::Input(used.iter().position(|u| u == index).unwrap_or(0)),
-            other => other.clone(),
-        });
-        let program = compile_program(&formula_of(&renumbered), used.len()).ok()?;
-        let coefficients: Vec<f64> = fit.uncertainty.nuisance.iter().map(|(value, _)| *value).collect();
-        self.model(Law::Expression(program), &[], &used, &coefficients)
-    }
-
-    /// The tightest table that fits into the budget and the smallest drive, else the tightest of all.
-    fn table(&self, learnt: &TrainedNetwork, rmse: f64) -> Option<Box<HostModel>> {
-        let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
-        let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();
-        let mut tightest = None;
-        for doubling in 0..=DOUBLINGS {
-            let slack = 2f64.powi(doubling);
-            let Some(tables) = tables::compile(&learnt.network, &learnt.graph, &ranges, bound * slack) else {
-                continue;
+/// Refits the chosen form to all rows. Where that does worse on the recorded rows than what the choice was made by, or breaks
+/// physics where the other did not, the latter is taken.
+fn shipped(
+    builder: &Builder<'_>,
+    form: Form,
+    first: &Turn,
+    learnt: &TrainedNetwork,
+    data: &LawData,
+    options: &Options,
+) -> Result<Shipped> {
+    let place = Form::ALL.iter().position(|other| *other == form).unwrap_or(0);
+    let of = |fit: FormFit| builder.expression(&fit).map(|model| Shipped { model, fit });
+    let (last, compared_fit) = match form {
+        Form::Network => {
+            let fit = first.found.last.clone();
+            (builder.table(learnt).map(|model| Shipped { model, fit: fit.clone() }), Some(fit))
+        }
+        Form::Found => (of(first.found.last.clone()), Some(first.found.open.clone())),
+        Form::Simple | Form::SimpleAsFitted => {
+            let (sound, free) = simple(data);
+            let pick = |sound: Option<Simple>, free: Option<Simple>| {
+                let chosen = if form == Form::Simple { sound } else { free.or(sound) };
+                chosen.map(|simple| simple.fit)
             };
-            let fits = tables.cells.len() <= self.cells;
-            let model = self.model(tables.law, &tables.cells, &tables.inputs, &learnt.coefficients);
-            let Some(model) = model else { continue };
-            let deviation = self.deviation(&model, learnt);
-            if deviation > (COARSER_SHARE_OF_RESIDUAL * rmse).max(bound) {
-                return tightest.or((deviation <= COARSEST_SHARE_OF_RESIDUAL * rmse).then_some(model));
-            }
-            if fits {
-                return Some(model);
-            }
-            tightest.get_or_insert(model);
+            let [held_sound, held_free] = first.simple.clone();
+            (pick(sound, free).and_then(of), pick(held_sound, held_free))
         }
-        tightest
-    }
+    };
+    let compared = first.models[place].clone().zip(compared_fit).map(|(model, fit)| Shipped { model, fit });
+    let material = builder.material;
+    let is_better = |held: &Shipped, last: &Shipped| {
+        let breaks = |shipped: &Shipped| Violation::of(&shipped.model, material).is_any();
+        on_all_rows(&last.model, material) > WORSE_SHARE * on_all_rows(&held.model, material)
+            || breaks(last) && !breaks(held)
+    };
+    let allowed = last.filter(|last| options.budget.allows(&last.model));
+    let kept = allowed.filter(|last| compared.as_ref().is_none_or(|held| !is_better(held, last)));
+    kept.or(compared).ok_or_else(no_image)
+}
 
-    /// Root mean square of what a model's law differs from its network by, on some of the samples.
-    fn deviation(&self, model: &HostModel, learnt: &TrainedNetwork) -> f64 {
-        let rows = self.material.rows.len();
-        let stride = rows.div_ceil(COMPARED_SAMPLES).max(1);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for row in (0..rows).step_by(stride) {
-            let point: Vec<f64> = self.inputs.iter().map(|input| input.values[row]).collect();
-            let mut channels = [0.0f32; MAX_INPUTS];
-            for (slot, read) in channels.iter_mut().zip(&model.inputs) {
-                let index = self.inputs.iter().position(|input| input.quantity == read.quantity);
-                *slot = index.map_or(0.0, |index| point[index] as f32);
-            }
-            sum += (f64::from(evaluate(model, &channels)) - learnt.network.evaluate(&point)).powi(2);
-            count += 1.0;
-        }
-        (sum / f64::max(count, 1.0)).sqrt()
-    }
-
-    fn model(
-        &self,
-        law: Law,
-        cells: &[frikan_shared::table::Cell],
-        used: &[usize],
-        coefficients: &[f64],
-    ) -> Option<Box<HostModel>> {
-        // A table is refused where a cell could exceed the limit, so the limit covers what the cells can put out.
-        let reach = cells.iter().map(|cell| f64::from(cell.bound())).fold(0.0, f64::max);
-        let limit = match law {
-            Law::Geometric(_) | Law::Uniform(_) => reach * (1.0 + 1e-6),
-            Law::Network(ref network) => tables::output_bound(network),
-            _ => 0.0,
-        };
-        assemble(&Parts {
-            law,
-            cells,
-            inputs: used.iter().map(|&index| &self.inputs[index]).collect(),
-            unit: output_unit(self.material.samples.actuator_unit),
-            limit: limit.max(LIMIT_OVER_LARGEST * self.largest()),
-            rigid_body: rigid::in_force(self.material, self.joint, coefficients),
-        })
-    }
-
-    /// Largest magnitude of friction in the rows that are learnt from.
-    fn largest(&self) -> f64 {
-        let friction = self.material.pick(&self.material.friction);
-        friction.iter().fold(0.0_f64, |peak, f| peak.max(f.abs())).max(1e-6)
+/// Mean square of what a model leaves of the recorded torque.
+fn on_all_rows(model: &HostModel, material: &Material) -> f64 {
+    let mut trial = Trial::default();
+    match trial.add(model, material, &Split::default()) {
+        Ok(()) => trial.mean_square(),
+        Err(_) => f64::INFINITY,
     }
 }
 
-fn reads(expression: &Expr, input: usize) -> bool {
-    *expression == Expr::Input(input) || expression.children().any(|child| reads(child, input))
+/// What each form is free to choose, in the order of [`Form::ALL`].
+fn freedom(turn: &Turn, learnt: &TrainedNetwork) -> [Freedom; 4] {
+    let of = |law: &Law| {
+        let linear = law.parameters.iter().skip(law.structure.nonlinear().len());
+        let mut stribeck = law.structure.terms().iter().zip(linear).filter(|(term, _)| term.shape.is_stribeck());
+        Freedom {
+            constants: law.parameters.len(),
+            stribeck_is_negative: stribeck.any(|(_, parameter)| parameter.value < 0.0),
+        }
+    };
+    let simple = |simple: &Option<Simple>| simple.as_ref().map_or_else(Freedom::default, |simple| of(&simple.fit.law));
+    let network = Freedom { constants: learnt.network.coefficient_count(), stribeck_is_negative: false };
+    [simple(&turn.simple[0]), simple(&turn.simple[1]), of(&turn.found.open.law), network]
 }
 
 fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
@@ -252,25 +213,38 @@ fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
 }
 
 /// Constants of the formula, then the rigid body as it is in the image.
-fn parameters(material: &Material, found: &Found, learnt: &TrainedNetwork, by_expression: bool) -> Vec<Parameter> {
-    let nuisance = &found.last.uncertainty.nuisance;
+fn parameters(material: &Material, fit: &FormFit, learnt: &TrainedNetwork, by_expression: bool) -> Vec<Parameter> {
+    let nuisance = &fit.uncertainty.nuisance;
     // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
     // formula stand for them.
     let in_image = |(index, &(value, error)): (usize, &(f64, f64))| {
         (if by_expression { value } else { learnt.coefficients.get(index).copied().unwrap_or(value) }, error)
     };
     let coefficients: Vec<(f64, f64)> = nuisance.iter().enumerate().map(in_image).collect();
-    let mut parameters = law_parameters(&found.last.law.parameters);
+    let mut parameters = law_parameters(&fit.law.parameters);
     parameters.extend(rigid::parameters(material, &coefficients));
     parameters
 }
 
-fn remarks(material: &Material, found: &Found, recordings: &[Recording]) -> Vec<String> {
-    let mut remarks = found.discovery.remarks.clone();
+fn remarks(material: &Material, turn: &Turn, form: Form, recordings: &[Recording]) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if matches!(form, Form::Found | Form::Network) {
+        remarks.extend(turn.found.discovery.remarks.clone());
+    }
+    if let Some(repeats) = &material.repeats {
+        remarks.push(format!("{}: the law was chosen by what its constants cost.", repeats.sentence));
+    }
+    let attenuation = rigid::attenuation(material);
+    if attenuation > TOLD_ATTENUATION {
+        remarks.push(format!(
+            "Noise of the acceleration may have taken up to {:.0} % of the inertia; its interval allows for that.",
+            100.0 * attenuation
+        ));
+    }
     if material.stride > 1 {
         let (stride, learnt) = (material.stride, material.rows.len());
         remarks.push(format!(
-            "TrainedNetwork from one in {stride} of the samples in motion, {learnt} in all; scored on every row."
+            "Learnt from one in {stride} of the samples in motion, {learnt} in all; scored on every row."
         ));
     }
     for recording in recordings {
@@ -280,13 +254,23 @@ fn remarks(material: &Material, found: &Found, recordings: &[Recording]) -> Vec<
     remarks
 }
 
-fn soundness(material: &Material, found: &Found, learnt: &TrainedNetwork, by_expression: bool) -> Soundness {
+fn soundness(
+    material: &Material,
+    fit: &FormFit,
+    learnt: &TrainedNetwork,
+    form: Form,
+    violation: Violation,
+) -> Soundness {
+    if let Some(what) = violation.sentence() {
+        return Soundness::NotPhysical { what, withheld: violation.is_reversed() };
+    }
     if let Some(name) = rigid::collinear(material) {
         return Soundness::NotIdentifiable(format!(
             "{name} cannot be told from the other terms on this motion; drive several speeds and accelerations"
         ));
     }
-    let settled = if by_expression { found.last.converged } else { learnt.settled };
+    let by_expression = form != Form::Network;
+    let settled = if by_expression { fit.converged } else { learnt.settled };
     if settled {
         return Soundness::Sound;
     }

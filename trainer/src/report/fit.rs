@@ -40,7 +40,9 @@ fn summary(page: &mut Page, outcome: &Outcome) {
     let mut notes = outcome.remarks.clone();
     match &outcome.sound {
         Soundness::Sound => {}
-        Soundness::NotIdentifiable(what) | Soundness::NotConverged(what) => notes.insert(0, what.clone()),
+        Soundness::NotIdentifiable(what) | Soundness::NotConverged(what) | Soundness::NotPhysical { what, .. } => {
+            notes.insert(0, what.clone())
+        }
     }
     page.list(&notes, "findings");
 }

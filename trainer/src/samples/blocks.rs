@@ -2,9 +2,6 @@
 
 use std::ops::Range;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
-
 use super::Samples;
 
 /// A block is at least this many correlation times long (rule P4).
@@ -14,7 +11,7 @@ const RECORDINGS_AS_BLOCKS: usize = 8;
 /// Most blocks that are cut; more would only cost time.
 const MOST_BLOCKS: usize = 60;
 /// Five consecutive blocks share out as three for training, one for validation, one locked.
-const GROUP: [Role; 5] = [Role::Train, Role::Train, Role::Train, Role::Validation, Role::Locked];
+const GROUP: [Role; 5] = [Role::Train, Role::Validation, Role::Train, Role::Locked, Role::Train];
 
 /// What a block is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +22,15 @@ pub enum Role {
     Validation,
     /// Opened once, to prove the gain.
     Locked,
+}
+
+impl Role {
+    /// Role of block `index`; every further of five turns locks other blocks.
+    #[must_use]
+    pub fn in_turn(index: usize, turn: usize) -> Self {
+        // From group to group the order moves on, so that no rhythm of the motion falls together with that of the roles.
+        GROUP[(index + index / GROUP.len() + turn) % GROUP.len()]
+    }
 }
 
 /// Blocks of samples by role, each list in order of time.
@@ -93,22 +99,17 @@ pub fn blocks(samples: &Samples, correlation: usize) -> Vec<Range<usize>> {
     blocks
 }
 
-/// Shares blocks out: of every five consecutive ones three are for training, one for validation, one is locked, in an
-/// order drawn from `seed`. A correlation time is dropped at both ends of validation and locked blocks that follow
-/// each other without a gap.
+/// Shares blocks out: of every five consecutive ones three are for training, one for validation, one is locked, other ones in
+/// each of five turns. A correlation time is dropped at both ends of validation and locked blocks that follow each other without
+/// a gap.
 #[must_use]
-pub fn split(blocks: &[Range<usize>], correlation: usize, seed: u64) -> Split {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+pub fn split_in_turn(blocks: &[Range<usize>], correlation: usize, turn: usize) -> Split {
     let mut split = Split::default();
-    for group in blocks.chunks(GROUP.len()) {
-        let mut roles = GROUP;
-        shuffle(&mut roles, &mut random);
-        for (block, role) in group.iter().zip(roles) {
-            match role {
-                Role::Train => split.train.push(block.clone()),
-                Role::Validation => split.validation.push(inside(block, correlation)),
-                Role::Locked => split.locked.push(inside(block, correlation)),
-            }
+    for (index, block) in blocks.iter().enumerate() {
+        match Role::in_turn(index, turn) {
+            Role::Train => split.train.push(block.clone()),
+            Role::Validation => split.validation.push(inside(block, correlation)),
+            Role::Locked => split.locked.push(inside(block, correlation)),
         }
     }
     split
@@ -119,19 +120,11 @@ fn inside(block: &Range<usize>, margin: usize) -> Range<usize> {
     if block.len() > 4 * margin { block.start + margin..block.end - margin } else { block.clone() }
 }
 
-/// Fisher and Yates, with the high half of a product for the bounded index.
-fn shuffle<T>(items: &mut [T], random: &mut ChaCha8Rng) {
-    for last in (1..items.len()).rev() {
-        let bound = last as u64 + 1;
-        let index = (u128::from(random.next_u64()) * u128::from(bound)) >> 64;
-        items.swap(last, usize::try_from(index).unwrap_or(last));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use rand_chacha::rand_core::RngCore;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{RngCore, SeedableRng};
 
     use super::*;
 
@@ -166,15 +159,20 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_block_has_one_role_and_no_two_overlap(count in 1..60usize, length in 1..50usize, margin in 0..20usize, seed: u64) {
+        fn every_block_has_one_role_and_each_is_locked_in_one_of_five_turns(
+            count in 1..60usize, length in 1..50usize, margin in 0..20usize,
+        ) {
             let blocks: Vec<Range<usize>> = (0..count).map(|k| k * length..(k + 1) * length).collect();
-            let shares = split(&blocks, margin, seed);
-            prop_assert_eq!(shares.train.len() + shares.validation.len() + shares.locked.len(), count);
-            prop_assert!(shares.train.len() >= count / 5 * 3);
-            let mut all: Vec<_> = [&shares.train[..], &shares.validation, &shares.locked].concat();
-            all.sort_by_key(|range| range.start);
-            prop_assert!(all.windows(2).all(|pair| pair[0].end <= pair[1].start));
-            prop_assert_eq!(split(&blocks, margin, seed), shares);
+            let mut locked = 0;
+            for turn in 0..5 {
+                let shares = split_in_turn(&blocks, margin, turn);
+                prop_assert_eq!(shares.train.len() + shares.validation.len() + shares.locked.len(), count);
+                let mut all: Vec<_> = [&shares.train[..], &shares.validation, &shares.locked].concat();
+                all.sort_by_key(|range| range.start);
+                prop_assert!(all.windows(2).all(|pair| pair[0].end <= pair[1].start));
+                locked += shares.locked.len();
+            }
+            prop_assert_eq!(locked, count);
         }
     }
 }

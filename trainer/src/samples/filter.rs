@@ -4,8 +4,6 @@
 //! derivative, so that F, F D and F D2 have the same gain at every frequency and terms that are linear in the motion
 //! match the filtered torque exactly (rule P1).
 
-use std::f64::consts::PI;
-
 /// The kernel is cut off at this many standard deviations.
 const HALF_WIDTH_SIGMAS: f64 = 4.0;
 
@@ -120,20 +118,14 @@ impl GaussianFilter {
     }
 }
 
-/// Standard deviation, in s, of the shortest Gaussian that holds white position noise of `noise` (rad or m, at one
-/// sample every `period_s`) to an acceleration noise of `limit`: noise * ||D2 F|| = limit, with
-/// ||D2 F||^2 = 3 period / (8 sqrt(pi) sigma^5).
-#[must_use]
-pub fn sigma_for_acceleration_noise(noise: f64, period_s: f64, limit: f64) -> f64 {
-    (noise * noise * period_s * 3.0 / (8.0 * PI.sqrt() * limit * limit)).powf(0.2)
-}
-
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use proptest::prelude::*;
 
@@ -169,14 +161,6 @@ mod tests {
             assert!((peak(Order::First) / w / gain - 1.0).abs() < 5e-3, "{frequency}");
             assert!((peak(Order::Second) / (w * w) / gain - 1.0).abs() < 5e-3, "{frequency}");
         }
-    }
-
-    #[test]
-    fn the_noise_rule_agrees_with_the_kernel() {
-        let (noise, period, limit) = (1e-5, 0.001, 0.5);
-        let sigma = sigma_for_acceleration_noise(noise, period, limit);
-        let filter = GaussianFilter::new(sigma, period);
-        assert!((noise * filter.noise_gain(Order::Second) / limit - 1.0).abs() < 0.02);
     }
 
     #[test]

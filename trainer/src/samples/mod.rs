@@ -8,6 +8,7 @@ pub mod blocks;
 mod even;
 pub mod filter;
 mod grid;
+pub mod hold_out;
 pub mod plan;
 mod prepare;
 pub mod regression;
@@ -16,6 +17,7 @@ pub mod rigid_body;
 pub mod spikes;
 #[cfg(test)]
 mod tests;
+mod width;
 
 use std::ops::Range;
 
@@ -48,6 +50,8 @@ pub struct Samples {
     pub rigid_body: Option<Vec<f64>>,
     /// Friction, when the recording holds it already separated.
     pub friction: Option<Vec<f64>>,
+    /// Separated friction, or else the actuator, as recorded at these instants: what a prediction is scored on.
+    pub recorded: Option<Vec<f64>>,
     /// Every other channel by its name as an input of a model.
     pub channels: Vec<(String, Vec<f64>)>,
     /// Uninterrupted stretches.
@@ -156,6 +160,7 @@ impl Samples {
             (&mut self.actuator, part.actuator, "its actuator"),
             (&mut self.rigid_body, part.rigid_body, "rigid-body torque"),
             (&mut self.friction, part.friction, "separated friction"),
+            (&mut self.recorded, part.recorded, "its actuator"),
         ];
         for (own, other, name) in &mut lists {
             match (own.as_mut(), other.take()) {

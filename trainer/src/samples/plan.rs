@@ -1,19 +1,19 @@
-//! Chooses the one filter: its width follows the encoder, its output rate follows its width (rules P1 and P2).
+//! Chooses the one filter: its width and the source of the velocity by what they leave of the recorded torque, its output rate
+//! by its width (rules P1 and P2).
 
 use std::f64::consts::PI;
 use std::fmt;
 
 use super::bending::BendingLaw;
-use super::filter::{GaussianFilter, Order, sigma_for_acceleration_noise};
+use super::filter::GaussianFilter;
 use super::grid::Grid;
-use super::prepare::prepare;
-use super::regression::{dot, norm};
-use super::{Samples, rigid_body};
+use super::{Samples, width};
 use crate::error::{Error, Result};
 use crate::joint::Joint;
+use crate::numerics::statistics::{mean, quantile, root_mean_square};
 use crate::recording::{Quantity, Recording};
 
-/// Share of the torque residual that the noise of the acceleration may reach after the filter.
+/// Share of the acceleration that its noise may reach where there is no torque to judge by.
 const ACCELERATION_NOISE_SHARE: f64 = 0.1;
 /// Share of the root mean square velocity that the noise of the velocity may reach after the filter.
 const VELOCITY_NOISE_SHARE: f64 = 0.01;
@@ -21,10 +21,8 @@ const VELOCITY_NOISE_SHARE: f64 = 0.01;
 const MOTION_SHARE: f64 = 0.15;
 /// Gain left at half the output rate, as the product of frequency and sigma: 10 dB below the passband.
 const NYQUIST_FREQUENCY_SIGMAS: f64 = 0.2415;
-/// Rounds of filter, fit, new filter.
-const ROUNDS: usize = 4;
-/// A recorded velocity that lags by more than this share of a period has been filtered by the drive.
-const LARGEST_LAG_PERIODS: f64 = 0.5;
+/// Nor wider than this share of the recording.
+const SPAN_SHARE: f64 = 0.01;
 
 /// What a caller may fix; anything left out is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,11 +51,14 @@ pub struct Preparation {
     pub rate_hz: Option<f64>,
     /// Where velocity comes from.
     pub velocity: VelocitySource,
+    /// Noise of the acceleration that passes the filter, rad/s2 or m/s2, that of the motion being white.
+    pub acceleration_noise: f64,
 }
 
 impl Preparation {
-    /// Chooses filter and rate for recordings of one joint, the shortest filter that keeps the noise of the
-    /// acceleration below a tenth of the torque residual in every recording.
+    /// Chooses filter, rate and source of the velocity for recordings of one joint by what is left of the recorded actuator on
+    /// blocks held out, with inertia and friction identified at each width: the shortest at which the inertia is that of the
+    /// width that leaves least.
     ///
     /// # Errors
     /// `FRK-D009` when motion or actuator is missing, `FRK-D016` when the velocity hardly changes, `FRK-D017` when a
@@ -66,27 +67,39 @@ impl Preparation {
         if recordings.iter().all(|recording| is_static(recording)) {
             let velocity = recordings.iter().filter_map(|recording| recording.values(Quantity::Velocity));
             refuse_constant_velocity(recordings, velocity)?;
-            return Ok(Self { sigma_s: None, rate_hz: None, velocity: VelocitySource::Recorded });
+            return Ok(Self::unfiltered());
         }
-        let mut motions = Vec::with_capacity(recordings.len());
-        for recording in recordings {
-            motions.push(Motion::of(recording)?);
-        }
+        let motions = recordings.iter().map(|recording| Motion::of(recording)).collect::<Result<Vec<_>>>()?;
         refuse_constant_velocity(recordings, motions.iter().map(|motion| motion.velocity.as_slice()))?;
-        let recorded = motions.iter().all(|motion| motion.source == VelocitySource::Recorded);
-        let velocity = if recorded { VelocitySource::Recorded } else { VelocitySource::Derived };
-        let shortest = motions.iter().map(Motion::shortest_sigma_s).fold(0.0, f64::max);
-        let longest = motions.iter().map(|motion| motion.longest_sigma_s).fold(f64::INFINITY, f64::min).max(shortest);
-        let widened = request.rate_hz.map_or(0.0, |rate| NYQUIST_FREQUENCY_SIGMAS / (0.5 * rate));
-        let mut sigma_s = request.sigma_s.unwrap_or_else(|| shortest.max(widened).min(longest));
-        if request.sigma_s.is_none() && velocity == VelocitySource::Derived {
-            for _ in 0..ROUNDS {
-                let trial = Self { sigma_s: Some(sigma_s), rate_hz: request.rate_hz, velocity }.with_rate(request);
-                let wanted = wanted_sigma(recordings, &motions, joint, &trial)?;
-                sigma_s = wanted.max(shortest).max(widened).min(longest);
-            }
+        let candidates = candidates(&motions, request);
+        let trials = width::trials(recordings, &candidates, &|samples: &Samples| width::cross_fitted(samples, joint));
+        let chosen = width::shortest_to_learn_at(&trials).map(|trial| trial.preparation);
+        Ok(chosen.unwrap_or_else(|| quietest(&motions, &candidates)))
+    }
+
+    /// Chooses filter and source of the velocity for the prediction of a recording by a known model. `residual` gives what the
+    /// model leaves of [`Samples::recorded`]; where there is nothing to compare with, the noise of the motion decides.
+    ///
+    /// # Errors
+    /// `FRK-D009` when clock or motion is missing.
+    pub fn plan_prediction(
+        recording: &Recording,
+        residual: &(dyn Fn(&Samples) -> Result<Vec<f64>> + Sync),
+    ) -> Result<Self> {
+        // Without a clock nothing can be filtered, but a velocity may be all that the model reads.
+        let is_bare = recording.channel(Quantity::Time).is_none() && recording.channel(Quantity::Velocity).is_some();
+        if is_static(recording) || is_bare {
+            return Ok(Self::unfiltered());
         }
-        Ok(Self { sigma_s: Some(sigma_s), rate_hz: request.rate_hz, velocity }.with_rate(request))
+        let motions = [Motion::of(recording)?];
+        let candidates = candidates(&motions, &Request::default());
+        let trials = width::trials(&[recording], &candidates, &|samples: &Samples| Ok((residual(samples)?, 0.0)));
+        let chosen = width::best(&trials).map(|trial| trial.preparation);
+        Ok(chosen.unwrap_or_else(|| quietest(&motions, &candidates)))
+    }
+
+    fn unfiltered() -> Self {
+        Self { sigma_s: None, rate_hz: None, velocity: VelocitySource::Recorded, acceleration_noise: 0.0 }
     }
 
     fn with_rate(mut self, request: &Request) -> Self {
@@ -134,15 +147,47 @@ fn is_static(recording: &Recording) -> bool {
         && (recording.channel(Quantity::Time).is_none() || recording.channel(Quantity::Velocity).is_some())
 }
 
+/// Every width that the motions allow, from each source of the velocity that all of them have.
+fn candidates(motions: &[Motion], request: &Request) -> Vec<Preparation> {
+    let widened = request.rate_hz.map_or(0.0, |rate| NYQUIST_FREQUENCY_SIGMAS / (0.5 * rate));
+    let mut candidates = Vec::new();
+    for velocity in [VelocitySource::Recorded, VelocitySource::Derived] {
+        if !motions.iter().all(|motion| motion.has(velocity)) {
+            continue;
+        }
+        let shortest = motions.iter().map(|motion| motion.shortest_sigma_s(velocity)).fold(widened, f64::max);
+        let longest = motions.iter().map(|motion| motion.longest_sigma_s).fold(f64::INFINITY, f64::min);
+        let widths = request.sigma_s.map_or_else(|| width::ladder(shortest, longest), |sigma| vec![sigma]);
+        let preparation = |sigma_s| {
+            let noise = motions.iter().map(|motion| motion.acceleration_noise(velocity, sigma_s)).fold(0.0, f64::max);
+            Preparation { sigma_s: Some(sigma_s), rate_hz: request.rate_hz, velocity, acceleration_noise: noise }
+        };
+        candidates.extend(widths.into_iter().map(|sigma_s| preparation(sigma_s).with_rate(request)));
+    }
+    candidates
+}
+
+/// Without a torque to compare with: the first, recorded velocities and short widths before others, at which the noise of the
+/// acceleration is small beside the acceleration itself; the widest where there is none.
+fn quietest(motions: &[Motion], candidates: &[Preparation]) -> Preparation {
+    let scale = motions.iter().map(|motion| motion.acceleration_scale).fold(f64::INFINITY, f64::min);
+    let quiet = |preparation: &&Preparation| preparation.acceleration_noise <= ACCELERATION_NOISE_SHARE * scale;
+    let found = candidates.iter().find(quiet).or(candidates.last());
+    found.copied().unwrap_or_else(Preparation::unfiltered)
+}
+
 /// What the choice needs to know of one recording's motion.
 struct Motion {
     period_s: f64,
-    noise: f64,
+    /// Noise of the recorded position and of the recorded velocity; `None` where there is none.
+    position_noise: Option<f64>,
+    velocity_noise: Option<f64>,
     /// Coarse velocity at every row, over ten periods.
     velocity: Vec<f64>,
     rms_velocity: f64,
+    /// Usual size of the acceleration, rad/s2 or m/s2.
+    acceleration_scale: f64,
     longest_sigma_s: f64,
-    source: VelocitySource,
 }
 
 impl Motion {
@@ -151,100 +196,78 @@ impl Motion {
         let period_s = recording.health.period_s.unwrap_or(1.0);
         let motion = recording.require(&[Quantity::Position, Quantity::Velocity], "a motion")?;
         let span = time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first);
-        let Some(position) = recording.values(Quantity::Position) else {
-            let rms_velocity = norm(&motion.values) / (motion.values.len() as f64).sqrt();
-            let source = VelocitySource::Recorded;
-            let velocity = motion.values.clone();
-            return Ok(Self { period_s, noise: 0.0, velocity, rms_velocity, longest_sigma_s: 0.01 * span, source });
-        };
         // On the rows themselves an uneven clock would look like noise.
         let grid = Grid::of(recording, time);
         let longest = grid.segments.iter().max_by_key(|segment| segment.points);
-        let even = longest.map_or_else(Vec::new, |segment| grid.values(segment, time, position));
-        let noise = position_noise(&even, recording.health.position_resolution);
-        let mean = position.iter().sum::<f64>() / position.len() as f64;
-        let centred: Vec<f64> = position.iter().map(|q| q - mean).collect();
-        let rms_position = norm(&centred) / (centred.len() as f64).sqrt();
+        let even = |channel: &[f64]| longest.map_or_else(Vec::new, |segment| grid.values(segment, time, channel));
+        let velocity_noise = recording.values(Quantity::Velocity).map(|velocity| white_noise(&even(velocity)));
+        let Some(position) = recording.values(Quantity::Position) else {
+            let velocity = motion.values.clone();
+            let rms_velocity = root_mean_square(&velocity);
+            return Ok(Self {
+                period_s,
+                position_noise: None,
+                velocity_noise,
+                acceleration_scale: rms_velocity / (SPAN_SHARE * span).max(period_s),
+                velocity,
+                rms_velocity,
+                longest_sigma_s: SPAN_SHARE * span,
+            });
+        };
+        let rounding = recording.health.position_resolution.unwrap_or(0.0) / 12.0_f64.sqrt();
+        let centre = mean(position);
+        let centred: Vec<f64> = position.iter().map(|q| q - centre).collect();
         let reach = 10.min(position.len() - 1);
         let rates: Vec<f64> =
             position.windows(reach + 1).map(|w| (w[reach] - w[0]) / (reach as f64 * period_s)).collect();
-        let rms_velocity = norm(&rates) / (rates.len() as f64).sqrt();
-        let time_scale = if rms_velocity > 0.0 { rms_position / rms_velocity } else { span };
-        let source = velocity_source(recording, position, period_s, noise);
-        Ok(Self { period_s, noise, velocity: rates, rms_velocity, longest_sigma_s: MOTION_SHARE * time_scale, source })
+        let rms_velocity = root_mean_square(&rates);
+        let time_scale = if rms_velocity > 0.0 { root_mean_square(&centred) / rms_velocity } else { span };
+        Ok(Self {
+            period_s,
+            position_noise: Some(white_noise(&even(position)).max(rounding)),
+            velocity_noise,
+            velocity: rates,
+            rms_velocity,
+            acceleration_scale: rms_velocity / time_scale.max(period_s),
+            longest_sigma_s: (MOTION_SHARE * time_scale).min(SPAN_SHARE * span),
+        })
     }
 
-    /// Shortest filter that this motion allows without knowing the inertia: one period, and velocity noise in bounds,
-    /// ||D F||^2 = period / (4 sqrt(pi) sigma^3).
-    fn shortest_sigma_s(&self) -> f64 {
-        if self.source == VelocitySource::Recorded || self.rms_velocity <= 0.0 {
-            return self.period_s;
+    fn has(&self, velocity: VelocitySource) -> bool {
+        match velocity {
+            VelocitySource::Derived => self.position_noise.is_some(),
+            VelocitySource::Recorded => self.velocity_noise.is_some(),
         }
+    }
+
+    /// Shortest filter that is tried: one period, and noise of a derived velocity in bounds,
+    /// ||D F||^2 = period / (4 sqrt(pi) sigma^3).
+    fn shortest_sigma_s(&self, velocity: VelocitySource) -> f64 {
+        let noise = self.position_noise.filter(|_| velocity == VelocitySource::Derived && self.rms_velocity > 0.0);
         let limit = VELOCITY_NOISE_SHARE * self.rms_velocity;
-        let velocity = (self.noise * self.noise * self.period_s / (4.0 * PI.sqrt() * limit * limit)).cbrt();
-        velocity.max(self.period_s)
+        let sigma =
+            noise.map_or(0.0, |noise| (noise * noise * self.period_s / (4.0 * PI.sqrt() * limit * limit)).cbrt());
+        sigma.max(self.period_s)
+    }
+
+    /// White noise of the recorded position or velocity after the filter and its derivatives:
+    /// ||D2 F||^2 = 3 period / (8 sqrt(pi) sigma^5).
+    fn acceleration_noise(&self, velocity: VelocitySource, sigma_s: f64) -> f64 {
+        let sigma = sigma_s.max(self.period_s);
+        match velocity {
+            VelocitySource::Derived => {
+                self.position_noise.unwrap_or(0.0) * (3.0 * self.period_s / (8.0 * PI.sqrt() * sigma.powi(5))).sqrt()
+            }
+            VelocitySource::Recorded => {
+                self.velocity_noise.unwrap_or(0.0) * (self.period_s / (4.0 * PI.sqrt() * sigma.powi(3))).sqrt()
+            }
+        }
     }
 }
 
-/// Standard deviation of the noise of a recorded position: that of rounding to its resolution, or what fourth
-/// differences of neighbours show where that is more (a motion has next to no fourth difference).
-fn position_noise(position: &[f64], resolution: Option<f64>) -> f64 {
-    let mut fourth: Vec<f64> =
-        position.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs()).collect();
-    fourth.sort_by(f64::total_cmp);
+/// Standard deviation of the white noise of a series, from the fourth differences of neighbours (a motion has next to none).
+fn white_noise(series: &[f64]) -> f64 {
+    let fourth = series.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs());
     // Median of |normal| is 0.6745 sigma; the squares of 1 4 6 4 1 add up to 70.
-    let robust = fourth.get(fourth.len() / 2).map_or(0.0, |median| median / (0.6745 * 70.0_f64.sqrt()));
-    robust.max(resolution.unwrap_or(0.0) / 12.0_f64.sqrt())
-}
-
-/// The recorded velocity is used only where it is finer than the derived one, has its scale, and does not lag.
-fn velocity_source(recording: &Recording, position: &[f64], period_s: f64, noise: f64) -> VelocitySource {
-    let Some(velocity) = recording.values(Quantity::Velocity) else { return VelocitySource::Derived };
-    if !recording.health.gaps.is_empty() {
-        return VelocitySource::Derived;
-    }
-    let filter = GaussianFilter::new(3.0 * period_s, period_s);
-    let recorded = filter.apply(velocity, Order::Smooth, 1);
-    let derived = filter.apply(position, Order::First, 1);
-    let acceleration = filter.apply(position, Order::Second, 1);
-    // recorded = scale * derived - lag * acceleration
-    let (vv, va, aa) = (dot(&derived, &derived), dot(&derived, &acceleration), dot(&acceleration, &acceleration));
-    let determinant = vv * aa - va * va;
-    if determinant <= 0.0 {
-        return VelocitySource::Derived;
-    }
-    let (rv, ra) = (dot(&recorded, &derived), dot(&recorded, &acceleration));
-    let scale = (rv * aa - ra * va) / determinant;
-    let lag_s = -(vv * ra - va * rv) / determinant;
-    let mut steps: Vec<f64> =
-        velocity.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs()).collect();
-    steps.sort_by(f64::total_cmp);
-    let own_noise = steps.get(steps.len() / 2).map_or(0.0, |median| median / (0.6745 * 70.0_f64.sqrt()));
-    let finer = own_noise * filter.noise_gain(Order::Smooth) < noise * filter.noise_gain(Order::First);
-    if finer && (scale - 1.0).abs() < 0.01 && lag_s.abs() < LARGEST_LAG_PERIODS * period_s {
-        VelocitySource::Recorded
-    } else {
-        VelocitySource::Derived
-    }
-}
-
-/// Filter width at which, with the inertia and the residual of a preliminary fit, rule P2 holds in every recording.
-fn wanted_sigma(recordings: &[&Recording], motions: &[Motion], joint: &Joint, trial: &Preparation) -> Result<f64> {
-    let mut parts = Vec::with_capacity(recordings.len());
-    for recording in recordings {
-        parts.push(prepare(recording, trial)?);
-    }
-    let samples = Samples::join(parts)?;
-    if samples.actuator.is_none() || samples.acceleration.is_none() {
-        return Ok(0.0);
-    }
-    let separation = rigid_body::separate(&samples, joint)?;
-    let inertia = separation.inertia().abs();
-    let residual = separation.rmse;
-    if inertia <= 0.0 || residual <= 0.0 {
-        return Ok(0.0);
-    }
-    let limit = ACCELERATION_NOISE_SHARE * residual / inertia;
-    let sigma = |motion: &Motion| sigma_for_acceleration_noise(motion.noise, motion.period_s, limit);
-    Ok(motions.iter().map(sigma).fold(0.0, f64::max))
+    quantile(fourth, 0.5) / (0.6745 * 70.0_f64.sqrt())
 }

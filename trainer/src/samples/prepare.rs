@@ -38,6 +38,10 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
         let first = filter.half_width();
         samples.time.extend((0..count).map(|i| segment.start_s + (first + i * stride) as f64 * grid.period_s));
         extend(&mut samples, recording, preparation, |channel, order| filter.apply(&on_grid(channel), order, stride));
+        if let Some(channel) = target(recording) {
+            let unfiltered = on_grid(channel);
+            samples.recorded.get_or_insert_default().extend((0..count).map(|i| unfiltered[first + i * stride]));
+        }
         samples.segments.push(start..start + count);
     }
     smooth_temperatures(&mut samples);
@@ -67,9 +71,15 @@ pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Re
         extend(&mut samples, recording, preparation, at_rows);
         samples.segments.push(rows);
     }
+    samples.recorded = target(recording).map(<[f64]>::to_vec);
     smooth_temperatures(&mut samples);
     samples.recordings = vec![(recording.label.clone(), 0..samples.time.len())];
     Ok(samples)
+}
+
+/// What a prediction is scored on.
+fn target(recording: &Recording) -> Option<&[f64]> {
+    recording.separated_friction().or_else(|| recording.actuator()).map(|channel| channel.values.as_slice())
 }
 
 /// Appends one segment of every channel, filtered by `apply`.
@@ -156,6 +166,7 @@ fn unfiltered(recording: &Recording) -> Samples {
         actuator_unit: unit_of(recording),
         rigid_body: own(Quantity::RigidBodyTorque),
         friction: recording.separated_friction().map(|channel| channel.values.clone()),
+        recorded: target(recording).map(<[f64]>::to_vec),
         channels: Vec::new(),
         segments: std::iter::once(0..rows).collect(),
         recordings: vec![(recording.label.clone(), 0..rows)],
@@ -177,6 +188,7 @@ fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>)
         actuator_unit: unit_of(recording),
         rigid_body: None,
         friction: None,
+        recorded: None,
         channels: Vec::new(),
         segments: Vec::new(),
         recordings: Vec::new(),

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::Samples;
 use super::bending::BendingLaw;
 use super::blocks::{blocks, correlation_time};
+use super::hold_out::motions;
 use super::regression::least_squares;
 use crate::error::Result;
 
@@ -84,13 +85,23 @@ fn keep_one_load(table: &mut [Relevance]) {
     }
 }
 
+/// Motions that are held out in turn, or else long contiguous parts: an input that says nothing but when a row was recorded has
+/// no value in common with the part that is held out.
 fn folds(samples: &Samples, friction: &[f64]) -> Vec<Vec<Range<usize>>> {
     let pieces = blocks(samples, correlation_time(friction, &samples.segments));
-    let mut folds = vec![Vec::new(); FOLDS.min(pieces.len()).max(1)];
-    let count = folds.len();
-    for (index, piece) in pieces.into_iter().enumerate() {
-        folds[index % count].push(piece);
+    let numbers = motions(samples);
+    let motion = |piece: &Range<usize>| {
+        let recording = samples.recordings.iter().position(|(_, rows)| rows.contains(&piece.start));
+        recording.map_or(0, |recording| numbers[recording])
+    };
+    let count = FOLDS.min(pieces.len()).max(1);
+    let several = numbers.iter().any(|number| *number > 0);
+    let mut folds = vec![Vec::new(); count];
+    for (index, piece) in pieces.iter().enumerate() {
+        let fold = if several { motion(piece) % count } else { index * count / pieces.len() };
+        folds[fold].push(piece.clone());
     }
+    folds.retain(|fold| !fold.is_empty());
     folds
 }
 
@@ -179,6 +190,7 @@ mod tests {
             actuator_unit: "Nm",
             rigid_body: None,
             friction: None,
+            recorded: None,
             channels: vec![("load_torque".into(), load), ("temperature".into(), temperature)],
             segments: std::iter::once(0..n).collect(),
             recordings: vec![("made".into(), 0..n)],

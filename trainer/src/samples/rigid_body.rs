@@ -37,6 +37,12 @@ pub enum TermKind {
 }
 
 impl TermKind {
+    /// Whether it is torque per acceleration.
+    #[must_use]
+    pub fn is_inertia(self) -> bool {
+        matches!(self, Self::Inertia | Self::ExtraInertia)
+    }
+
     /// Name in reports and JSON.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -110,7 +116,7 @@ impl Separation {
     /// Inertia in force, given or identified, actuator unit per acceleration.
     #[must_use]
     pub fn inertia(&self) -> f64 {
-        let identified = |parameter: &&Parameter| matches!(parameter.kind, TermKind::Inertia | TermKind::ExtraInertia);
+        let identified = |parameter: &&Parameter| parameter.kind.is_inertia();
         self.given_inertia + self.parameters.iter().find(identified).map_or(0.0, |parameter| parameter.value)
     }
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
-use crate::fit::outcome::{Score, Soundness, Trace};
+use crate::fit::outcome::{Score, Soundness, SplitScore, Trace};
 
 /// The object that `--json` writes.
 pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Value {
@@ -21,6 +21,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
         "filter": outcome.filter,
         "representation": outcome.representation.name(),
         "choice": outcome.choice,
+        "held_out": outcome.held_out,
         "expression": outcome.law.expression,
         "latex": outcome.law.latex,
         "expression_nodes": outcome.law.nodes,
@@ -29,7 +30,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
         "warnings": warnings.iter().map(Warning::to_json).collect::<Vec<_>>(),
         "sound": match &outcome.sound {
             Soundness::Sound => json!(true),
-            Soundness::NotIdentifiable(why) | Soundness::NotConverged(why) => json!({"why": why}),
+            Soundness::NotIdentifiable(why) | Soundness::NotConverged(why) | Soundness::NotPhysical { what: why, .. } => json!({"why": why}),
         },
         "relevance": outcome.relevance.iter().map(|row| json!({
             "input": row.input, "correlation": row.correlation, "explained_variance": row.explained,
@@ -44,6 +45,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
             "rmse": outcome.network.rmse,
         },
         "candidates": outcome.candidates.iter().map(|candidate| json!({
+            "form": candidate.form.name(), "violation": candidate.violation,
             "representation": candidate.representation.name(), "description": candidate.description,
             "held_out_rmse": candidate.held_out_rmse, "bytes": candidate.bytes, "instructions": candidate.instructions,
             "within_budget": candidate.within_budget, "chosen": candidate.chosen,
@@ -55,7 +57,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
             "expression": law.expression, "nodes": law.nodes, "rmse": law.rmse, "held_out_rmse": law.held_out_rmse,
         })).collect::<Vec<_>>(),
         "band": {"level": 0.95, "over": "velocity", "points": outcome.band},
-        "train": score(outcome.train_score),
+        "train": with_split(score(outcome.train_score), &outcome.train_split),
         "train_recordings": train,
         "test": tests,
         "image": {"bytes": outcome.image.len(), "crc32": image_crc32(&outcome.image).unwrap_or(0)},
@@ -68,8 +70,16 @@ fn score(score: Score) -> Value {
     json!({"n": score.n, "r2": score.r2, "rmse": score.rmse, "relative_error": score.relative_error})
 }
 
+/// Adds the scores of rows in motion and of rows at rest.
+fn with_split(mut value: Value, split: &SplitScore) -> Value {
+    let moving = split.moving;
+    value["moving"] = json!({"n": moving.n, "r2": moving.r2, "rmse": moving.rmse});
+    value["rest"] = json!({"n": split.rest.n, "inside_breakaway": split.rest.inside_breakaway});
+    value
+}
+
 fn recording(trace: &Trace) -> Value {
-    let mut value = score(trace.score);
+    let mut value = with_split(score(trace.score), &trace.split);
     value["recording"] = json!(trace.label);
     value["at_100_hz"] = score(trace.filtered_score);
     value

@@ -62,13 +62,17 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
         let mark = if candidate.chosen { "chosen" } else { "" };
         writeln!(
             out,
-            "  {:<11} {:<28} {:>6} bytes {:>5} instructions, held-out rmse {} {unit}  {mark}",
-            candidate.representation.name(),
+            "  {:<36} {:<28} {:>6} bytes {:>5} instructions, {} rmse {} {unit}  {mark}",
+            candidate.form.name(),
             candidate.description,
             candidate.bytes,
             candidate.instructions,
+            if outcome.held_out { "held-out" } else { "fitted" },
             significant(candidate.held_out_rmse, DIGITS)
         )?;
+        if let Some(violation) = &candidate.violation {
+            writeln!(out, "      {violation}")?;
+        }
     }
     writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error   at 100 Hz")?;
     outcome.train.iter().try_for_each(|trace| write_score(out, "train", trace, unit))?;
@@ -100,5 +104,18 @@ fn write_score(out: &mut String, kind: &str, trace: &Trace, unit: &str) -> std::
         significant(rmse, DIGITS + 1),
         100.0 * relative_error,
         100.0 * trace.filtered_score.relative_error,
+    )?;
+    let (moving, rest) = (trace.split.moving, trace.split.rest);
+    if rest.n == 0 {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "        moving {:>40} {:>9.6} {:>11} {unit}; {} rows at rest, {:.1} % of them within break-away",
+        moving.n,
+        moving.r2,
+        significant(moving.rmse, DIGITS + 1),
+        rest.n,
+        100.0 * rest.inside_breakaway,
     )
 }

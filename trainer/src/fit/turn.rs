@@ -1,0 +1,77 @@
+//! One turn: everything that is learnt without the locked blocks of one split.
+
+use super::activations;
+use super::builder::Builder;
+use super::choose::Trial;
+use super::formula::{Found, search};
+use super::gather::Material;
+use super::learn::TrainingData;
+use super::model::HostModel;
+use super::options::{Progress, ProgressCallback, Stage};
+use super::outcome::Form;
+use super::simple::{Simple, simple};
+use super::turns;
+use crate::error::Result;
+use crate::kan::{FitResult, Pruned};
+use crate::law::LawData;
+use crate::samples::blocks::Split;
+
+/// What one turn brings.
+pub(super) struct Turn {
+    pub(super) fitted: FitResult,
+    pub(super) pruned: Pruned,
+    pub(super) found: Found,
+    /// The simple model of right signs, and the one of wrong signs where that is the better.
+    pub(super) simple: [Option<Simple>; 2],
+    /// A model of each form, in the order of [`Form::ALL`]; `None` where it does not fit into an image.
+    pub(super) models: [Option<Box<HostModel>>; 4],
+}
+
+impl Turn {
+    /// Trains, searches and builds without the locked blocks.
+    ///
+    /// # Errors
+    /// `FRK-N...` and `FRK-D...` when nothing can be learnt at all.
+    pub(super) fn take(
+        builder: &Builder<'_>,
+        training: &TrainingData,
+        data: &LawData,
+        split: &Split,
+        progress: ProgressCallback<'_>,
+    ) -> Result<Self> {
+        let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
+        tell(Stage::Training);
+        let (fitted, pruned) = training.train(split, progress)?;
+        tell(Stage::Searching);
+        let learnt = training.learnt(&pruned.result);
+        let found = search(split, data, activations::starts(&learnt.network, &learnt.graph, builder.inputs))?;
+        let (sound, free) = simple(&data.select(&turns::open(split)));
+        let of = |simple: &Option<Simple>| simple.as_ref().and_then(|simple| builder.expression(&simple.fit));
+        let models = Form::ALL.map(|form| match form {
+            Form::Simple => of(&sound),
+            // Where no sign is wrong in this turn it is the same.
+            Form::SimpleAsFitted => of(&free).or_else(|| of(&sound)),
+            Form::Found => builder.expression(&found.open),
+            Form::Network => builder.table(&learnt),
+        });
+        Ok(Self { fitted, pruned, found, simple: [sound, free], models })
+    }
+}
+
+/// Errors of each form over all turns; `None` where one of the turns has no model of it.
+pub(super) fn trials(turns: &[Turn], splits: &[Split], material: &Material) -> Result<[Option<Trial>; 4]> {
+    let mut trials: [Option<Trial>; 4] = std::array::from_fn(|_| Some(Trial::default()));
+    for (turn, split) in turns.iter().zip(splits) {
+        for (trial, model) in trials.iter_mut().zip(&turn.models) {
+            match (trial.as_mut(), model) {
+                (Some(trial), Some(model)) => trial.add(model, material, split)?,
+                _ => *trial = None,
+            }
+        }
+    }
+    if turns.iter().all(|turn| turn.simple[1].is_none()) {
+        // No sign is wrong in any turn.
+        trials[1] = None;
+    }
+    Ok(trials)
+}

@@ -1,0 +1,173 @@
+//! Width of the filter and source of the velocity, chosen by what they leave of the actuator as recorded.
+//!
+//! Every channel passes the same filter, but a prediction is scored on torque that did not: noise of the acceleration that a
+//! narrow filter lets through, and motion that a wide one takes away, both stand in the error. Inertia, gravity and friction are
+//! identified anew at every width, on other blocks than those that are scored, so that an inertia which noise has attenuated
+//! (errors in variables; Fuller 1987) cannot recommend its own width.
+
+use rayon::prelude::*;
+
+use super::prepare::prepare;
+use super::regression::{least_squares, norm};
+use super::rigid_body;
+use super::{Preparation, Samples};
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::numerics::statistics::quantile;
+use crate::recording::Recording;
+
+/// Factor from one width to the next.
+const STEP: f64 = std::f64::consts::SQRT_2;
+/// Most samples of all recordings together at which one width is scored.
+const MOST_SAMPLES: f64 = 30_000.0;
+/// Blocks of each recording, every other of which is held out in turn.
+const BLOCKS: usize = 20;
+/// The inertia at a width counts as that at the best one up to this share: half of it would be noise or bias.
+const SAME_INERTIA: f64 = 0.02;
+/// A law may be learnt at a width that leaves this much more than the best, as a ratio of mean squares: constants are then known
+/// by its root less well, and friction that turns over within a few milliseconds is not smeared.
+const LEARNING_RATIO: f64 = 1.5;
+/// Where the smoothed signs of the velocity have three quarters of their height, as shares of the top speed: sharp as
+/// Coulomb friction, and wide as what a Stribeck curve adds to it.
+const SIGN_WIDTHS: [f64; 2] = [0.02, 0.1];
+/// Quantile of the speed that counts as the top speed; what is above may be noise.
+const TOP_QUANTILE: f64 = 0.999;
+
+/// One preparation with what it leaves.
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    pub(super) preparation: Preparation,
+    /// Mean square of what is left of the recorded torque, a block; `None` where the block has no samples.
+    blocks: Vec<Option<f64>>,
+    /// Inertia, unit of the actuator per acceleration; zero where none is identified.
+    pub(super) inertia: f64,
+}
+
+/// Left of the recorded actuator at every sample, and the inertia that was assumed.
+pub(super) type Residual<'a> = dyn Fn(&Samples) -> Result<(Vec<f64>, f64)> + Sync + 'a;
+
+/// Widths from `shortest` to `longest`, s.
+pub(super) fn ladder(shortest: f64, longest: f64) -> Vec<f64> {
+    let steps = (longest / shortest).max(1.0).log(STEP) + 1e-9;
+    (0..=steps as i32).map(|k| shortest * STEP.powi(k)).collect()
+}
+
+/// Tries every preparation that the recordings are long enough for.
+pub(super) fn trials(recordings: &[&Recording], preparations: &[Preparation], residual: &Residual<'_>) -> Vec<Trial> {
+    let tried = preparations.par_iter().map(|preparation| {
+        let parts: Result<Vec<Samples>> =
+            recordings.iter().map(|r| prepare(r, &thinned(recordings, preparation))).collect();
+        let samples = parts.and_then(Samples::join).ok()?;
+        let (left, inertia) = residual(&samples).ok()?;
+        let blocks = block_means(&samples, &left);
+        Some(Trial { preparation: *preparation, blocks, inertia })
+    });
+    tried.collect::<Vec<_>>().into_iter().flatten().collect()
+}
+
+/// The same filter with no more samples than are needed to score it.
+fn thinned(recordings: &[&Recording], preparation: &Preparation) -> Preparation {
+    let span = |recording: &&Recording| {
+        let time = recording.values(crate::recording::Quantity::Time)?;
+        Some(time.last()? - time.first()?)
+    };
+    let seconds: f64 = recordings.iter().filter_map(span).sum();
+    let most = MOST_SAMPLES / seconds.max(f64::MIN_POSITIVE);
+    Preparation { rate_hz: Some(preparation.rate_hz.map_or(most, |rate| rate.min(most))), ..*preparation }
+}
+
+fn block_means(samples: &Samples, left: &[f64]) -> Vec<Option<f64>> {
+    let mut sums = vec![(0.0, 0.0); BLOCKS * samples.recordings.len()];
+    for (row, block) in block_of_rows(samples).into_iter().enumerate() {
+        sums[block].0 += left[row] * left[row];
+        sums[block].1 += 1.0;
+    }
+    sums.into_iter().map(|(sum, count)| (count > 0.0).then_some(sum / count)).collect()
+}
+
+/// Block of every sample: equal spans of time of each recording, the same whatever the filter takes off its ends.
+fn block_of_rows(samples: &Samples) -> Vec<usize> {
+    let mut blocks = Vec::with_capacity(samples.len());
+    for (index, (_, rows)) in samples.recordings.iter().enumerate() {
+        let time = &samples.time[rows.clone()];
+        let (first, last) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(0.0));
+        let length = (last - first).max(f64::MIN_POSITIVE) / BLOCKS as f64;
+        let place = |t: &f64| BLOCKS * index + (((t - first) / length) as usize).min(BLOCKS - 1);
+        blocks.extend(time.iter().map(place));
+    }
+    blocks
+}
+
+impl Trial {
+    /// Mean square over blocks.
+    pub(super) fn mean_square(&self) -> f64 {
+        let (sum, count) = self.blocks.iter().flatten().fold((0.0, 0.0), |(s, n), square| (s + square, n + 1.0));
+        if count > 0.0 { sum / count } else { f64::INFINITY }
+    }
+}
+
+/// The trial that leaves least.
+pub(super) fn best(trials: &[Trial]) -> Option<&Trial> {
+    trials.iter().min_by(|a, b| a.mean_square().total_cmp(&b.mean_square()))
+}
+
+/// The width to learn at: of those at which the inertia is that of the best and not much more is left, the shortest. What a filter
+/// does to friction around a reversal no constant can undo, what noise of the acceleration does is averaged out, as long as it
+/// does not attenuate the inertia.
+pub(super) fn shortest_to_learn_at(trials: &[Trial]) -> Option<&Trial> {
+    let best = best(trials)?;
+    let same_inertia = |trial: &Trial| (trial.inertia - best.inertia).abs() <= SAME_INERTIA * best.inertia.abs();
+    let of_its_source = trials.iter().filter(|trial| trial.preparation.velocity == best.preparation.velocity);
+    let mut usable =
+        of_its_source.filter(|trial| same_inertia(trial) && trial.mean_square() <= LEARNING_RATIO * best.mean_square());
+    Some(usable.next().unwrap_or(best))
+}
+
+/// What rigid body and friction leave of the recorded actuator, identified on the even blocks for the odd ones and the other
+/// way round.
+pub(super) fn cross_fitted(samples: &Samples, joint: &Joint) -> Result<(Vec<f64>, f64)> {
+    let recorded = samples.recorded.as_deref().unwrap_or_default();
+    let (given, terms) = match samples.friction {
+        Some(_) => (vec![0.0; samples.len()], Vec::new()),
+        None => (rigid_body::given_torque(samples, joint)?, rigid_body::terms(samples, joint)),
+    };
+    let filtered = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+    let inertia_at = terms.iter().position(|term| term.kind.is_inertia());
+    let mut columns: Vec<Vec<f64>> =
+        terms.into_iter().filter(|term| term.kind != rigid_body::TermKind::TorqueOffset).map(|t| t.column).collect();
+    columns.extend(friction_columns(samples.require_velocity()?));
+    let blocks = block_of_rows(samples);
+    let mut left = vec![0.0; samples.len()];
+    let mut inertia = 0.0;
+    for held in 0..2 {
+        let learnt: Vec<usize> = (0..samples.len()).filter(|&row| blocks[row] % 2 != held).collect();
+        let pick = |column: &[f64]| learnt.iter().map(|&row| column[row]).collect::<Vec<f64>>();
+        let own: Vec<Vec<f64>> = columns.iter().map(|column| pick(column)).collect();
+        let target: Vec<f64> = learnt.iter().map(|&row| filtered[row] - given[row]).collect();
+        let whole = std::iter::once(0..target.len()).collect::<Vec<_>>();
+        let fit = least_squares(&own, &target, &whole);
+        for row in (0..samples.len()).filter(|&row| blocks[row] % 2 == held) {
+            let predicted: f64 = columns.iter().zip(&fit.coefficients).map(|(column, c)| c * column[row]).sum();
+            left[row] = recorded[row] - given[row] - predicted;
+        }
+        inertia += 0.5 * inertia_at.map_or(0.0, |index| fit.coefficients[index]);
+    }
+    Ok((left, inertia + given_inertia(joint, samples)))
+}
+
+fn given_inertia(joint: &Joint, samples: &Samples) -> f64 {
+    let factor = joint.actuator_per_torque(samples.actuator_unit).ok();
+    joint.rigid_body.inertia_kgm2.zip(factor).map_or(0.0, |(inertia, factor)| inertia * factor)
+}
+
+/// Friction over velocity as a few smooth shapes that serve at any width: signs, viscous, their asymmetries, a constant.
+fn friction_columns(velocity: &[f64]) -> Vec<Vec<f64>> {
+    let top = quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE).max(f64::MIN_POSITIVE);
+    let mut columns: Vec<Vec<f64>> =
+        SIGN_WIDTHS.iter().map(|width| velocity.iter().map(|v| (v / (width * top)).tanh()).collect()).collect();
+    columns.push(velocity.to_vec());
+    columns.push(velocity.iter().map(|v| v.abs()).collect());
+    columns.push(vec![1.0; velocity.len()]);
+    columns.retain(|column| norm(column) > 0.0);
+    columns
+}
