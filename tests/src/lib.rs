@@ -5,6 +5,7 @@ pub mod command;
 pub mod concealed;
 pub mod cost;
 pub mod fixtures;
+pub mod inertia;
 pub mod laws;
 pub mod models;
 pub mod paper;
