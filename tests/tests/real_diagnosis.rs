@@ -7,7 +7,7 @@ use frikan_runtime::shared::units::Unit;
 use frikan_tests::recordings;
 use frikan_trainer::compile::improved::{Origin, improve};
 use frikan_trainer::diagnose::{Diagnosis, Lock, Options, Signals, diagnose};
-use frikan_trainer::fit::predict::trace;
+use frikan_trainer::fit::score::trace;
 use frikan_trainer::joint::Joint;
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::recording::{self, Recording};

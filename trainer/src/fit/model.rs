@@ -7,7 +7,7 @@ use frikan_shared::pool::Pool;
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
 
-use super::inputs::ChosenInput;
+use super::data::inputs::ChosenInput;
 pub use crate::compile::host_model::{CELLS, HostModel};
 use crate::error::{Error, Result, codes};
 use crate::recording::Recording;

@@ -5,8 +5,6 @@ use frikan_shared::model::{MAX_INPUTS, RigidBody};
 use frikan_shared::units::{Quantity, Unit};
 
 use super::model::HostModel;
-use super::outcome::{Score, SplitScore, Trace};
-use super::score::low_passed;
 use crate::error::{Error, Result, codes};
 use crate::recording::Recording;
 use crate::samples::blocks::rests;
@@ -138,32 +136,6 @@ pub fn every_row(model: &HostModel, recording: &Recording) -> Result<Samples> {
     prepare_every_row(recording, &Preparation::plan_prediction(recording, &residual)?)
 }
 
-fn nothing_recorded() -> Error {
+pub(super) fn nothing_recorded() -> Error {
     Error::new(&codes::MISSING_COLUMN, "scoring needs the actuator's torque, force or current")
-}
-
-/// What a model makes of a recording, and how well it agrees.
-///
-/// # Errors
-/// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
-pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
-    let in_file = |error: Error| error.in_file(recording.file());
-    let rows = every_row(model, recording).map_err(in_file)?;
-    let prediction = predict(model, &rows).map_err(in_file)?;
-    let measured = rows.recorded.clone().ok_or_else(|| in_file(nothing_recorded()))?;
-    let predicted = prediction.total();
-    let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
-    let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
-    Ok(Trace {
-        label: recording.label.clone(),
-        time,
-        velocity: rows.velocity.clone().unwrap_or_default(),
-        score: Score::of(&measured, &predicted),
-        split: SplitScore::of(rows.velocity.as_deref(), &measured, &prediction),
-        filtered_score: Score::of(&slow_measured, &slow_predicted),
-        friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
-        predicted_friction: prediction.friction,
-        measured,
-        predicted,
-    })
 }

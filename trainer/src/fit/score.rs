@@ -1,8 +1,11 @@
 //! How well a prediction agrees: on all rows, after a low-pass, and on moving rows and rows at rest apart.
 
+use super::model::HostModel;
 use super::outcome::{RestScore, Score, SplitScore, Trace};
-use super::predict::Prediction;
+use super::predict::{Prediction, every_row, nothing_recorded, predict};
+use crate::error::{Error, Result};
 use crate::numerics::statistics::quantile;
+use crate::recording::Recording;
 use crate::samples::Samples;
 use crate::samples::filter::{GaussianFilter, Order};
 
@@ -18,9 +21,35 @@ const SLOW_SHARE: f64 = 0.1;
 /// Quantile of the speed that counts as the top speed.
 const TOP_QUANTILE: f64 = 0.999;
 
+/// What a model makes of a recording, and how well it agrees.
+///
+/// # Errors
+/// As [`predict`](super::predict::predict) and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
+pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
+    let in_file = |error: Error| error.in_file(recording.file());
+    let rows = every_row(model, recording).map_err(in_file)?;
+    let prediction = predict(model, &rows).map_err(in_file)?;
+    let measured = rows.recorded.clone().ok_or_else(|| in_file(nothing_recorded()))?;
+    let predicted = prediction.total();
+    let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
+    let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
+    Ok(Trace {
+        label: recording.label.clone(),
+        time,
+        velocity: rows.velocity.clone().unwrap_or_default(),
+        score: Score::of(&measured, &predicted),
+        split: SplitScore::of(rows.velocity.as_deref(), &measured, &prediction),
+        filtered_score: Score::of(&slow_measured, &slow_predicted),
+        friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
+        predicted_friction: prediction.friction,
+        measured,
+        predicted,
+    })
+}
+
 /// A column of a recording's rows after a zero-phase low-pass, at the rate of comparison and without the ends that the
 /// filter does not reach; as it is where the recording is not faster.
-pub(super) fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
+fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
     let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
     let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
     let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;

@@ -15,18 +15,18 @@ const CHOSEN_BY: usize = 5;
 
 /// Why nothing can be held out.
 #[derive(Clone, Debug)]
-pub(super) struct Repetition {
+pub(in crate::fit) struct Repetition {
     /// In a sentence without its full stop.
-    pub(super) sentence: String,
+    pub(in crate::fit) sentence: String,
     /// Share of the rows that shows something new.
-    pub(super) new_share: f64,
+    pub(in crate::fit) new_share: f64,
 }
 
 /// The turns in which `pieces` (ranges of positions in `rows`) are shared out, and why nothing is locked where nothing is.
 ///
 /// Recordings of different motions are locked as a whole: each in its turn, or a fifth of them where they are many. Of a single
 /// motion, blocks are locked; where it repeats itself, nothing is, since every block would have its twin among those learnt from.
-pub(super) fn take(
+pub(in crate::fit) fn take(
     samples: &Samples,
     rows: &[usize],
     pieces: &[Range<usize>],
@@ -104,7 +104,7 @@ fn by_motion(pieces: &[Range<usize>], motion_of: &[usize]) -> Split {
 }
 
 /// Positions in the rows that are not locked: training and validation.
-pub(super) fn open(split: &Split) -> Vec<usize> {
+pub(in crate::fit) fn open(split: &Split) -> Vec<usize> {
     let mut open: Vec<usize> = split.train.iter().chain(&split.validation).cloned().flatten().collect();
     open.sort_unstable();
     open

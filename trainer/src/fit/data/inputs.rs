@@ -11,18 +11,21 @@ use crate::samples::relevance::{Relevance, picked_inputs, relevance};
 
 /// An input with its values at the rows that are learnt from.
 #[derive(Clone, Debug)]
-pub(super) struct ChosenInput {
-    pub(super) name: String,
-    pub(super) role: ChannelRole,
-    pub(super) quantity: Quantity,
-    pub(super) unit: Unit,
-    pub(super) values: Vec<f64>,
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::fit) struct ChosenInput {
+    pub(in crate::fit) name: String,
+    pub(in crate::fit) role: ChannelRole,
+    pub(in crate::fit) quantity: Quantity,
+    pub(in crate::fit) unit: Unit,
+    pub(in crate::fit) values: Vec<f64>,
+    pub(in crate::fit) low: f64,
+    pub(in crate::fit) high: f64,
 }
 
 /// Picks inputs by relevance unless they are asked for.
-pub(super) fn choose(material: &Material, asked: Option<&[String]>) -> Result<(Vec<ChosenInput>, Vec<Relevance>)> {
+pub(in crate::fit) fn choose(
+    material: &Material,
+    asked: Option<&[String]>,
+) -> Result<(Vec<ChosenInput>, Vec<Relevance>)> {
     let mut table = relevance(&material.samples, &material.friction)?;
     let names = match asked {
         Some(names) => names.to_vec(),
@@ -103,7 +106,7 @@ fn channel_name<const N: usize>(name: &str) -> Result<heapless::String<N>> {
 }
 
 /// The unit of actuator and model output from its suffix in recordings.
-pub(super) fn output_unit(suffix: &str) -> Unit {
+pub(in crate::fit) fn output_unit(suffix: &str) -> Unit {
     match suffix {
         "N" => Unit::Newton,
         "A" => Unit::Ampere,
@@ -112,7 +115,7 @@ pub(super) fn output_unit(suffix: &str) -> Unit {
 }
 
 /// Symbol of an input in formulas.
-pub(super) fn symbol(input: &str) -> &str {
+pub(in crate::fit) fn symbol(input: &str) -> &str {
     match input {
         "velocity" => "v",
         "position" => "q",

@@ -4,12 +4,13 @@ use frikan_runtime::evaluate::evaluate;
 use frikan_shared::model::{Law, MAX_INPUTS};
 
 use super::formula::formula_of;
-use super::gather::Material;
-use super::inputs::{ChosenInput, output_unit};
 use super::learn::TrainedNetwork;
-use super::model::{HostModel, Parts, assemble};
-use super::{rigid, tables};
+use super::tables;
 use crate::compile::program::compile_program;
+use crate::fit::data::gather::Material;
+use crate::fit::data::inputs::{ChosenInput, output_unit};
+use crate::fit::data::rigid;
+use crate::fit::model::{HostModel, Parts, assemble};
 use crate::joint::Joint;
 use crate::law::{Expr, FormFit};
 
@@ -27,16 +28,16 @@ const COMPARED_SAMPLES: usize = 2000;
 /// The drive never puts out more than this multiple of the largest friction that was seen.
 const LIMIT_OVER_LARGEST: f64 = 1.5;
 /// Turns laws into models of one joint.
-pub(super) struct Builder<'a> {
-    pub(super) material: &'a Material,
-    pub(super) inputs: &'a [ChosenInput],
-    pub(super) joint: &'a Joint,
+pub(in crate::fit) struct Builder<'a> {
+    pub(in crate::fit) material: &'a Material,
+    pub(in crate::fit) inputs: &'a [ChosenInput],
+    pub(in crate::fit) joint: &'a Joint,
     /// Cells that a table may have.
-    pub(super) cells: usize,
+    pub(in crate::fit) cells: usize,
 }
 
 impl Builder<'_> {
-    pub(super) fn expression(&self, fit: &FormFit) -> Option<Box<HostModel>> {
+    pub(in crate::fit) fn expression(&self, fit: &FormFit) -> Option<Box<HostModel>> {
         let expression = &fit.law.expression;
         let used: Vec<usize> = (0..self.inputs.len()).filter(|&index| reads(expression, index)).collect();
         // A law that reads nothing still needs a channel to be a model.
@@ -51,7 +52,7 @@ impl Builder<'_> {
     }
 
     /// The tightest table that fits into the budget and the smallest drive, else the tightest of all.
-    pub(super) fn table(&self, learnt: &TrainedNetwork) -> Option<Box<HostModel>> {
+    pub(in crate::fit) fn table(&self, learnt: &TrainedNetwork) -> Option<Box<HostModel>> {
         let rmse = learnt.rmse;
         let bound = (TABLE_SHARE_OF_RESIDUAL * rmse).max(TABLE_SHARE_OF_RANGE * self.largest());
         let ranges: Vec<[f64; 2]> = self.inputs.iter().map(|input| [input.low, input.high]).collect();

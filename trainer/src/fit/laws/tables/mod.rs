@@ -15,11 +15,11 @@ use piecewise::{NetworkCurve, Piecewise};
 
 /// A law as tables.
 #[derive(Clone, Debug)]
-pub(super) struct Tables {
-    pub(super) law: Law,
-    pub(super) cells: Vec<Cell>,
+pub(in crate::fit) struct Tables {
+    pub(in crate::fit) law: Law,
+    pub(in crate::fit) cells: Vec<Cell>,
     /// Positions of the inputs that the law reads, in its order.
-    pub(super) inputs: Vec<usize>,
+    pub(in crate::fit) inputs: Vec<usize>,
 }
 
 /// How often the bound of a layer is doubled where no layout meets it: bounds for the worst case are strict.
@@ -27,7 +27,12 @@ const RELAXATIONS: i32 = 8;
 
 /// Compiles `network` to within `bound` (unit of the output; for several inputs in the worst case, which is far from the
 /// usual one). `ranges` are those of all its inputs. `None` when it does not fit a drive's tables.
-pub(super) fn compile(network: &Network, graph: &GraphSummary, ranges: &[[f64; 2]], bound: f64) -> Option<Tables> {
+pub(in crate::fit) fn compile(
+    network: &Network,
+    graph: &GraphSummary,
+    ranges: &[[f64; 2]],
+    bound: f64,
+) -> Option<Tables> {
     let live: Vec<usize> = (0..ranges.len()).filter(|&input| network.live_nodes()[0][input]).collect();
     match live[..] {
         [] => None,
@@ -118,7 +123,7 @@ fn several(network: &Network, graph: &GraphSummary, live: &[usize], bound: f64) 
 }
 
 /// What validation allows a network to put out, in the unit of the output.
-pub(super) fn output_bound(network: &TableNetwork) -> f64 {
+pub(in crate::fit) fn output_bound(network: &TableNetwork) -> f64 {
     f64::from(i32::MAX) * f64::from(network.output_step)
 }
 

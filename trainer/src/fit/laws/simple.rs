@@ -1,7 +1,7 @@
 //! The simple model, which is always fitted: rigid body, Coulomb and viscous friction, offset. Any other law has to beat it.
 
 use super::formula::thinned;
-use super::rigid;
+use crate::fit::data::rigid;
 
 use crate::law::{FormFit, LawData, Shape, SignForm, Structure, Term, fit_structure};
 use crate::numerics::statistics::quantile;
@@ -15,7 +15,7 @@ const TOP_QUANTILE: f64 = 0.999;
 
 /// Which terms the simple model has; fewer where more would have the wrong sign.
 #[derive(Clone, Debug)]
-pub(super) struct SimpleForm {
+pub(in crate::fit) struct SimpleForm {
     structure: Structure,
     with_inertia: bool,
     smoothing: Option<f64>,
@@ -23,9 +23,9 @@ pub(super) struct SimpleForm {
 
 /// The simple model fitted to some of the rows.
 #[derive(Clone, Debug)]
-pub(super) struct Simple {
-    pub(super) form: SimpleForm,
-    pub(super) fit: FormFit,
+pub(in crate::fit) struct Simple {
+    pub(in crate::fit) form: SimpleForm,
+    pub(in crate::fit) fit: FormFit,
 }
 
 impl SimpleForm {
@@ -51,7 +51,7 @@ impl SimpleForm {
     }
 
     /// Fits this form to `data`, whose first channel is the velocity; `None` where it cannot be fitted.
-    pub(super) fn fit(&self, data: &LawData) -> Option<Simple> {
+    pub(in crate::fit) fn fit(&self, data: &LawData) -> Option<Simple> {
         let mut own = thinned(data, MOST_SAMPLES);
         own.channels.truncate(1);
         let place = own.nuisance.iter().position(|column| rigid::is_inertia(&column.name));
@@ -69,7 +69,7 @@ impl SimpleForm {
 
 /// The best simple model of those in which no sign is wrong, and the best of all where a sign of that one is wrong. They differ by
 /// one or two constants, so that the error on the rows themselves decides.
-pub(super) fn simple(data: &LawData) -> (Option<Simple>, Option<Simple>) {
+pub(in crate::fit) fn simple(data: &LawData) -> (Option<Simple>, Option<Simple>) {
     let velocity = data.channels.first().map(|channel| channel.values.as_slice()).unwrap_or_default();
     let top_speed = quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE);
     let has_inertia = data.nuisance.iter().any(|column| rigid::is_inertia(&column.name));

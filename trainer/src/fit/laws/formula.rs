@@ -3,12 +3,13 @@
 
 use rayon::prelude::*;
 
-use super::gather::Material;
-use super::inputs::{ChosenInput, symbol};
-use super::outcome::{ClassicalLaw, FrontLaw, LawSummary};
-use super::{rigid, turns};
 use crate::compile::formula::{Formula, Function, Operator};
 use crate::error::{Error, Result, codes};
+use crate::fit::data::gather::Material;
+use crate::fit::data::inputs::{ChosenInput, symbol};
+use crate::fit::data::rigid;
+use crate::fit::data::turns;
+use crate::fit::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use crate::law::{
     self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nonlinear, Nuisance,
     SearchOptions, Start, Unary, discover, fit_form, refit, render,
@@ -26,16 +27,16 @@ const MOST_CLASSICAL_SAMPLES: usize = 4_000;
 const BIC_DIFFERENCE_THRESHOLD: f64 = 6.0;
 
 /// The formula with what led to it.
-pub(super) struct Found {
-    pub(super) discovery: Discovery,
+pub(in crate::fit) struct Found {
+    pub(in crate::fit) discovery: Discovery,
     /// Fitted to the open blocks only; what candidates are compared by.
-    pub(super) open: FormFit,
+    pub(in crate::fit) open: FormFit,
     /// Fitted to all samples.
-    pub(super) last: FormFit,
+    pub(in crate::fit) last: FormFit,
 }
 
 /// Samples as the law room takes them.
-pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
+pub(in crate::fit) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
     let axis = material.samples.axis;
     let actuator = material.samples.actuator_unit;
     let channel = |input: &ChosenInput| Channel {
@@ -60,7 +61,7 @@ pub(super) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
 
 /// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
 /// constants paid for, takes its place.
-pub(super) fn search(split: &Split, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+pub(in crate::fit) fn search(split: &Split, data: &LawData, starts: Vec<Start>) -> Result<Found> {
     let open_data = data.select(&turns::open(split));
     let options = SearchOptions { starts, ..SearchOptions::default() };
     let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
@@ -100,13 +101,13 @@ fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
 }
 
 /// Every `k`-th sample, so that at most `most` are left.
-pub(super) fn thinned(data: &LawData, most: usize) -> LawData {
+pub(in crate::fit) fn thinned(data: &LawData, most: usize) -> LawData {
     let stride = data.rows().div_ceil(most).max(1);
     data.select(&(0..data.rows()).step_by(stride).collect::<Vec<_>>())
 }
 
 /// The laws of the literature on the same samples, those that can be fitted.
-pub(super) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw> {
+pub(in crate::fit) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw> {
     let mut over_velocity = thinned(data, MOST_CLASSICAL_SAMPLES);
     over_velocity.channels.truncate(1);
     let fit = |form: &KnownForm| {
@@ -119,7 +120,7 @@ pub(super) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw
 }
 
 /// Constants of a law as results carry them.
-pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
+pub(in crate::fit) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
     let carried = parameters.iter().map(|p| Parameter {
         name: p.name.clone(),
         symbol: p.symbol.clone(),
@@ -131,7 +132,7 @@ pub(super) fn law_parameters(parameters: &[law::Parameter]) -> Vec<Parameter> {
 }
 
 /// What a report shows of the search, with the formula that is told at last.
-pub(super) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInput]) -> LawSummary {
+pub(in crate::fit) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInput]) -> LawSummary {
     let front = found.discovery.front.iter().map(|entry| FrontLaw {
         expression: text(&entry.expression, inputs),
         nodes: entry.nodes,

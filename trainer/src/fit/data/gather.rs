@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::options::Options;
 use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
+use crate::fit::options::Options;
 use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::samples::blocks::{Split, blocks, correlation_time};
@@ -22,38 +22,38 @@ const LEAST_BLOCKS: usize = 5;
 
 /// A column of the rigid body whose coefficient is identified along with friction.
 #[derive(Clone, Debug)]
-pub(super) struct RigidColumn {
-    pub(super) kind: TermKind,
-    pub(super) values: Vec<f64>,
+pub(in crate::fit) struct RigidColumn {
+    pub(in crate::fit) kind: TermKind,
+    pub(in crate::fit) values: Vec<f64>,
 }
 
 /// What a friction law is learnt from. All columns have one value for each row.
 #[derive(Clone, Debug)]
-pub(super) struct Material {
-    pub(super) samples: Samples,
+pub(in crate::fit) struct Material {
+    pub(in crate::fit) samples: Samples,
     /// Actuator less the rigid body given in `joint.toml`, or friction where it is recorded separated.
-    pub(super) target: Vec<f64>,
+    pub(in crate::fit) target: Vec<f64>,
     /// Friction after a preliminary separation; what inputs are judged by.
-    pub(super) friction: Vec<f64>,
-    pub(super) columns: Vec<RigidColumn>,
+    pub(in crate::fit) friction: Vec<f64>,
+    pub(in crate::fit) columns: Vec<RigidColumn>,
     /// `None` where friction is recorded separated.
-    pub(super) separation: Option<Separation>,
+    pub(in crate::fit) separation: Option<Separation>,
     /// Samples that are learnt from: those in motion, of a very long recording every `stride`-th.
-    pub(super) rows: Vec<usize>,
-    pub(super) stride: usize,
+    pub(in crate::fit) rows: Vec<usize>,
+    pub(in crate::fit) stride: usize,
     /// Blocks of those rows by role, as positions in `rows`: once, or several times with other blocks locked.
-    pub(super) turns: Vec<Split>,
+    pub(in crate::fit) turns: Vec<Split>,
     /// Block of each row.
-    pub(super) labels: Vec<usize>,
+    pub(in crate::fit) labels: Vec<usize>,
     /// Noise of the acceleration in the samples, rad/s2 or m/s2.
-    pub(super) acceleration_noise: f64,
+    pub(in crate::fit) acceleration_noise: f64,
     /// Why nothing can be locked; `None` where something is.
-    pub(super) repeats: Option<Repetition>,
+    pub(in crate::fit) repeats: Option<Repetition>,
 }
 
 /// # Errors
-/// As [`fit`](super::fit).
-pub(super) fn gather(recordings: &[Recording], joint: &Joint, options: &Options) -> Result<Material> {
+/// As [`fit`](crate::fit::fit).
+pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &Options) -> Result<Material> {
     let borrowed: Vec<&Recording> = recordings.iter().collect();
     for recording in recordings.iter().filter(|recording| recording.separated_friction().is_none()) {
         require_actuator(recording)?;
@@ -140,7 +140,7 @@ fn rows_of(pieces: &[Range<usize>], rows: &[usize]) -> Vec<Range<usize>> {
 
 impl Material {
     /// The values of a column at the rows that are learnt from.
-    pub(super) fn pick(&self, column: &[f64]) -> Vec<f64> {
+    pub(in crate::fit) fn pick(&self, column: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|&row| column[row]).collect()
     }
 }

@@ -1,9 +1,9 @@
 //! Which law goes into the image: the simplest, unless locked rows prefer another by more than their error.
 
-use super::gather::Material;
-use super::model::HostModel;
-use super::predict::predict;
 use crate::error::Result;
+use crate::fit::data::gather::Material;
+use crate::fit::model::HostModel;
+use crate::fit::predict::predict;
 use crate::numerics::statistics::{NORMAL_95, mean};
 use crate::samples::blocks::Split;
 use crate::samples::regression::least_squares;
@@ -18,7 +18,7 @@ const WANTED: f64 = 2.0;
 /// Squared errors of one candidate on the rows that it is judged by, with their blocks: on the torque as filtered, where a
 /// difference stands out of less noise, and as recorded, where nothing hides behind the filter.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Trial {
+pub(in crate::fit) struct Trial {
     filtered: Vec<f64>,
     recorded: Vec<f64>,
     labels: Vec<usize>,
@@ -26,7 +26,7 @@ pub(super) struct Trial {
 
 impl Trial {
     /// Adds a model that was fitted without the locked blocks of `split`; where none is locked, all rows count.
-    pub(super) fn add(&mut self, model: &HostModel, material: &Material, split: &Split) -> Result<()> {
+    pub(in crate::fit) fn add(&mut self, model: &HostModel, material: &Material, split: &Split) -> Result<()> {
         let predicted = predict(model, &material.samples)?.total();
         let samples = &material.samples;
         let recorded = samples.recorded.as_deref().unwrap_or_default();
@@ -43,12 +43,12 @@ impl Trial {
     }
 
     /// On the torque as recorded.
-    pub(super) fn mean_square(&self) -> f64 {
+    pub(in crate::fit) fn mean_square(&self) -> f64 {
         mean(&self.recorded)
     }
 
     /// On the torque as recorded.
-    pub(super) fn rmse(&self) -> f64 {
+    pub(in crate::fit) fn rmse(&self) -> f64 {
         self.mean_square().sqrt()
     }
 
@@ -88,15 +88,15 @@ impl Gain {
 }
 
 /// What is known of a candidate when it is judged.
-pub(super) struct Entry<'a> {
-    pub(super) trial: &'a Trial,
+pub(in crate::fit) struct Entry<'a> {
+    pub(in crate::fit) trial: &'a Trial,
     /// Constants that it was given freedom by.
-    pub(super) constants: usize,
-    pub(super) breaks_physics: bool,
+    pub(in crate::fit) constants: usize,
+    pub(in crate::fit) breaks_physics: bool,
 }
 
 /// How two candidates are compared.
-pub(super) enum Judge {
+pub(in crate::fit) enum Judge {
     /// On rows that neither saw.
     Locked,
     /// On the rows that they were fitted to, of which so many are independent: constants are paid for (Schwarz 1978).
@@ -105,7 +105,7 @@ pub(super) enum Judge {
 
 impl Judge {
     /// Whether `other` is better than `held` by more than the error of the comparison.
-    pub(super) fn prefers(&self, other: &Entry<'_>, held: &Entry<'_>) -> bool {
+    pub(in crate::fit) fn prefers(&self, other: &Entry<'_>, held: &Entry<'_>) -> bool {
         let factor = if other.breaks_physics && !held.breaks_physics { WANTED } else { 1.0 };
         match self {
             Self::Locked => {
@@ -122,7 +122,7 @@ impl Judge {
 
     /// The candidate that is left when each has to be preferred to the one before it: those that keep to physics first, in
     /// their order, then those that break it.
-    pub(super) fn choose(&self, entries: &[Option<Entry<'_>>]) -> Option<usize> {
+    pub(in crate::fit) fn choose(&self, entries: &[Option<Entry<'_>>]) -> Option<usize> {
         let mut order: Vec<usize> = (0..entries.len()).filter(|&index| entries[index].is_some()).collect();
         order.sort_by_key(|&index| entries[index].as_ref().is_some_and(|entry| entry.breaks_physics));
         order.into_iter().reduce(|held, index| match (&entries[index], &entries[held]) {
@@ -134,7 +134,7 @@ impl Judge {
 
 /// Rows that count as independent: those that show something new (a share of all), over the correlation length of what a linear
 /// fit leaves.
-pub(super) fn effective_rows(material: &Material, new_share: f64) -> f64 {
+pub(in crate::fit) fn effective_rows(material: &Material, new_share: f64) -> f64 {
     let mut columns: Vec<Vec<f64>> = material.columns.iter().map(|column| material.pick(&column.values)).collect();
     let velocity = material.pick(material.samples.velocity.as_deref().unwrap_or_default());
     columns.push(velocity.iter().map(|v| v.signum()).collect());

@@ -1,8 +1,8 @@
 //! What no joint can do: a negative inertia, and friction that drives.
 
-use super::gather::Material;
-use super::model::HostModel;
-use super::predict::predict;
+use crate::fit::data::gather::Material;
+use crate::fit::model::HostModel;
+use crate::fit::predict::predict;
 use crate::samples::rigid_body::TermKind;
 
 /// Friction along the motion counts from this share of the largest friction on.
@@ -14,7 +14,7 @@ const LEAST_ROWS: usize = 5;
 
 /// What a model claims that no joint can do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Violation {
+pub(in crate::fit) struct Violation {
     /// Its inertia, where that is negative.
     inertia: Option<f64>,
     /// Velocity at which friction drives most.
@@ -27,7 +27,7 @@ pub(super) struct Violation {
 
 impl Violation {
     /// Looks at a model along the samples that it was fitted to.
-    pub(super) fn of(model: &HostModel, material: &Material) -> Self {
+    pub(in crate::fit) fn of(model: &HostModel, material: &Material) -> Self {
         let identified = material.columns.iter().any(|column| column.kind == TermKind::Inertia);
         let inertia = Some(f64::from(model.rigid_body.inertia)).filter(|inertia| identified && *inertia < 0.0);
         let mut violation = Self { inertia, identified, ..Self::default() };
@@ -40,18 +40,18 @@ impl Violation {
         violation
     }
 
-    pub(super) fn is_any(self) -> bool {
+    pub(in crate::fit) fn is_any(self) -> bool {
         self.inertia.is_some() || self.drives_at.is_some() || self.feeds
     }
 
     /// Whether the model is that of a torque of the wrong sign: friction feeds the joint, and its inertia, where one was
     /// identified, is negative too.
-    pub(super) fn is_reversed(self) -> bool {
+    pub(in crate::fit) fn is_reversed(self) -> bool {
         self.feeds && (self.inertia.is_some() || !self.identified)
     }
 
     /// In a sentence, with the unit of the actuator.
-    pub(super) fn sentence(self) -> Option<String> {
+    pub(in crate::fit) fn sentence(self) -> Option<String> {
         let mut parts = Vec::new();
         parts.extend(self.inertia.map(|inertia| format!("the inertia is negative ({inertia:.3e})")));
         match self.drives_at {

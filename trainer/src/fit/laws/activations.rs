@@ -1,7 +1,7 @@
 //! What the activations of the pruned network look like: labels for its picture, starts for the search of the formula.
 
-use super::inputs::ChosenInput;
-use super::outcome::CURVE_POINTS;
+use crate::fit::data::inputs::ChosenInput;
+use crate::fit::outcome::CURVE_POINTS;
 use crate::kan::{GraphEdge, GraphSummary, Network, NodeKind};
 use crate::law::{Activation, Start, matches, proposals};
 
@@ -18,7 +18,7 @@ pub fn label_activations(graph: &mut GraphSummary, network: &Network) {
 }
 
 /// Where the search may start. Only networks with at most one hidden layer say something about terms.
-pub(super) fn starts(network: &Network, graph: &GraphSummary, inputs: &[ChosenInput]) -> Vec<Start> {
+pub(in crate::fit) fn starts(network: &Network, graph: &GraphSummary, inputs: &[ChosenInput]) -> Vec<Start> {
     if network.layers().len() > 2 {
         return Vec::new();
     }

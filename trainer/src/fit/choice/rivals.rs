@@ -4,35 +4,35 @@ use frikan_shared::image::Image;
 use frikan_shared::model::Law;
 
 use super::choose::{Entry, Judge, Trial, effective_rows};
-use super::gather::Material;
-use super::model::{HostModel, provenance, to_bytes};
-use super::options::Budget;
-use super::outcome::{Candidate, Form, Representation};
 use super::physical::Violation;
-use super::rigid;
-use super::turns::Repetition;
 use crate::compile::cost::instructions;
 use crate::error::{Error, Result, codes};
+use crate::fit::data::gather::Material;
+use crate::fit::data::rigid;
+use crate::fit::data::turns::Repetition;
+use crate::fit::model::{HostModel, provenance, to_bytes};
+use crate::fit::options::Budget;
+use crate::fit::outcome::{Candidate, Form, Representation};
 
 /// Which law was chosen, and why.
-pub(super) struct Verdict {
-    pub(super) form: Form,
-    pub(super) reason: String,
-    pub(super) candidates: Vec<Candidate>,
+pub(in crate::fit) struct Verdict {
+    pub(in crate::fit) form: Form,
+    pub(in crate::fit) reason: String,
+    pub(in crate::fit) candidates: Vec<Candidate>,
 }
 
 /// What a law was free to choose, and how it used that.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Freedom {
+pub(in crate::fit) struct Freedom {
     /// Constants beside the rigid body.
-    pub(super) constants: usize,
+    pub(in crate::fit) constants: usize,
     /// Whether friction is less at rest than in motion, which has to be wanted clearly.
-    pub(super) stribeck_is_negative: bool,
+    pub(in crate::fit) stribeck_is_negative: bool,
 }
 
 impl Budget {
     /// Whether a model keeps within it.
-    pub(super) fn allows(&self, model: &HostModel) -> bool {
+    pub(in crate::fit) fn allows(&self, model: &HostModel) -> bool {
         size(model).is_ok_and(|bytes| self.covers(bytes, instructions(model)))
     }
 
@@ -48,7 +48,7 @@ fn size(model: &HostModel) -> Result<usize> {
 
 /// Compares the laws on rows that they have not seen, or by what their constants cost where there are none, and takes the simplest
 /// that none of those asked for and within the budget beats. `models` are those of the first turn, `freedom` what each was free to choose, both in the order of [`Form::ALL`].
-pub(super) fn judge(
+pub(in crate::fit) fn judge(
     material: &Material,
     models: &[Option<Box<HostModel>>; 4],
     trials: &[Option<Trial>; 4],
@@ -121,7 +121,7 @@ fn beyond(candidates: &[Candidate], asked: Option<Representation>) -> Error {
 }
 
 /// Neither form has room.
-pub(super) fn no_image() -> Error {
+pub(in crate::fit) fn no_image() -> Error {
     Error::new(&codes::NOT_IDENTIFIABLE, "neither the network nor the expression fits into an image")
 }
 

@@ -1,18 +1,18 @@
 //! The network: trained, pruned, refitted on everything, and as the report shows it.
 
 use super::activations::label_activations;
-use super::gather::Material;
-use super::inputs::ChosenInput;
-use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{CURVE_POINTS, NetworkSummary};
 use crate::error::{Error, Result, codes};
+use crate::fit::data::gather::Material;
+use crate::fit::data::inputs::ChosenInput;
+use crate::fit::options::{Options, Progress, ProgressCallback, Stage};
+use crate::fit::outcome::{CURVE_POINTS, NetworkSummary};
 use crate::kan::{self, Blocks, Dataset, FitOptions, FitResult, GraphSummary, Network, PruneOptions, Pruned, prune};
 use crate::numerics::statistics::NORMAL_95;
 use crate::samples::blocks::Split;
 use crate::samples::rigid_body::TermKind;
 
 /// The columns that a network learns from, at the rows of the material.
-pub(super) struct TrainingData {
+pub(in crate::fit) struct TrainingData {
     inputs: Vec<Vec<f64>>,
     target: Vec<f64>,
     linear: Vec<Vec<f64>>,
@@ -22,20 +22,20 @@ pub(super) struct TrainingData {
 }
 
 /// A network with the rigid body that was identified along with it.
-pub(super) struct TrainedNetwork {
-    pub(super) network: Network,
-    pub(super) graph: GraphSummary,
+pub(in crate::fit) struct TrainedNetwork {
+    pub(in crate::fit) network: Network,
+    pub(in crate::fit) graph: GraphSummary,
     /// One coefficient for each column of the material.
-    pub(super) coefficients: Vec<f64>,
-    pub(super) settled: bool,
+    pub(in crate::fit) coefficients: Vec<f64>,
+    pub(in crate::fit) settled: bool,
     /// Root mean square of what it leaves of the samples that it was trained on, unit of the target.
-    pub(super) rmse: f64,
+    pub(in crate::fit) rmse: f64,
 }
 
 impl TrainingData {
     /// # Errors
     /// `FRK-U001` where the network that is asked for has another number of inputs.
-    pub(super) fn new(material: &Material, inputs: &[ChosenInput], options: &Options) -> Result<Self> {
+    pub(in crate::fit) fn new(material: &Material, inputs: &[ChosenInput], options: &Options) -> Result<Self> {
         let is_offset = |kind: TermKind| kind == TermKind::TorqueOffset;
         let parameters = material.separation.iter().flat_map(|separation| &separation.parameters);
         // A network has a constant of its own, so the offset cannot be identified beside it.
@@ -62,7 +62,7 @@ impl TrainingData {
     }
 
     /// Trains on the training blocks and prunes as the validation blocks allow.
-    pub(super) fn train(&self, split: &Split, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
+    pub(in crate::fit) fn train(&self, split: &Split, progress: ProgressCallback<'_>) -> Result<(FitResult, Pruned)> {
         let blocks = Blocks { train: split.train.clone(), validation: split.validation.clone() };
         let dataset = self.dataset(&blocks);
         let told = |stage| {
@@ -77,7 +77,7 @@ impl TrainingData {
     }
 
     /// Goes on training a pruned network, on all rows.
-    pub(super) fn refit(&self, result: &FitResult) -> Result<FitResult> {
+    pub(in crate::fit) fn refit(&self, result: &FitResult) -> Result<FitResult> {
         let blocks = Blocks::default();
         let dataset = self.dataset(&blocks);
         kan::refit(&result.network, &result.linear_coefficients, &dataset, &self.options, &|_| ())
@@ -85,7 +85,7 @@ impl TrainingData {
     }
 
     /// A network with its scores and its rigid body.
-    pub(super) fn learnt(&self, result: &FitResult) -> TrainedNetwork {
+    pub(in crate::fit) fn learnt(&self, result: &FitResult) -> TrainedNetwork {
         let blocks = Blocks::default();
         let mut coefficients = result.linear_coefficients.clone();
         coefficients.extend(self.offset);
@@ -99,7 +99,7 @@ impl TrainingData {
     }
 
     /// What a report shows of the training.
-    pub(super) fn summary(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkSummary {
+    pub(in crate::fit) fn summary(&self, fitted: &FitResult, pruned: &Pruned, last: &FitResult) -> NetworkSummary {
         let blocks = Blocks::default();
         let dataset = self.dataset(&blocks);
         let mut after = GraphSummary::of(&last.network, &dataset);
@@ -139,7 +139,7 @@ impl TrainingData {
 
     /// The 95 % band of a trained network along the velocity, `[velocity, low, high]`, residuals being correlated over
     /// `correlation_length` samples.
-    pub(super) fn band(&self, result: &FitResult, correlation_length: f64) -> Result<Vec<[f64; 3]>> {
+    pub(in crate::fit) fn band(&self, result: &FitResult, correlation_length: f64) -> Result<Vec<[f64; 3]>> {
         let blocks = Blocks::default();
         let points = self.along_velocity();
         let errors =

@@ -17,7 +17,7 @@ const COLLINEAR_SHARE: f64 = 1e-4;
 const MOST_ATTENUATION: f64 = 0.9;
 
 /// The rigid body for an image from one coefficient for each column of the material.
-pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
+pub(in crate::fit) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
     let Some(separation) = &material.separation else { return RigidBody::default() };
     let per_newton_metre = joint.actuator_per_torque(material.samples.actuator_unit).unwrap_or(1.0);
     let mut body = [0.0; 5];
@@ -42,7 +42,7 @@ pub(super) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64])
 }
 
 /// Coefficients with standard errors as named parameters, one for each column.
-pub(super) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Vec<Parameter> {
+pub(in crate::fit) fn parameters(material: &Material, coefficients: &[(f64, f64)]) -> Vec<Parameter> {
     let named = material.columns.iter().zip(coefficients);
     let attenuation = attenuation(material);
     named
@@ -67,7 +67,7 @@ fn interval(value: f64, standard_error: f64, attenuation: f64) -> [f64; 2] {
 
 /// Share of the inertia that the noise of the acceleration takes at most: its power over that of the acceleration which the other
 /// columns, velocity and its sign do not hold (errors in variables; Fuller 1987). Zero where no inertia is identified.
-pub(super) fn attenuation(material: &Material) -> f64 {
+pub(in crate::fit) fn attenuation(material: &Material) -> f64 {
     let Some(index) = material.columns.iter().position(|column| column.kind.is_inertia()) else { return 0.0 };
     let own = left_by_others(material, index);
     let power = own.iter().map(|x| x * x).sum::<f64>() / own.len().max(1) as f64;
@@ -88,7 +88,7 @@ fn left_by_others(material: &Material, index: usize) -> Vec<f64> {
 
 /// Whether this is the name of the coefficient that is the whole inertia, which no joint has negative; what is added to that
 /// of a recorded rigid-body torque may be.
-pub(super) fn is_inertia(name: &str) -> bool {
+pub(in crate::fit) fn is_inertia(name: &str) -> bool {
     name == TermKind::Inertia.name()
 }
 
@@ -106,7 +106,7 @@ fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
 }
 
 /// Unit of a coefficient as printed.
-pub(super) fn unit(kind: TermKind, axis: Axis, actuator: &str) -> String {
+pub(in crate::fit) fn unit(kind: TermKind, axis: Axis, actuator: &str) -> String {
     match (kind, axis, actuator) {
         (TermKind::TorqueScale, _, _) => "1".to_owned(),
         (TermKind::Inertia | TermKind::ExtraInertia, Axis::Rotary, "Nm") => "kg m²".to_owned(),
@@ -118,7 +118,7 @@ pub(super) fn unit(kind: TermKind, axis: Axis, actuator: &str) -> String {
 }
 
 /// The unit of an actuator as printed.
-pub(super) fn printed(suffix: &str) -> &'static str {
+pub(in crate::fit) fn printed(suffix: &str) -> &'static str {
     match suffix {
         "N" => "N",
         "A" => "A",
@@ -127,7 +127,7 @@ pub(super) fn printed(suffix: &str) -> &'static str {
 }
 
 /// Name of the first column that the others, velocity and its sign hold almost entirely.
-pub(super) fn collinear(material: &Material) -> Option<String> {
+pub(in crate::fit) fn collinear(material: &Material) -> Option<String> {
     let separation = material.separation.as_ref()?;
     let left_of = |index: usize| {
         let power: f64 = material.pick(&material.columns[index].values).iter().map(|x| x * x).sum();

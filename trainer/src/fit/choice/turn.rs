@@ -1,30 +1,30 @@
 //! One turn: everything that is learnt without the locked blocks of one split.
 
-use super::activations;
-use super::builder::Builder;
 use super::choose::Trial;
-use super::formula::{Found, search};
-use super::gather::Material;
-use super::learn::TrainingData;
-use super::model::HostModel;
-use super::options::{Progress, ProgressCallback, Stage};
-use super::outcome::Form;
-use super::simple::{Simple, simple};
-use super::turns;
 use crate::error::Result;
+use crate::fit::data::gather::Material;
+use crate::fit::data::turns;
+use crate::fit::laws::activations;
+use crate::fit::laws::builder::Builder;
+use crate::fit::laws::formula::{Found, search};
+use crate::fit::laws::learn::TrainingData;
+use crate::fit::laws::simple::{Simple, simple};
+use crate::fit::model::HostModel;
+use crate::fit::options::{Progress, ProgressCallback, Stage};
+use crate::fit::outcome::Form;
 use crate::kan::{FitResult, Pruned};
 use crate::law::LawData;
 use crate::samples::blocks::Split;
 
 /// What one turn brings.
-pub(super) struct Turn {
-    pub(super) fitted: FitResult,
-    pub(super) pruned: Pruned,
-    pub(super) found: Found,
+pub(in crate::fit) struct Turn {
+    pub(in crate::fit) fitted: FitResult,
+    pub(in crate::fit) pruned: Pruned,
+    pub(in crate::fit) found: Found,
     /// The simple model of right signs, and the one of wrong signs where that is the better.
-    pub(super) simple: [Option<Simple>; 2],
+    pub(in crate::fit) simple: [Option<Simple>; 2],
     /// A model of each form, in the order of [`Form::ALL`]; `None` where it does not fit into an image.
-    pub(super) models: [Option<Box<HostModel>>; 4],
+    pub(in crate::fit) models: [Option<Box<HostModel>>; 4],
 }
 
 impl Turn {
@@ -32,7 +32,7 @@ impl Turn {
     ///
     /// # Errors
     /// `FRK-N...` and `FRK-D...` when nothing can be learnt at all.
-    pub(super) fn take(
+    pub(in crate::fit) fn take(
         builder: &Builder<'_>,
         training: &TrainingData,
         data: &LawData,
@@ -59,7 +59,7 @@ impl Turn {
 }
 
 /// Errors of each form over all turns; `None` where one of the turns has no model of it.
-pub(super) fn trials(turns: &[Turn], splits: &[Split], material: &Material) -> Result<[Option<Trial>; 4]> {
+pub(in crate::fit) fn trials(turns: &[Turn], splits: &[Split], material: &Material) -> Result<[Option<Trial>; 4]> {
     let mut trials: [Option<Trial>; 4] = std::array::from_fn(|_| Some(Trial::default()));
     for (turn, split) in turns.iter().zip(splits) {
         for (trial, model) in trials.iter_mut().zip(&turn.models) {
