@@ -1,16 +1,18 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
 mod compare;
+mod sealed;
 mod summary;
 mod trajectory;
 
 use crate::commands::measurement::{self, Warning, load_all, units};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
-use crate::compile::improved::{Origin, improve};
+use crate::compile::improved::{Origin, compared_with, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
+use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::preparation::rows::Lock;
@@ -23,13 +25,14 @@ use crate::joint::Joint;
 use crate::physics::JointState;
 use crate::physics::names::capital;
 use crate::recording::{Quantity, Recording};
-use crate::report::tell::evidence::planned_motion;
+use crate::report::tell::evidence::{planned_motion, sealed_sentence};
 use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
 use compare::{Compared, comparison};
 use frikan_shared::image::Image;
 use frikan_shared::units::Unit;
+use sealed::sealed_score;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use summary::{Told, summary};
@@ -71,6 +74,10 @@ pub struct Diagnose {
     /// Write a report to read in a browser
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
+    /// Smallest effect worth acting on, as a share of the torque beside the rigid body (root mean square); what is smaller is listed,
+    /// and does not count [default: 0.02 for the friction level of a simulation or model, what the measurement can leave for all else]
+    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
+    pub least_effect: Option<f64>,
     /// Seed of the null draws: one seed, one result
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -106,6 +113,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         base: base_kind(arguments),
         lock: arguments.lock,
         settings: Settings { seed: arguments.seed, ..Settings::default() },
+        least_effect: arguments.least_effect,
     };
     reporter.say("weighing every effect against the noise");
     let mut diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
@@ -115,31 +123,40 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let story = tell(&diagnosis, units);
     reporter.say("writing");
     let mut outputs = Outputs::default();
+    let is_blocked = diagnosis.is_blocked();
+    let improved = if is_blocked {
+        None
+    } else {
+        let written = improved_image(arguments, (&recordings, &joint), &diagnosis, &comparison, &compared);
+        // Without a file to write, what cannot be written costs no more than its figures.
+        if arguments.output.is_some() { Some(written?) } else { written.ok() }
+    };
+    let sealed = improved.as_ref().and_then(|improved| improved.sealed.as_ref());
     let seconds = begin.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let summary = summary(
-            &Told { diagnosis: &diagnosis, story: &story, plan: advice.as_ref(), units },
+            &Told { diagnosis: &diagnosis, story: &story, plan: advice.as_ref(), sealed, units },
             seconds,
             arguments.seed,
         );
         outputs.add(path, summary.to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
+        outputs
+            .add(Path::new("-"), text_of(&story, advice.as_ref(), sealed.map(|score| sealed_sentence(score, units))));
     }
     let mut remarks = Vec::new();
-    if diagnosis.is_blocked() && arguments.output.is_some() {
+    if is_blocked && arguments.output.is_some() {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
-    if let Some(path) = arguments.output.as_ref().filter(|_| !diagnosis.is_blocked()) {
-        let (image, export) = improved_image(arguments, (&recordings, &joint), &diagnosis, &comparison, &compared)?;
-        outputs.add(path, image);
-        remarks = export;
+    if let (Some(path), Some(improved)) = (&arguments.output, &improved) {
+        outputs.add(path, improved.image.clone());
+        remarks.clone_from(&improved.remarks);
     }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {
             recording: &real.label,
-            compared_with: &compared_with(arguments),
+            compared_with: &name_of_compared(arguments),
             diagnosis: &diagnosis,
             story: &story,
             units,
@@ -200,14 +217,20 @@ fn advice(
     plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
 }
 
-/// The improved image, with what it holds in sentences.
+/// An improved image, what it holds in sentences, and how much better it is on rows that decided nothing.
+struct Written {
+    image: Vec<u8>,
+    remarks: Vec<String>,
+    sealed: Option<SealedScore>,
+}
+
 fn improved_image(
     arguments: &Diagnose,
     (recordings, joint): (&[Recording], &Joint),
     diagnosis: &Diagnosis,
     comparison: &Comparison,
     compared: &Compared,
-) -> Result<(Vec<u8>, Vec<String>)> {
+) -> Result<Written> {
     let origin = match compared {
         Compared::Itself(body) => Origin::Recording(**body),
         Compared::Simulation(law) => Origin::Simulation(law),
@@ -222,11 +245,15 @@ fn improved_image(
         .ok_or_else(|| Error::new(&codes::BAD_IMAGE, "the findings and the law together make no valid model"))?;
     let name = joint.name.as_deref().unwrap_or_default();
     let provenance = fit::model::provenance(name, recordings, arguments.seed);
-    let image = Image { provenance, model: *improved.model };
-    Ok((fit::model::to_bytes(&image)?, improved.remarks))
+    let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
+    // What is scored is what a drive would decode.
+    let after = fit::model::from_bytes(&image)?.model;
+    let sealed = compared_with(diagnosis, comparison, origin, unit)
+        .and_then(|before| sealed_score(diagnosis, recordings, joint, comparison.signals.period, [&before, &after]));
+    Ok(Written { image, remarks: improved.remarks, sealed })
 }
 
-fn compared_with(arguments: &Diagnose) -> String {
+fn name_of_compared(arguments: &Diagnose) -> String {
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match (&arguments.simulation, &arguments.model, arguments.base) {
         (Some(path), _, _) => format!("the simulation {}", name(path)),
@@ -263,13 +290,19 @@ fn exit_status(verdict: Verdict) -> u8 {
     }
 }
 
-fn text_of(story: &Story, advice: Option<&Plan>) -> String {
+fn text_of(story: &Story, advice: Option<&Plan>, sealed: Option<String>) -> String {
     let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
     let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
-    let rest = story.rest().map(|sentence| format!("{sentence}\n"));
+    let sealed = sealed.filter(|_| !story.findings.is_empty()).map(|sentence| format!("{sentence}\n"));
+    let rest = sealed.into_iter().chain(story.rest().map(|sentence| format!("{sentence}\n")));
     let advice = advice.map(|plan| format!("{}.\n", capital(&planned_motion(plan))));
     let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()
+}
+
+fn parse_share(text: &str) -> std::result::Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| (0.0..1.0).contains(share));
+    share.ok_or_else(|| "a share from 0 to below 1 is expected".to_string())
 }
 
 fn parse_lock(text: &str) -> std::result::Result<Lock, String> {

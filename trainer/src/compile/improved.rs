@@ -98,6 +98,24 @@ pub fn improve(diagnosis: &Diagnosis, comparison: &Comparison, origin: Origin<'_
     Some(Improved { model, remarks })
 }
 
+/// The model that a recording was compared with, as an image can hold it: a fitted model itself, the law of a simulation as it was
+/// given, or the static model of the recording. `None` where that is no valid model.
+pub fn compared_with(
+    diagnosis: &Diagnosis,
+    comparison: &Comparison,
+    origin: Origin<'_>,
+    unit: Unit,
+) -> Option<Box<HostModel>> {
+    let mut baseline = diagnosis.baseline_refit.clone();
+    match origin {
+        Origin::Model(model) => return Some(Box::new(model.clone())),
+        Origin::Simulation(_) => baseline.base.fill(0.0),
+        Origin::Recording(_) => {}
+    }
+    let unimproved = Diagnosis { improved_refit: baseline, ..diagnosis.clone() };
+    Some(improve(&unimproved, comparison, origin, unit)?.model)
+}
+
 fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -> Vec<String> {
     diagnosis
         .improved_refit

@@ -24,6 +24,7 @@ pub use advice::{Limits, Plan, Question, TOLD_APART_NATS, plan};
 pub use answer::location::Location;
 pub use answer::outcome::{DetectionLimit, Diagnosis, Estimate, Evidence, Finding, Given, Score, Verdict};
 pub use answer::region::{Region, Side};
+pub use answer::sealed::{Residuals, SealedScore};
 pub use answer::traces::{Traces, WorstLocked};
 pub use checks::note::{HealthNote, Observation};
 pub use comparison::columns::BaseKind;

@@ -84,7 +84,7 @@ pub(crate) fn joined(mut trials: Vec<Trial>, period_s: f64) -> Option<Diagnosis>
     let of_physics = |(finding, _): &(Finding, Vec<f64>)| finding.effect != EffectId::TimeMisalignment;
     let physics = diagnosis.findings.into_iter().zip(diagnosis.traces.effects).filter(of_physics);
     (diagnosis.findings, diagnosis.traces.effects) = physics.unzip();
-    diagnosis.put_first(misaligned);
+    diagnosis.put_first(misaligned, Vec::new());
     diagnosis.baseline = first.baseline;
     if let (Some(proof), Some(before)) = (&mut diagnosis.proof, &first.proof) {
         let larger = before.baseline_rmse / proof.baseline_rmse;
@@ -102,7 +102,9 @@ pub(crate) fn is_better(second: &Diagnosis, first: &Diagnosis) -> bool {
     misalignment(second).is_some() && says_more
 }
 
-/// The finding that the torque was recorded at another time than the motion, where it is the first.
+/// The finding that the torque was recorded at another time than the motion, where it is the first beside the friction level of the
+/// reference.
 fn misalignment(diagnosis: &Diagnosis) -> Option<&Finding> {
-    diagnosis.findings.first().filter(|f| f.effect == EffectId::TimeMisalignment && !f.fitted.coefficients.is_empty())
+    let first = diagnosis.findings.iter().find(|finding| finding.effect != EffectId::FrictionLevel);
+    first.filter(|f| f.effect == EffectId::TimeMisalignment && !f.fitted.coefficients.is_empty())
 }

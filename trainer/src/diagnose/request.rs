@@ -13,11 +13,19 @@ pub struct Options {
     pub lock: Lock,
     /// Limits of the search.
     pub settings: Settings,
+    /// Share (0..1) of the torque beside the rigid body, root mean square, below which a finding is listed but not acted on. `None`:
+    /// [`LEAST_EFFECT_SHARE`] for the friction level of a reference; for all else as much where the noise hides it, and less where
+    /// it does not.
+    pub least_effect: Option<f64>,
 }
+
+/// Share of the torque beside the rigid body, root mean square, below which an effect is not acted on unless the recording shows it far
+/// above its noise: a joint's own friction drifts by as much from one day to the next (Bittencourt and Gunnarsson 2012).
+pub const LEAST_EFFECT_SHARE: f64 = 0.02;
 
 impl Default for Options {
     fn default() -> Self {
-        Self { base: BaseKind::CoulombViscous, lock: Lock::Spread, settings: Settings::default() }
+        Self { base: BaseKind::CoulombViscous, lock: Lock::Spread, settings: Settings::default(), least_effect: None }
     }
 }
 

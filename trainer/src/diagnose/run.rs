@@ -4,6 +4,7 @@
 
 use crate::diagnose::answer::detection_limit::detection_limits;
 use crate::diagnose::answer::finding::{base_parameters, finding, measurement_finding};
+use crate::diagnose::answer::friction_level::FrictionLevel;
 use crate::diagnose::answer::goodness_of_fit::{score, score_as_given};
 use crate::diagnose::answer::outcome::{Diagnosis, Finding, Verdict};
 use crate::diagnose::answer::traces::Traces;
@@ -20,16 +21,17 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven};
-use crate::diagnose::proof::locked_rows::prove;
+use crate::diagnose::proof::locked_rows::{prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
 use crate::diagnose::proof::rollout::roll_out;
 use crate::diagnose::realign::{Realignment, Trial, is_better, joined, next_delay_s};
 use crate::diagnose::relock::{add_locked_event, locked_event, names_more};
-use crate::diagnose::request::{Options, Refusal};
+use crate::diagnose::request::{LEAST_EFFECT_SHARE, Options, Refusal};
+use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::forward_backward::SearchOutcome;
 use crate::diagnose::search::setup::Search;
 use crate::numerics::least_squares::rows_in;
-use crate::physics::catalogue;
+use crate::physics::{EffectId, catalogue};
 
 /// Least rows of evidence.
 const LEAST_ROWS: usize = 150;
@@ -51,7 +53,7 @@ pub fn diagnose(comparison: &Comparison, options: &Options) -> Result<Diagnosis,
     let limited = Comparison { signals: command.given(signals), reference: reference.clone() };
     let mut diagnosis = diagnose_in_step(&limited, &request)?;
     let note = command.note();
-    diagnosis.put_first(measurement_finding(&note));
+    diagnosis.put_first(measurement_finding(&note), Vec::new());
     diagnosis.health.insert(0, note);
     Ok(diagnosis)
 }
@@ -148,29 +150,29 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let withdrawn = withdraw_unproven(workbench, &settings, &mut accepted);
     let doubtful = set_aside_doubtful(workbench, &mut accepted);
     let minor = set_aside_minor(workbench, &mut accepted, &baseline);
-    let negligible = set_aside_negligible(workbench, &mut accepted);
+    let negligible = set_aside_negligible(workbench, &mut accepted, options.least_effect);
     if !(withdrawn.is_empty() && doubtful.is_empty() && minor.is_empty() && negligible.is_empty()) {
         polish(workbench, &mut accepted, &noise);
     }
     let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
-    let proof = prove(workbench, &baseline, &improved);
-    let findings: Vec<Finding> = accepted
-        .iter()
-        .enumerate()
-        .map(|(index, found)| finding(workbench, found, &accepted, index, &improved))
-        .collect();
-    let faults = health.iter().filter(|note| note.blocking).map(measurement_finding);
-    let findings = if blocked { faults.collect() } else { findings };
+    let findings: Vec<Finding> = if blocked {
+        health.iter().filter(|note| note.blocking).map(measurement_finding).collect()
+    } else {
+        let found = accepted.iter().enumerate();
+        found.map(|(index, effect)| finding(workbench, effect, &accepted, index, &improved)).collect()
+    };
     let verdict = Verdict::of(&findings, blocked);
     let mut traces = Traces::of(workbench, &baseline, &improved);
     // A fault of the measurement adds no torque.
     traces.effects.resize(findings.len(), vec![0.0; traces.time.len()]);
-    Ok(Diagnosis {
+    let proof = prove(workbench, &baseline, &improved);
+    let mut diagnosis = Diagnosis {
         verdict,
         health,
         limits: detection_limits(workbench, &last_round, &improved),
         base: options.base,
         lock: options.lock,
+        sealed_s: prepared.sealed_s(),
         given: (options.base == BaseKind::Reference).then(|| score_as_given(workbench, &baseline)),
         base_parameters: base_parameters(&base, &improved),
         noise_rmse: improved.noise.rms,
@@ -191,5 +193,31 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
         realigned_by_s: 0.0,
         baseline_refit: baseline,
         improved_refit: improved,
-    })
+    };
+    if options.base == BaseKind::Reference && !blocked {
+        judge_friction_level(&mut diagnosis, workbench, &accepted, options.least_effect);
+    }
+    Ok(diagnosis)
+}
+
+/// Adds a wrong friction level of the reference to the findings; the figures before are then those of the reference as given.
+fn judge_friction_level(
+    diagnosis: &mut Diagnosis,
+    workbench: &Workbench,
+    accepted: &[Accepted],
+    least_effect: Option<f64>,
+) {
+    let (baseline, improved) = (&diagnosis.baseline_refit, &diagnosis.improved_refit);
+    let least_effect = least_effect.unwrap_or(LEAST_EFFECT_SHARE);
+    match FrictionLevel::of(workbench, accepted, baseline, improved, least_effect) {
+        FrictionLevel::Unchanged => {}
+        FrictionLevel::Small(torque) => diagnosis.negligible.push((EffectId::FrictionLevel, torque)),
+        FrictionLevel::Wrong { finding, torque, as_given } => {
+            diagnosis.proof = prove(workbench, &as_given, improved);
+            diagnosis.baseline = score(workbench, &as_given);
+            diagnosis.traces.before = rest(workbench, &as_given);
+            diagnosis.baseline_refit = as_given;
+            diagnosis.put_by_size(*finding, torque);
+        }
+    }
 }

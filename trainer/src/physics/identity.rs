@@ -45,6 +45,8 @@ macro_rules! effects {
 }
 
 effects! {
+    /// Coulomb or viscous level of the reference is wrong or absent.
+    FrictionLevel "friction_level" "A0" Parameter;
     /// Friction falls from break-away to Coulomb level with speed.
     Stribeck "stribeck" "A1" FeedForward;
     /// Viscous friction grows with a power of speed other than one.

@@ -7,6 +7,7 @@ use crate::physics::EffectId;
 pub fn plain_name(effect: EffectId) -> &'static str {
     use EffectId::*;
     match effect {
+        FrictionLevel => "wrong level of Coulomb or viscous friction",
         Stribeck => "Stribeck friction",
         ViscousNonlinearity => "viscous friction that grows with a power of speed",
         DirectionAsymmetry => "friction that differs between the directions",

@@ -6,6 +6,7 @@ use crate::physics::EffectId;
 pub(crate) fn separation(effect: EffectId) -> &'static str {
     use EffectId::*;
     match effect {
+        FrictionLevel => "constant-velocity plateaus at four speeds or more in both directions, at working temperature",
         Stribeck => {
             "constant-velocity plateaus, at least six per decade from a tenth of the Stribeck velocity up, both directions, with slow ramps up and down"
         }

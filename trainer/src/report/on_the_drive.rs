@@ -22,6 +22,7 @@ pub(super) fn on_the_drive(effect: EffectId) -> &'static str {
         Stribeck | ViscousNonlinearity | DirectionAsymmetry => "A function of velocity alone: no state.",
         Temperature | LoadFriction | DriveBackdrive => "A product with one measured channel: no state.",
         Spring => "One product with position: no state.",
+        FrictionLevel => "Nothing to run: the Coulomb and viscous friction of the law are corrected.",
         GravityError | InertiaError | TorqueScale | TorqueOffset => {
             "Nothing to run: the rigid-body parameters of the model are corrected."
         }

@@ -11,7 +11,7 @@ use super::prepare::prepare;
 use super::regression::{least_squares, norm};
 use super::rigid_body;
 use super::{Preparation, Samples};
-use crate::error::Result;
+use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::numerics::statistics::quantile;
 use crate::recording::Recording;
@@ -125,8 +125,12 @@ pub(super) fn shortest_to_learn_at(trials: &[Trial]) -> Option<&Trial> {
 
 /// What rigid body and friction leave of the recorded actuator, identified on the even blocks for the odd ones and the other
 /// way round.
+///
+/// # Errors
+/// `FRK-D009` where neither actuator nor friction is recorded.
 pub(super) fn cross_fitted(samples: &Samples, joint: &Joint) -> Result<(Vec<f64>, f64)> {
-    let recorded = samples.recorded.as_deref().unwrap_or_default();
+    let not_recorded = || Error::new(&codes::MISSING_COLUMN, "neither actuator nor friction is recorded");
+    let recorded = samples.recorded.as_deref().ok_or_else(not_recorded)?;
     let (given, terms) = match samples.friction {
         Some(_) => (vec![0.0; samples.len()], Vec::new()),
         None => (rigid_body::given_torque(samples, joint)?, rigid_body::terms(samples, joint)),

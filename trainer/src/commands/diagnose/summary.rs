@@ -1,8 +1,10 @@
 //! A diagnosis as JSON, schema `frikan.diagnose/1`.
 
+use super::sealed::to_json;
 use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::search::round::Scored;
@@ -21,12 +23,13 @@ pub(super) struct Told<'a> {
     pub diagnosis: &'a Diagnosis,
     pub story: &'a Story,
     pub plan: Option<&'a Plan>,
+    pub sealed: Option<&'a SealedScore>,
     pub units: Units,
 }
 
 /// The whole summary.
 pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
-    let Told { diagnosis, story, plan, units } = *told;
+    let Told { diagnosis, story, plan, sealed, units } = *told;
     let held_out = diagnosis.proof.as_ref().map(|proof| {
         json!({
             "baseline_rmse": proof.baseline_rmse,
@@ -67,6 +70,7 @@ pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
             "cut_off_Hz": diagnosis.cut_off_hz,
             "n": diagnosis.rows,
         },
+        "sealed": sealed.map(to_json),
         "advice": plan.map(plan_json),
         "seconds": seconds,
         "seed": seed,

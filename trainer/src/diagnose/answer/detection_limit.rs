@@ -14,7 +14,7 @@ const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 pub(crate) fn detection_limits(workbench: &Workbench, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = workbench.bench(workbench.base.columns.clone(), &refit.noise);
     let uncertainty = workbench.law_uncertainty(&bench, &refit.noise);
-    let least = least_torque(workbench).max(FORMULA_ERROR_RATIO * workbench.base.formula_error);
+    let least = least_torque(workbench, None, refit.noise.rms).max(FORMULA_ERROR_RATIO * workbench.base.formula_error);
     table
         .iter()
         .filter_map(|scored| {

@@ -109,7 +109,7 @@ pub(crate) fn tell_first(diagnosis: &mut Diagnosis, note: HealthNote, is_finding
     let finding = (is_finding && !diagnosis.findings.iter().any(is_found)).then(|| measurement_finding(&note));
     diagnosis.health.insert(0, note);
     if let Some(finding) = finding {
-        diagnosis.put_first(finding);
+        diagnosis.put_first(finding, Vec::new());
     }
 }
 

@@ -141,6 +141,8 @@ pub struct Diagnosis {
     pub limits: Vec<DetectionLimit>,
     /// Which base the recording was compared with.
     pub base: BaseKind,
+    /// Stretches of the recording, from and to in s, that decided nothing: what is told of a written model is computed on them.
+    pub sealed_s: Vec<[f64; 2]>,
     /// Which rows the proof was kept away from.
     pub lock: Lock,
     /// The simulation or model as it was given, before any of its parameters moved; `None` where the base is the recording's own.
@@ -202,10 +204,22 @@ impl Verdict {
 }
 
 impl Diagnosis {
-    /// Puts a fault of the measurement, which adds no torque, before the other findings.
-    pub(crate) fn put_first(&mut self, fault: Finding) {
-        self.findings.insert(0, fault);
-        self.traces.effects.insert(0, vec![0.0; self.traces.len()]);
+    /// Puts a finding before the others where its torque is larger than that of each of them, else behind them.
+    pub(crate) fn put_by_size(&mut self, finding: Finding, torque: Vec<f64>) {
+        let size = |torque: &Vec<f64>| torque.iter().map(|value| value * value).sum::<f64>();
+        if self.traces.effects.iter().all(|other| size(other) < size(&torque)) {
+            self.put_first(finding, torque);
+        } else {
+            self.findings.push(finding);
+            self.traces.effects.push(torque);
+        }
+    }
+
+    /// Puts a finding before the others, with its torque at every working row: none (empty) of a fault of the measurement.
+    pub(crate) fn put_first(&mut self, finding: Finding, mut torque: Vec<f64>) {
+        torque.resize(self.traces.len(), 0.0);
+        self.findings.insert(0, finding);
+        self.traces.effects.insert(0, torque);
         self.verdict = Verdict::of(&self.findings, self.health.iter().any(|note| note.blocking));
     }
 }

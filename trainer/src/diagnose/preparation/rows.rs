@@ -11,6 +11,9 @@ const ROWS_PER_CUT_OFF: f64 = 2.5;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 
+/// Times the reach of the filter that a tenth of a block has to be long for it to be sealed: what the border costs is then small.
+const SEALED_OVER_REACH: usize = 3;
+
 /// Which rows are locked away from all fitting and naming.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lock {
@@ -33,61 +36,99 @@ pub struct Block {
     pub locked: bool,
 }
 
-/// Working rows, as sample indices, and their blocks. `left_out` marks samples that no row may see: where
-/// the joint sticks, or the law that it is compared with was not fitted.
-pub(crate) fn rows_and_blocks(
-    state: &JointState,
-    left_out: &[bool],
-    filter: &ZeroPhase,
-    lock: Lock,
-) -> (Vec<usize>, Vec<Block>) {
+/// What a part of the recording is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Use {
+    /// Fitting and search.
+    Open,
+    /// The decision whether a finding stands.
+    Locked,
+    /// Nothing but the figures that are told of the written model.
+    Sealed,
+}
+
+/// Working rows with their blocks, and the parts that no row is taken from.
+pub(crate) struct Division {
+    /// Sample index of each working row.
+    pub rows: Vec<usize>,
+    /// Their blocks.
+    pub blocks: Vec<Block>,
+    /// Sample ranges that decide nothing.
+    pub sealed: Vec<Range<usize>>,
+}
+
+/// Divides a recording. `left_out` marks samples that no row may see: where the joint sticks, or the law that it is compared with
+/// was not fitted.
+pub(crate) fn divide(state: &JointState, left_out: &[bool], filter: &ZeroPhase, lock: Lock) -> Division {
     let step = ((1.0 / (ROWS_PER_CUT_OFF * filter.cut_off_hz * state.period)).round() as usize).max(1);
     let reach = filter.reach();
     let pieces = pieces(state, reach, step);
     let duration = rows_in(&pieces);
-    let mut rows = Vec::new();
-    let mut blocks = Vec::new();
+    let mut division = Division { rows: Vec::new(), blocks: Vec::new(), sealed: Vec::new() };
     let mut before = 0;
     let mut last = None;
     for (index, piece) in pieces.into_iter().enumerate() {
         let mut open = Block { runs: Vec::new(), locked: false };
         let mut shut = Block { runs: Vec::new(), locked: true };
-        for (part, locked) in split_for_lock(&piece, index, before, duration, lock) {
-            // What the filter sees across a border between open and locked samples belongs to neither side.
-            let is_border = last.replace((part.end, locked)) == Some((part.start, !locked));
+        for (part, purpose) in
+            split_for_lock(&piece, reach, index, (before + piece.len() / 2) as f64 / duration as f64, lock)
+        {
+            // What the filter sees across a border between parts of different use belongs to neither side.
+            let is_border = last
+                .replace((part.end, purpose))
+                .is_some_and(|(end, use_before)| end == part.start && use_before != purpose);
             let inner = part.start + if is_border { reach } else { 0 }..part.end;
-            let runs = runs_of_motion(state, left_out, reach, inner.step_by(step), &mut rows);
-            if locked { &mut shut } else { &mut open }.runs.extend(runs);
+            match purpose {
+                Use::Sealed => division.sealed.push(inner),
+                Use::Open | Use::Locked => {
+                    let runs = runs_of_motion(state, left_out, reach, inner.step_by(step), &mut division.rows);
+                    if purpose == Use::Locked { &mut shut } else { &mut open }.runs.extend(runs);
+                }
+            }
         }
-        blocks.extend([open, shut].into_iter().filter(|block| !block.runs.is_empty()));
+        division.blocks.extend([open, shut].into_iter().filter(|block| !block.runs.is_empty()));
         before += piece.len();
     }
-    (rows, blocks)
+    division
 }
 
-/// Parts of a block's samples with whether each is locked.
+/// Parts of a block's samples with what each is for. `index` is the block's number, `middle` the place of its middle as a share of the
+/// recording.
 fn split_for_lock(
     piece: &Range<usize>,
+    reach: usize,
     index: usize,
-    before: usize,
-    duration: usize,
+    middle: f64,
     lock: Lock,
-) -> Vec<(Range<usize>, bool)> {
+) -> Vec<(Range<usize>, Use)> {
     match lock {
-        Lock::Nothing => vec![(piece.clone(), false)],
+        Lock::Nothing => vec![(piece.clone(), Use::Open)],
         Lock::Tail(share) => {
-            let border = ((1.0 - share) * duration as f64) as usize;
-            if before + piece.len() / 2 >= border { vec![(piece.clone(), true)] } else { vec![(piece.clone(), false)] }
+            let purpose = if middle >= 1.0 - share { Use::Locked } else { Use::Open };
+            vec![(piece.clone(), purpose)]
         }
         Lock::Spread | Lock::SpreadElsewhere => {
             // One fifth of every block, another one in each, so that every kind of motion is proved.
-            let at = |k: usize| piece.start + piece.len() * k / 5;
+            let at = |tenth: usize| piece.start + piece.len() * tenth / 10;
             let first = if lock == Lock::Spread { 1 } else { 3 };
-            let fifth = (2 * index + first) % 5;
-            [(piece.start..at(fifth), false), (at(fifth)..at(fifth + 1), true), (at(fifth + 1)..piece.end, false)]
-                .into_iter()
-                .filter(|(part, _)| !part.is_empty())
-                .collect()
+            let fifth = 2 * ((2 * index + first) % 5);
+            // The tenth that decides nothing is the same whichever fifth is locked, and never inside it. Each border costs the reach of
+            // the filter, so that only every other block has one.
+            let tenth = 2 * ((2 * index + 2) % 5);
+            let is_sealed = index % 2 == 1 && piece.len() / 10 >= SEALED_OVER_REACH * reach;
+            let purpose = |part: usize| match part {
+                _ if part == tenth && is_sealed => Use::Sealed,
+                _ if part == fifth || part == fifth + 1 => Use::Locked,
+                _ => Use::Open,
+            };
+            let mut parts: Vec<(Range<usize>, Use)> = Vec::new();
+            for part in 0..10 {
+                match parts.last_mut().filter(|(_, before)| *before == purpose(part)) {
+                    Some((range, _)) => range.end = at(part + 1),
+                    None => parts.push((at(part)..at(part + 1), purpose(part))),
+                }
+            }
+            parts
         }
     }
 }

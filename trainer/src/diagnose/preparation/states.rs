@@ -4,7 +4,7 @@
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
-use crate::diagnose::preparation::rows::{Block, Lock, hesitation, rows_and_blocks, standstill};
+use crate::diagnose::preparation::rows::{Block, Division, Lock, divide, hesitation, standstill};
 use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
 use crate::diagnose::preparation::two_encoders::shown_by_twist;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
@@ -30,6 +30,8 @@ pub struct Prepared {
     pub rows: Vec<usize>,
     /// Blocks of rows.
     pub blocks: Vec<Block>,
+    /// Sample ranges that no row is taken from: they decide nothing, and what is told of the written model is computed on them.
+    pub sealed: Vec<Range<usize>>,
     /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
     pub narrow_velocity: Vec<f64>,
     /// Acceleration behind a narrower filter.
@@ -129,7 +131,7 @@ impl Prepared {
         let mut left_out: Vec<bool> =
             standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
         left_out.iter_mut().zip(known.outside).for_each(|(left_out, outside)| *left_out |= outside);
-        let (rows, blocks) = rows_and_blocks(&state, &left_out, &filter, lock);
+        let Division { rows, blocks, sealed } = divide(&state, &left_out, &filter, lock);
         Self {
             sampling_jitter: sampling_jitter(signals, &state),
             state,
@@ -138,6 +140,7 @@ impl Prepared {
             quantisation_limited: false,
             rows,
             blocks,
+            sealed,
             narrow_velocity,
             narrow_acceleration,
             friction_torque,
@@ -192,6 +195,13 @@ impl Prepared {
     /// Runs of rows that take part in fitting and choosing.
     pub fn open_runs(&self) -> Vec<Range<usize>> {
         self.blocks.iter().filter(|block| !block.locked).flat_map(|block| block.runs.clone()).collect()
+    }
+
+    /// Sealed stretches of the recording, from and to in s.
+    pub(crate) fn sealed_s(&self) -> Vec<[f64; 2]> {
+        let time = |sample: usize| self.state.time[sample];
+        let stretches = self.sealed.iter().filter(|range| !range.is_empty());
+        stretches.map(|range| [time(range.start), time(range.end - 1)]).collect()
     }
 
     /// Runs of the locked blocks.

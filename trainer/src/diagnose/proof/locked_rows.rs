@@ -77,7 +77,7 @@ pub(crate) fn rest(workbench: &Workbench, refit: &Refit) -> Vec<f64> {
 }
 
 /// Interval of a ratio of summed energies by the delta method over blocks.
-fn ratio_interval(pairs: &[(f64, f64)], ratio: f64) -> [f64; 2] {
+pub(crate) fn ratio_interval(pairs: &[(f64, f64)], ratio: f64) -> [f64; 2] {
     let count = pairs.len() as f64;
     let Ok(student) = StudentsT::new(0.0, 1.0, count - 1.0) else { return [0.0, f64::INFINITY] };
     let student_95 = student.inverse_cdf(0.975);

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::fit::data::gather::Material;
 use crate::fit::model::HostModel;
 use crate::fit::predict::predict;
-use crate::numerics::statistics::{NORMAL_95, mean};
+use crate::numerics::statistics::mean;
 use crate::samples::blocks::Split;
 use crate::samples::regression::least_squares;
 
@@ -79,7 +79,7 @@ impl Gain {
         }
         let gain = blocks.iter().map(|(_, sum, _)| sum).sum::<f64>() / count;
         if blocks.len() < LEAST_BLOCKS {
-            return Self { mean: gain, error: CLEAR_SHARE * mean(own) / NORMAL_95 };
+            return Self { mean: gain, error: CLEAR_SHARE * mean(own) };
         }
         let scatter: f64 = blocks.iter().map(|(_, sum, rows)| (sum - gain * rows).powi(2)).sum();
         let inflation = blocks.len() as f64 / (blocks.len() - 1) as f64;
@@ -104,13 +104,14 @@ pub(in crate::fit) enum Judge {
 }
 
 impl Judge {
-    /// Whether `other` is better than `held` by more than the error of the comparison.
+    /// Whether `other` is better than `held` by more than the error of the comparison: one standard error (Breiman, Friedman, Olshen and
+    /// Stone 1984), since of two laws that are as good the choice costs nothing.
     pub(in crate::fit) fn prefers(&self, other: &Entry<'_>, held: &Entry<'_>) -> bool {
         let factor = if other.breaks_physics && !held.breaks_physics { WANTED } else { 1.0 };
         match self {
             Self::Locked => {
                 let [filtered, recorded] = held.trial.gains_of(other.trial);
-                filtered.mean > factor * NORMAL_95 * filtered.error && recorded.mean > -NORMAL_95 * recorded.error
+                filtered.mean > factor * filtered.error && recorded.mean > -recorded.error
             }
             Self::Penalty { effective } => {
                 let gain =

@@ -2,6 +2,8 @@
 
 use crate::diagnose::advice::{Plan, TOLD_APART_NATS};
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
+use crate::diagnose::answer::sealed::SealedScore;
+use crate::figures::{digits, pair};
 use crate::parameter::Parameter;
 use crate::physics::EffectId;
 use crate::physics::names::plain_name;
@@ -26,6 +28,22 @@ pub fn evidence(found: &Finding, units: Units) -> String {
             )
         }
     }
+}
+
+/// How much better the written model is on rows that decided nothing, in one sentence.
+#[must_use]
+pub fn sealed_sentence(score: &SealedScore, units: Units) -> String {
+    let interval = if score.ratio_ci95[1].is_finite() {
+        format!(", 95 % interval {} to {}", digits(score.ratio_ci95[0]), digits(score.ratio_ci95[1]))
+    } else {
+        String::new()
+    };
+    format!(
+        "The written model leaves {} of the torque as recorded, on {} sealed rows that decided nothing (ratio {}{interval}).",
+        pair(score.before_rmse, "->", score.after_rmse, units.actuator),
+        score.n,
+        digits(score.ratio),
+    )
 }
 
 /// A small probability; what a double cannot hold is bounded.

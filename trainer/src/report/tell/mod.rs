@@ -286,7 +286,7 @@ fn minor(diagnosis: &Diagnosis) -> Option<String> {
         format!("{} ({percent} % of the removable error)", plain_name(*effect))
     };
     let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
-    (!names.is_empty()).then(|| format!("Of little account beside it, and not modelled: {}.", names.join(", ")))
+    (!names.is_empty()).then(|| format!("Found beside it and small, and so not modelled: {}.", names.join(", ")))
 }
 
 fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {

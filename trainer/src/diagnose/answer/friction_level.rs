@@ -1,0 +1,161 @@
+//! Coulomb and viscous level of a simulation or a model against the recording: what the refit of the reference moved them by, beside
+//! the effects that were found, and whether that is worth acting on.
+
+use crate::diagnose::answer::location::Location;
+use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
+use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
+use crate::diagnose::proof::discarded::torque_beside_rigid_body;
+use crate::diagnose::proof::locked_rows::{prove, rest};
+use crate::diagnose::proof::refit::Refit;
+use crate::diagnose::search::accepted::Accepted;
+use crate::numerics::covariance;
+use crate::numerics::least_squares::{least_squares, residual, weighted};
+use crate::numerics::statistics::root_mean_square;
+use crate::physics::{Dimension, EffectId};
+use std::ops::Range;
+
+/// Share of the top speed above which a friction curve is taken for Coulomb and viscous: below, it turns over.
+const SLIDING_SHARE: f64 = 0.2;
+/// Probability of a level whose change removes error on locked rows: the change is linear in the reference and has no rival
+/// beside the effects that are left out here.
+const PROBABILITY: f64 = 0.98;
+
+/// Effects that scale Coulomb or viscous friction by a channel of their own: what of the level is theirs is a matter of the value of
+/// the channel that they count from.
+const SCALES_FRICTION: [EffectId; 7] = [
+    EffectId::Temperature,
+    EffectId::WarmUp,
+    EffectId::SlowDrift,
+    EffectId::LoadFriction,
+    EffectId::DriveBackdrive,
+    EffectId::PositionFriction,
+    EffectId::TorqueScale,
+];
+
+/// What became of the friction level of a reference.
+pub(crate) enum FrictionLevel {
+    /// The reference has the recording's level, or the recording cannot tell.
+    Unchanged,
+    /// It has to change, by a torque (root mean square) too small to act on.
+    Small(f64),
+    /// It has to change: the finding, its torque at every working row, and the refit of the base with the level as given.
+    Wrong { finding: Box<Finding>, torque: Vec<f64>, as_given: Refit },
+}
+
+impl FrictionLevel {
+    /// Judges the reference of a comparison. `least_effect` is the share of the torque beside the rigid body (root mean square) below which
+    /// a change is not worth acting on.
+    pub(crate) fn of(
+        workbench: &Workbench,
+        accepted: &[Accepted],
+        baseline: &Refit,
+        improved: &Refit,
+        least_effect: f64,
+    ) -> Self {
+        let is_scaled = |found: &Accepted| SCALES_FRICTION.contains(&found.effect());
+        if accepted.iter().any(is_scaled) {
+            return Self::Unchanged;
+        }
+        let given = |refit: &Refit| with_level_as_given(workbench, refit);
+        let Some(change) = Change::of(workbench, &given(improved)) else { return Self::Unchanged };
+        let size = root_mean_square(&change.torque);
+        let Some(proof) = prove(workbench, &given(improved), improved) else { return Self::Unchanged };
+        if proof.ratio_ci95[1] >= 1.0 {
+            return Self::Unchanged;
+        }
+        if size < least_effect * torque_beside_rigid_body(workbench) {
+            return Self::Small(size);
+        }
+        let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: 0.0, rivals: 0 };
+        let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
+        Self::Wrong { finding, torque: change.torque, as_given: given(baseline) }
+    }
+}
+
+/// A refit with the parameters of the reference back at their given values.
+fn with_level_as_given(workbench: &Workbench, refit: &Refit) -> Refit {
+    let mut given = refit.clone();
+    given.base[..workbench.base.names.len()].fill(0.0);
+    given
+}
+
+/// Coulomb and viscous friction that a reference lacks.
+struct Change {
+    coefficients: Vec<f64>,
+    deviation: Vec<f64>,
+    torque: Vec<f64>,
+}
+
+impl Change {
+    /// From what a refit with the level as given leaves on the open rows. `None` where the rows do not tell the two apart.
+    fn of(workbench: &Workbench, given: &Refit) -> Option<Self> {
+        let prepared = workbench.prepared;
+        let columns = prepared.filtered_all(&[prepared.state.sign.clone(), prepared.state.velocity.clone()]);
+        let left = rest(workbench, given);
+        let coefficients = least_squares(&columns, &left, &prepared.open_runs())?;
+        let open: Vec<Vec<Range<usize>>> =
+            prepared.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect();
+        let scatter = covariance::of_blocks(&columns, &residual(&columns, &left, &coefficients), &open)?;
+        let deviation = (0..columns.len()).map(|i| scatter[(i, i)].max(0.0).sqrt()).collect();
+        Some(Self { torque: weighted(&columns, &coefficients), coefficients, deviation })
+    }
+
+    fn finding(&self, workbench: &Workbench, evidence: Evidence, score: f64) -> Finding {
+        let effect = EffectId::FrictionLevel;
+        let given = sliding_friction(workbench);
+        let names = [
+            ("coulomb_torque", "F_c", "coulomb_torque_change", "dF_c", Dimension::Torque),
+            ("viscous_coefficient", "F_v", "viscous_coefficient_change", "dF_v", Dimension::TorquePerVelocity),
+        ];
+        let (corrected, changes): (Vec<Estimate>, Vec<Estimate>) = names
+            .into_iter()
+            .enumerate()
+            .map(|(i, (name, symbol, change, change_symbol, dimension))| {
+                let (value, deviation) = (self.coefficients[i], self.deviation[i]);
+                (
+                    Estimate::of(name, symbol, dimension, given[i] + value, deviation),
+                    Estimate::of(change, change_symbol, dimension, value, deviation),
+                )
+            })
+            .unzip();
+        Finding {
+            effect,
+            probability: PROBABILITY,
+            alternatives: Vec::new(),
+            action: effect.action(),
+            equation: "tau = F_c sign(v) + F_v v, in place of the reference's".to_string(),
+            // The changes are the coefficients of the fitted term, and so come first.
+            parameters: changes.into_iter().chain(corrected).collect(),
+            location: Location::default(),
+            evidence,
+            fitted: Fitted {
+                label: Label::Named(effect),
+                shape: Vec::new(),
+                shape_deviation: Vec::new(),
+                coefficients: self.coefficients.clone(),
+                deviation: self.deviation.clone(),
+            },
+            score,
+            margin: f64::INFINITY,
+            standings: Vec::new(),
+            channels: Vec::new(),
+            nearest: None,
+            locked_gain_nats: Some(score),
+        }
+    }
+}
+
+/// Coulomb and viscous friction of the reference where it slides: a straight line through its friction over speed.
+fn sliding_friction(workbench: &Workbench) -> [f64; 2] {
+    let state = &workbench.prepared.state;
+    let top = state.top_speed();
+    let sliding = |velocity: f64| (SLIDING_SHARE * top..=top).contains(&velocity.abs());
+    let curve: Vec<(f64, f64)> =
+        state.base_friction.iter().copied().filter(|(velocity, _)| sliding(*velocity)).collect();
+    let columns = [curve.iter().map(|(v, _)| v.signum()).collect(), curve.iter().map(|(v, _)| *v).collect()];
+    let target: Vec<f64> = curve.iter().map(|(_, torque)| *torque).collect();
+    let line = least_squares(&columns, &target, std::slice::from_ref(&(0..curve.len())));
+    line.map_or([0.0; 2], |line| [line[0], line[1]])
+}
