@@ -25,7 +25,7 @@ use crate::joint::Joint;
 use crate::physics::JointState;
 use crate::physics::names::capital;
 use crate::recording::{Quantity, Recording};
-use crate::report::tell::evidence::{planned_motion, sealed_sentence};
+use crate::report::tell::evidence::planned_motion;
 use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
@@ -120,7 +120,6 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     tell_measurement(&mut diagnosis, &warnings);
     reporter.say("choosing what to record next");
     let advice = advice(&comparison, &diagnosis, &joint, (&compared, real));
-    let story = tell(&diagnosis, units);
     reporter.say("writing");
     let mut outputs = Outputs::default();
     let is_blocked = diagnosis.is_blocked();
@@ -132,6 +131,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         if arguments.output.is_some() { Some(written?) } else { written.ok() }
     };
     let sealed = improved.as_ref().and_then(|improved| improved.sealed.as_ref());
+    let story = tell(&diagnosis, sealed, units);
     let seconds = begin.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let summary = summary(
@@ -142,8 +142,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         outputs.add(path, summary.to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        outputs
-            .add(Path::new("-"), text_of(&story, advice.as_ref(), sealed.map(|score| sealed_sentence(score, units))));
+        outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
     }
     let mut remarks = Vec::new();
     if is_blocked && arguments.output.is_some() {
@@ -290,11 +289,10 @@ fn exit_status(verdict: Verdict) -> u8 {
     }
 }
 
-fn text_of(story: &Story, advice: Option<&Plan>, sealed: Option<String>) -> String {
+fn text_of(story: &Story, advice: Option<&Plan>) -> String {
     let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
     let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
-    let sealed = sealed.filter(|_| !story.findings.is_empty()).map(|sentence| format!("{sentence}\n"));
-    let rest = sealed.into_iter().chain(story.rest().map(|sentence| format!("{sentence}\n")));
+    let rest = story.rest().map(|sentence| format!("{sentence}\n"));
     let advice = advice.map(|plan| format!("{}.\n", capital(&planned_motion(plan))));
     let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
     std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()

@@ -190,7 +190,9 @@ fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64)
         outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, crate::report::fit(outcome));
+        let told: Vec<String> =
+            warnings.iter().map(|warning| format!("{} {}.", warning.code(), warning.message)).collect();
+        outputs.add(path, crate::report::fit(outcome, &told));
     }
     let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);
     outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;

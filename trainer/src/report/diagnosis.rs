@@ -197,7 +197,7 @@ fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
     } else {
         "Orange: accepted, with the score at that time. Grey: what was still left over and not accepted, after the findings were taken into the model."
     };
-    page.figure(&bars(&rows, "nats"), caption);
+    page.figure(&bars(&rows, "nats (natural logarithm of a likelihood ratio)"), caption);
 }
 
 fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {

@@ -11,12 +11,12 @@ use crate::recording::Axis;
 /// Pictures of activations at most.
 const MOST_ACTIVATIONS: usize = 12;
 
-/// The page as one HTML file.
+/// The page as one HTML file; `warnings` are those of the checks before the fit, in sentences.
 #[must_use]
-pub fn fit(outcome: &Outcome) -> String {
+pub fn fit(outcome: &Outcome, warnings: &[String]) -> String {
     let name = if outcome.joint.is_empty() { "a joint" } else { &outcome.joint };
     let mut page = Page::new(&format!("Friction of {name}"), &format!("{}. Seed {}.", outcome.filter, outcome.seed));
-    summary(&mut page, outcome);
+    summary(&mut page, outcome, warnings);
     page.equation(&outcome.law.expression);
     page.paragraph(&outcome.choice);
     page.table(&PARAMETER_HEADER, &parameter_rows(&outcome.parameters));
@@ -30,14 +30,14 @@ pub fn fit(outcome: &Outcome) -> String {
     page.finish()
 }
 
-fn summary(page: &mut Page, outcome: &Outcome) {
+fn summary(page: &mut Page, outcome: &Outcome, warnings: &[String]) {
     page.lead(&format!(
         "The exported {} predicts the training recordings to {} ({} of the variance explained).",
         outcome.representation.name(),
         quantity(outcome.train_score.rmse, outcome.unit),
         digits(outcome.train_score.r2),
     ));
-    let mut notes = outcome.remarks.clone();
+    let mut notes: Vec<String> = warnings.iter().chain(&outcome.remarks).cloned().collect();
     match &outcome.sound {
         Soundness::Sound => {}
         Soundness::NotIdentifiable(what) | Soundness::NotConverged(what) | Soundness::NotPhysical { what, .. } => {

@@ -8,7 +8,7 @@ pub(super) fn on_the_drive(effect: EffectId) -> &'static str {
     match effect {
         Unknown => "Not run on the drive: nothing is known of it beyond the recorded range.",
         Presliding => {
-            "A bristle, stepped by the exact exponential over the distance of a sample: one exponential, one state, no stability limit on the sample time."
+            "One to four bristles (Maxwell elements), stepped by the exact exponential over the distance of a sample: one exponential and one state each, no stability limit on the sample time."
         }
         FrictionalLag => "One first-order lag on the velocity that the law sees: one state.",
         DwellBreakaway => "A clock of the stop and the distance since: two exponentials, three states.",

@@ -68,6 +68,11 @@ fn added(name: &str, joint: &Joint, path: &Trajectory, random: &mut Random) -> A
             let coefficient = 2.0 * size / (top * top);
             (path.map(|_, _, v, _| coefficient * v * v.abs()), format!("{coefficient:.3} v^2"))
         }
+        "friction_level" => {
+            let viscous = 0.3 * size / top;
+            let torque = path.map(|_, _, v, _| size * sign(v) + viscous * v);
+            (torque, format!("{size:.3} of Coulomb and {viscous:.3} v of viscous friction more"))
+        }
         "direction_asymmetry" => {
             let (coulomb, viscous) = (0.4 * size, 0.2 * share * joint.viscous);
             let torque = path.map(|_, _, v, _| coulomb * sign(v).abs() + viscous * v.abs());

@@ -59,7 +59,9 @@ pub(super) fn cases() -> Vec<Case> {
         let make = move |random: &mut _| beside_a_model(&PROTOCOLS[protocol], missing, random);
         Case::new(format!("model-{}", index + 1), Part::Models, missing.into_iter().collect(), make)
     });
-    simulated.chain(modelled).collect()
+    let of_level = |random: &mut _| beside_a_simulation(0, Some("friction_level"), random);
+    let level = Case::new("simulation-21".to_owned(), Part::Simulations, vec!["friction_level"], of_level);
+    simulated.chain(modelled).chain([level]).collect()
 }
 
 /// How far the simulated motion is from the recorded one.

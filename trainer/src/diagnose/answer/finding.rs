@@ -138,7 +138,7 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces) -> Findin
     let effect = EffectId::Unknown;
     Finding {
         equation: "dF = c(time)".to_string(),
-        location: Location { regions: vec![region], when_s: vec![worst.when_s] },
+        location: Location { regions: vec![region], is_named: true, when_s: vec![worst.when_s] },
         ..unfitted(effect, LOCKED_EVENT_PROBABILITY, effect.action(), unexplained_event(worst))
     }
 }

@@ -11,8 +11,10 @@ use std::ops::Range;
 /// Regions and times of one finding.
 #[derive(Clone, Debug, Default)]
 pub struct Location {
-    /// Regions: first that which a sentence names, then the sharpest.
+    /// Regions: first that which a sentence names, where one does, then the sharpest.
     pub regions: Vec<Region>,
+    /// Whether the first region says where the effect sits.
+    pub is_named: bool,
     /// Stretches of time in s that hold the most evidence.
     pub when_s: Vec<[f64; 2]>,
 }
@@ -37,24 +39,51 @@ pub(crate) fn locate(workbench: &Workbench, refit: &Refit, index: usize) -> Loca
     location
 }
 
+/// Channels along which an effect is a function: where it sits is said of these alone. `None` of a structure without a name, which may
+/// be one of any channel; empty of what acts in every row alike.
+fn own_channels(effect: EffectId) -> Option<&'static [&'static str]> {
+    use EffectId::*;
+    let channels: &[&str] = match effect {
+        Unknown => return None,
+        FrictionLevel | Stribeck | ViscousNonlinearity | DirectionAsymmetry => &["velocity"],
+        FrictionalLag => &["velocity", "acceleration"],
+        Temperature => &["temperature"],
+        WarmUp | SlowDrift | TransientEvent => &["time"],
+        LoadFriction | DriveBackdrive | TorqueScale => &["load"],
+        Presliding | Backlash | WindupHysteresis => &["distance_since_reversal", "time_since_reversal"],
+        DwellBreakaway => &["dwell", "distance_since_reversal", "time_since_reversal"],
+        PositionRipple | KinematicError | PositionFriction | GravityError | Spring | Contact | RecurrentFault => {
+            &["position"]
+        }
+        InertiaError => &["acceleration"],
+        Elasticity => &["acceleration", "load", "time_since_reversal"],
+        Coupling => &["other_velocity", "other_position"],
+        TorqueOffset | Saturation | TimeMisalignment | Quantisation | UnitOrSign => &[],
+    };
+    Some(channels)
+}
+
 impl Location {
-    /// Puts first the sharpest region that says something of the effect: of an event that in time, of what lasts that of a channel.
+    /// Puts first the sharpest region along a channel of the effect's own; where none says more than the rest, nothing is said.
     fn name_first(&mut self, effect: EffectId) {
-        let says_something = |region: &Region| match effect {
-            EffectId::TransientEvent => region.side.channel == "time",
-            EffectId::SlowDrift | EffectId::WarmUp | EffectId::Unknown => true,
-            _ => region.side.channel != "time",
-        };
-        let first = self.regions.iter().position(|region| region.is_telling() && says_something(region));
+        let is_own = |region: &Region| own_channels(effect).is_none_or(|own| own.contains(&region.side.channel));
+        let first = self.regions.iter().position(|region| region.is_telling() && is_own(region));
+        self.is_named = first.is_some();
         if let Some(first) = first {
             self.regions[..=first].rotate_right(1);
         }
+    }
+
+    /// The region that a sentence names; `None` of what acts over the whole motion.
+    #[must_use]
+    pub fn named(&self) -> Option<&Region> {
+        self.regions.first().filter(|_| self.is_named)
     }
 }
 
 /// Locates a density of evidence along time and along every axis.
 pub(crate) fn locate_density(axes: &[Axis], time: &[f64], density: &[f64]) -> Location {
-    Location { regions: regions(axes, density), when_s: when(time, density) }
+    Location { regions: regions(axes, density), is_named: false, when_s: when(time, density) }
 }
 
 /// Up to five stretches of time in which the evidence is densest.
@@ -87,19 +116,21 @@ mod tests {
     use crate::diagnose::answer::region::Side;
 
     #[test]
-    fn what_lasts_is_placed_on_a_channel_and_an_event_in_time() {
+    fn an_effect_is_placed_along_its_own_channel_or_nowhere() {
         let region = |channel, share_of_excess| {
             let side = Side { channel, from: 0.0, to: 1.0 };
             Region { side, and: None, share_of_excess, share_of_samples: 0.1 }
         };
-        let first = |effect: EffectId, of_velocity: f64| {
+        let named = |effect: EffectId, of_velocity: f64| {
             let regions = vec![region("time", 0.8), region("velocity", of_velocity), region("load", 0.6)];
-            let mut location = Location { regions, when_s: Vec::new() };
+            let mut location = Location { regions, ..Location::default() };
             location.name_first(effect);
-            location.regions[0].side.channel
+            location.named().map(|region| region.side.channel)
         };
-        assert_eq!(first(EffectId::SlowDrift, 0.7), "time");
-        assert_eq!(first(EffectId::Presliding, 0.7), "velocity");
-        assert_eq!(first(EffectId::Presliding, 0.2), "load", "a region that tells nothing is passed over");
+        assert_eq!(named(EffectId::SlowDrift, 0.7), Some("time"));
+        assert_eq!(named(EffectId::Stribeck, 0.7), Some("velocity"));
+        assert_eq!(named(EffectId::Stribeck, 0.2), None, "a region that tells nothing is passed over");
+        assert_eq!(named(EffectId::PositionRipple, 0.7), None);
+        assert_eq!(named(EffectId::Unknown, 0.7), Some("time"));
     }
 }

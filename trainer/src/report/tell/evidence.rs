@@ -20,7 +20,7 @@ pub fn evidence(found: &Finding, units: Units) -> String {
             let of_locked =
                 found.locked_gain_nats.map(|gain| format!("; locked rows {gain:+.1} more")).unwrap_or_default();
             format!(
-                "{:.1} nats in favour (held-out folds {held_out_gain_nats:+.1}{of_locked}), family-wise p {}, {rivals} rival{} \
+                "log-likelihood ratio {:.1} nats in favour (held-out folds {held_out_gain_nats:+.1}{of_locked}), family-wise p {}, {rivals} rival{} \
                  within reach",
                 found.score,
                 probability(*family_wise),

@@ -9,13 +9,14 @@ mod tests;
 
 use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Finding, Verdict};
 use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::answer::sealed::SealedScore;
 use crate::figures::{digits, pair, quantity};
 use crate::parameter::Parameter;
 use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
 use crate::report::tell::certainty::certainty;
-use evidence::{parameter, parameters};
+use evidence::{parameter, parameters, sealed_sentence};
 use measurement::observation;
 
 /// Quantile of the effect's torque that "up to" stands for.
@@ -37,6 +38,8 @@ pub struct Story {
     pub health: Vec<String>,
     /// One sentence a finding.
     pub findings: Vec<String>,
+    /// Error of the written model on rows that decided nothing, where there is one.
+    pub sealed: Option<String>,
     /// Error before and after on locked data.
     pub proof: Option<String>,
     /// What was found beside the findings and accounts for little.
@@ -54,16 +57,17 @@ pub struct Story {
 impl Story {
     /// What follows the findings.
     pub fn rest(&self) -> impl Iterator<Item = &String> {
-        [&self.proof, &self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.limits]
+        [&self.sealed, &self.proof, &self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.limits]
             .into_iter()
             .flatten()
     }
 }
 
-/// Tells a diagnosis.
+/// Tells a diagnosis, with the error of the written model on rows that decided nothing where there is one.
 #[must_use]
-pub fn tell(diagnosis: &Diagnosis, units: Units) -> Story {
+pub fn tell(diagnosis: &Diagnosis, sealed: Option<&SealedScore>, units: Units) -> Story {
     Story {
+        sealed: sealed.filter(|_| !diagnosis.findings.is_empty()).map(|score| sealed_sentence(score, units)),
         headline: headline(diagnosis, units),
         given: given(diagnosis, units),
         health: diagnosis
@@ -155,7 +159,7 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
         let name = capital(plain_name(found.effect));
         return format!("{name}{}. {}{}", figures(found, units), certainty(found), action(found));
     }
-    let telling = found.location.regions.first().filter(|region| region.is_telling());
+    let telling = found.location.named();
     let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
     let amount = amount(diagnosis, index, telling, units);
     let name = match found.effect {
@@ -218,7 +222,7 @@ fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: U
         let direction = if upward > 0.0 { "positive" } else { "negative" };
         format!("the real joint needs up to {size} more in the {direction} direction")
     } else {
-        format!("the real joint needs up to {size} more or less")
+        format!("the real joint differs by up to {size} in either direction")
     }
 }
 
@@ -326,5 +330,5 @@ fn limits(diagnosis: &Diagnosis, units: Units) -> Option<String> {
         .take(3)
         .map(|limit| format!("{} above {}", plain_name(limit.effect), quantity(limit.torque_rms, units.actuator)))
         .collect();
-    (!told.is_empty()).then(|| format!("Would have been seen (root mean square): {}.", told.join(", ")))
+    (!told.is_empty()).then(|| format!("Detection limits (root mean square): {}.", told.join(", ")))
 }

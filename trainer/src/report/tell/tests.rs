@@ -40,7 +40,7 @@ fn presliding(channel: &'static str, from: f64, to: f64) -> Finding {
         action: Action::FeedForward,
         equation: String::new(),
         parameters: vec![torque, distance],
-        location: Location { regions: vec![region(channel, from, to)], when_s: Vec::new() },
+        location: Location { regions: vec![region(channel, from, to)], is_named: true, when_s: Vec::new() },
         evidence: Evidence::Rows { held_out_gain_nats: 40.0, family_wise: 1e-9, rivals: 1 },
         fitted,
         score: 40.0,
@@ -103,7 +103,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
 
 #[test]
 fn a_finding_reads_as_a_sentence() {
-    let story = tell(&diagnosis(presliding("velocity", -0.05, 0.05)), ROTARY);
+    let story = tell(&diagnosis(presliding("velocity", -0.05, 0.05)), None, ROTARY);
     assert_eq!(
         story.findings[0],
         "Between -0.05 and 0.05 rad/s the real joint needs up to 3.1 N m less: presliding hysteresis, breakaway \
@@ -128,7 +128,7 @@ fn a_finding_reads_as_a_sentence() {
 #[test]
 fn a_given_model_is_told_by_how_much_its_own_parameters_are_off() {
     let mut told = diagnosis(presliding("velocity", -0.05, 0.05));
-    assert!(tell(&told, ROTARY).given.is_empty());
+    assert!(tell(&told, None, ROTARY).given.is_empty());
     let parameter = |name: &'static str, value: f64, half: f64| Estimate {
         name,
         symbol: "",
@@ -141,7 +141,7 @@ fn a_given_model_is_told_by_how_much_its_own_parameters_are_off() {
     let holds = vec![EffectId::PositionRipple, EffectId::Temperature, EffectId::PositionRipple];
     told.given = Some(Given { score: Score { rmse: 1.5, r2: 0.6 }, holds });
     assert_eq!(
-        tell(&told, ROTARY).given,
+        tell(&told, None, ROTARY).given,
         [
             "Found in the simulation itself, and so not missing from it: torque ripple over position, friction that \
              depends on temperature.",
