@@ -68,7 +68,7 @@ impl FrictionLevel {
         if size < least_effect * torque_beside_rigid_body(workbench) {
             return Self::Small(size);
         }
-        let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: 0.0, rivals: 0 };
+        let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: change.p_value(), rivals: 0 };
         let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
         Self::Wrong { finding, torque: change.torque, as_given: given(baseline) }
     }
@@ -100,6 +100,13 @@ impl Change {
         let scatter = covariance::of_blocks(&columns, &residual(&columns, &left, &coefficients), &open)?;
         let deviation = (0..columns.len()).map(|i| scatter[(i, i)].max(0.0).sqrt()).collect();
         Some(Self { torque: weighted(&columns, &coefficients), coefficients, deviation })
+    }
+
+    /// Probability of a change as large where there is none: two normal coefficients taken as independent.
+    fn p_value(&self) -> f64 {
+        let deviations = self.coefficients.iter().zip(&self.deviation);
+        let statistic: f64 = deviations.map(|(value, deviation)| (value / deviation).powi(2)).sum();
+        (-0.5 * statistic).exp()
     }
 
     fn finding(&self, workbench: &Workbench, evidence: Evidence, score: f64) -> Finding {
