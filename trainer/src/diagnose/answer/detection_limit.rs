@@ -3,7 +3,7 @@
 use crate::diagnose::answer::outcome::DetectionLimit;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::proof::discarded::{FORMULA_ERROR_RATIO, least_torque};
+use crate::diagnose::proof::discarded::{FORMULA_ERROR_RATIO, negligible_torque};
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::round::Scored;
 
@@ -14,7 +14,7 @@ const FOUND_WITH_NINETY_PERCENT: f64 = 40.0;
 pub(crate) fn detection_limits(workbench: &Workbench, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = workbench.bench(workbench.base.columns.clone(), &refit.noise);
     let uncertainty = workbench.law_uncertainty(&bench, &refit.noise);
-    let least = least_torque(workbench, None, refit.noise.rms).max(FORMULA_ERROR_RATIO * workbench.base.formula_error);
+    let least = negligible_torque(workbench).max(FORMULA_ERROR_RATIO * workbench.base.formula_error);
     table
         .iter()
         .filter_map(|scored| {

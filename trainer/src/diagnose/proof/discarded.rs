@@ -3,11 +3,12 @@
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
-use crate::diagnose::proof::locked_rows::prove_alone;
+use crate::diagnose::proof::locked_rows::{prove_alone, rest};
 use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::thresholds::Settings;
+use crate::numerics::least_squares::dot;
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Action, EffectId};
 
@@ -24,20 +25,14 @@ pub(crate) const FORMULA_ERROR_RATIO: f64 = 1.5;
 /// Root mean square over that of the recorded torque below which an effect is too small to matter: no filter, encoder or clock is
 /// that exact, and what they leave has a shape.
 const NEGLIGIBLE_TORQUE_SHARE: f64 = 7e-4;
-/// Effect over the noise behind the filter, root mean squares, below which an effect that is also less than [`LEAST_EFFECT_SHARE`] of the
-/// torque is listed and not acted on: what grain and interpolation leave near reversals of recordings that miss nothing is an eighth
-/// to a sixth of the noise (recordings of one simulated joint with faults of its measurement).
+/// Effect over the noise behind the filter, root mean squares after whitening, below which an effect that is also less than
+/// [`LEAST_EFFECT_SHARE`] of the torque is listed and not acted on: what grain and interpolation leave near reversals of recordings that
+/// miss nothing is an eighth to a sixth of the noise (recordings of one simulated joint with faults of its measurement).
 const LEAST_NOISE_SHARE: f64 = 1.0 / 6.0;
 
-/// Torque (root mean square) that matters in a recording, and never less than what filter, encoder and clock leave: the share of the
-/// torque beside the rigid body that was asked for, or, unasked, [`LEAST_EFFECT_SHARE`] of it where noise hides that, and less where
-/// it does not.
-pub(crate) fn least_torque(workbench: &Workbench, least_effect: Option<f64>, noise_rms: f64) -> f64 {
-    let torque = root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque));
-    let share_of_torque = |share: f64| share * torque_beside_rigid_body(workbench);
-    let asked = least_effect
-        .map_or_else(|| share_of_torque(LEAST_EFFECT_SHARE).min(LEAST_NOISE_SHARE * noise_rms), share_of_torque);
-    asked.max(NEGLIGIBLE_TORQUE_SHARE * torque)
+/// Torque (root mean square) that no filter, encoder and clock is exact to.
+pub(crate) fn negligible_torque(workbench: &Workbench) -> f64 {
+    NEGLIGIBLE_TORQUE_SHARE * root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque))
 }
 
 /// Torque (root mean square) beside a known rigid body: weight and inertia can be many times what friction is.
@@ -74,27 +69,58 @@ pub(crate) fn withdraw_unproven(
     withdrawn
 }
 
-/// Sets aside what explains no more than the formulas of the reference get wrong.
-pub(crate) fn set_aside_doubtful(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
-    set_aside_below(&|_| FORMULA_ERROR_RATIO * workbench.base.formula_error, workbench, accepted)
+/// What one effect explains beside all the others.
+struct Explained<'a> {
+    effect: EffectId,
+    /// Root mean square of its torque that the others cannot explain.
+    torque: f64,
+    with: &'a [Accepted],
+    without: &'a [Accepted],
 }
 
-/// Sets aside what is too small to matter; `least_effect` is the share of the torque that was asked for. What a person has to look at
-/// may last for a moment only, and is not held against the noise of the whole recording.
+impl Explained<'_> {
+    /// Root mean square of what it explains over that of the noise, both whitened, on the open rows.
+    fn noise_share(&self, workbench: &Workbench) -> Option<f64> {
+        let [with, without] = [refit(workbench, self.with)?, refit(workbench, self.without)?];
+        let runs = workbench.prepared.open_runs();
+        let energy = |refit: &Refit| {
+            let white = with.noise.whitened(&rest(workbench, refit), &runs);
+            dot(&white, &white, &runs)
+        };
+        let (left, left_without) = (energy(&with), energy(&without));
+        Some(((left_without - left).max(0.0) / left).sqrt())
+    }
+}
+
+/// Sets aside what explains no more than the formulas of the reference get wrong.
+pub(crate) fn set_aside_doubtful(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Vec<(EffectId, f64)> {
+    let error = FORMULA_ERROR_RATIO * workbench.base.formula_error;
+    set_aside(&|explained| explained.torque < error, workbench, accepted)
+}
+
+/// Sets aside what is too small to matter: below the share `least_effect` of the torque beside the rigid body where that is asked for,
+/// else below [`LEAST_EFFECT_SHARE`] of it and hidden by the noise. What a person has to look at may last for a moment only, and is
+/// not held against the noise of the whole recording.
 pub(crate) fn set_aside_negligible(
     workbench: &Workbench,
     accepted: &mut Vec<Accepted>,
     least_effect: Option<f64>,
 ) -> Vec<(EffectId, f64)> {
-    let noise_rms = refit(workbench, accepted).map_or(0.0, |refit| refit.noise.rms);
-    let [least, least_of_short] = [noise_rms, 0.0].map(|noise_rms| least_torque(workbench, least_effect, noise_rms));
-    let least_of = |effect: EffectId| if effect.action() == Action::Maintenance { least_of_short } else { least };
-    set_aside_below(&least_of, workbench, accepted)
+    let negligible = negligible_torque(workbench);
+    let least = least_effect.unwrap_or(LEAST_EFFECT_SHARE) * torque_beside_rigid_body(workbench);
+    let is_hidden = |explained: &Explained| {
+        explained.effect.action() != Action::Maintenance
+            && explained.noise_share(workbench).is_some_and(|share| share < LEAST_NOISE_SHARE)
+    };
+    let is_small = |explained: &Explained| {
+        explained.torque < negligible || explained.torque < least && (least_effect.is_some() || is_hidden(explained))
+    };
+    set_aside(&is_small, workbench, accepted)
 }
 
-/// Sets aside what explains less than a torque (root mean square), with what it explains. Effects that repeat count together.
-fn set_aside_below(
-    least_torque: &dyn Fn(EffectId) -> f64,
+/// Sets aside, one after the other, what is small, with what it explains. Effects that repeat count together.
+fn set_aside(
+    is_small: &dyn Fn(&Explained) -> bool,
     workbench: &Workbench,
     accepted: &mut Vec<Accepted>,
 ) -> Vec<(EffectId, f64)> {
@@ -102,8 +128,8 @@ fn set_aside_below(
     while let Some(all) = energy_left(workbench, accepted) {
         let explained = |effect: EffectId| {
             let without: Vec<Accepted> = accepted.iter().filter(|other| other.effect() != effect).cloned().collect();
-            let explained = (energy_left(workbench, &without)? - all).max(0.0).sqrt();
-            (explained < least_torque(effect)).then_some((effect, explained))
+            let torque = (energy_left(workbench, &without)? - all).max(0.0).sqrt();
+            is_small(&Explained { effect, torque, with: accepted, without: &without }).then_some((effect, torque))
         };
         let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(explained).collect();
         let Some(taken) = take_least_in_favour(accepted, &small) else { break };
