@@ -1,11 +1,13 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
+mod columns;
 mod urdf;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
+
+pub use columns::{ColumnMapping, Columns, Side, Simulation};
 
 use crate::error::{Error, Result, codes};
 use crate::files;
@@ -23,7 +25,10 @@ pub struct Joint {
     pub name: Option<String>,
     /// Columns that are not named `<quantity>_<unit>`, by quantity.
     #[serde(default)]
-    pub columns: BTreeMap<String, ColumnMapping>,
+    pub columns: Columns,
+    /// The file of `diagnose --simulation`.
+    #[serde(default)]
+    pub simulation: Simulation,
     /// Known rigid-body parameters; what is absent is identified together with friction.
     #[serde(default)]
     pub rigid_body: RigidBody,
@@ -36,33 +41,6 @@ pub struct Joint {
     /// Tables that other commands read (the simulated plant, for one), untouched.
     #[serde(flatten)]
     pub other: toml::Table,
-}
-
-/// One entry of `[columns]`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ColumnMapping {
-    /// Name of the column in the file.
-    pub name: String,
-    /// Unit of the column; SI when absent. `deg/s` and `deg_s` mean the same.
-    pub unit: Option<String>,
-    /// Side of the gear on which it is measured; joint side when absent.
-    #[serde(default)]
-    pub side: Side,
-    /// `-1` for a column whose sign is opposite; any other factor is allowed.
-    #[serde(default = "one")]
-    pub scale: f64,
-}
-
-/// Side of the gear on which a quantity is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Side {
-    /// After the gear.
-    #[default]
-    Joint,
-    /// Before the gear: angles are divided and torques multiplied by `[drive] gear_ratio`.
-    Motor,
 }
 
 /// Known rigid-body parameters: torque = inertia * acceleration + gravity_torque * sin(position + phase).
@@ -143,6 +121,16 @@ impl Joint {
         })
     }
 
+    /// What is known of the joint where its simulation is read: `[simulation.columns]`, else `[columns]` as far as the file has them.
+    #[must_use]
+    pub fn of_simulation(&self) -> Self {
+        let optional = |(quantity, mapping): (&String, &ColumnMapping)| {
+            (quantity.clone(), ColumnMapping { may_be_absent: true, ..mapping.clone() })
+        };
+        let shared = || self.columns.iter().map(optional).collect();
+        Self { columns: self.simulation.columns.clone().unwrap_or_else(shared), ..self.clone() }
+    }
+
     /// Reads `joint.toml` and the URDF file that it names.
     ///
     /// # Errors
@@ -221,8 +209,9 @@ impl Joint {
             lowest.is_none_or(|low| low < high)
         })?;
         refuse("drive.gear_ratio", drive.gear_ratio, "a gear ratio cannot be zero", |x| x.abs() > 0.0)?;
-        for (quantity, mapping) in &self.columns {
-            let key = format!("columns.{quantity}.scale");
+        let simulated = self.simulation.columns.iter().flatten().map(|entry| ("simulation.columns", entry));
+        for (table, (quantity, mapping)) in self.columns.iter().map(|entry| ("columns", entry)).chain(simulated) {
+            let key = format!("{table}.{quantity}.scale");
             refuse(&key, Some(mapping.scale), "this has to be finite and not zero", |x| {
                 x.is_finite() && x.abs() > 0.0
             })?;
@@ -244,10 +233,6 @@ fn row_of(text: &str, offset: usize) -> u64 {
     1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count() as u64
 }
 
-fn one() -> f64 {
-    1.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,6 +244,9 @@ mod tests {
             name = "elbow"
             [columns]
             velocity = { name = "dq", unit = "deg/s", side = "motor", scale = -1 }
+            position = "position[1]"
+            [simulation.columns]
+            velocity = "qvel"
             [rigid_body]
             inertia_kgm2 = 0.5
             gravity_torque_Nm = 4.0
@@ -281,6 +269,8 @@ mod tests {
         .unwrap();
         assert_eq!(joint.name.as_deref(), Some("elbow"));
         assert_eq!(joint.columns["velocity"].side, Side::Motor);
+        assert_eq!(joint.columns["position"].name, "position[1]");
+        assert_eq!(joint.of_simulation().columns.into_keys().collect::<Vec<_>>(), ["velocity"]);
         assert!((joint.drive.joint_torque_per_ampere().unwrap() - 10.0).abs() < 1e-12);
         assert!(joint.other.contains_key("plant"));
     }
@@ -298,6 +288,7 @@ mod tests {
             "[drive]\ngear_ratio = nan",
             "[rigid_body]\ninertia_kgm2 = -1",
             "[limits]\nlowest_position_rad = 1\nhighest_position_rad = 0",
+            "[simulation.columns]\nposition = { name = \"q\", scale = 0 }",
         ] {
             let error = Joint::parse(text).unwrap_err();
             assert_eq!(error.code(), &codes::BAD_JOINT_FILE);

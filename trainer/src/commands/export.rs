@@ -1,5 +1,7 @@
 //! `trainer export`: an image in the form that a tool chain takes.
 
+mod model_file;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -7,11 +9,13 @@ use frikan_runtime::slots::slot_header;
 use frikan_shared::image::Image;
 use frikan_shared::model::Law;
 
+use self::model_file::ModelFileArguments;
 use super::output::{Outputs, print};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
-use crate::export::{c, c_array, hex, readable, simulator, title, uf2};
+use crate::export::simulator::Simulator;
+use crate::export::{c, c_array, hex, readable, title, uf2};
 use crate::fit::{CELLS, model};
 use crate::key;
 use crate::law::{Language, canonical, expression_of, render};
@@ -43,6 +47,9 @@ pub struct Export {
     /// Chip, for the commands, as probe-rs names it
     #[arg(long, value_name = "NAME")]
     pub chip: Option<String>,
+    /// A simulator's model file, for the forms of simulators
+    #[command(flatten)]
+    pub model_file: ModelFileArguments,
     /// File to write; `-` for standard output. `c` writes the header beside it
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
@@ -75,10 +82,20 @@ pub enum Format {
     Latex,
     /// The law as text
     Text,
-    /// Coulomb and viscous friction nearest to the law, for MuJoCo: a default class of joints to include
+    /// MuJoCo 4.0: joint attributes and, with `--into` where law or effects ask for it, a passive motor with LuGre friction and cogging
     Mujoco,
-    /// The same for a URDF: the `dynamics` of a joint
+    /// Any MuJoCo: `armature`, `frictionloss`, `damping` of a joint; without `--into` a default class to include
+    MjcfPatch,
+    /// URDF: the `dynamics` of a joint
     Urdf,
+    /// SDFormat (Gazebo, Drake): the `dynamics` of a joint's axis
+    Sdf,
+    /// USD: a layer over a joint with the friction of PhysX 5.6; `--joint-name` is the path of its prim
+    Usd,
+    /// Isaac Lab: an actuator with the friction of PhysX, and the law as a table, as Python
+    Isaac,
+    /// Drake: rotor inertia, and the law as a system, as Python
+    Drake,
 }
 
 /// A processor of `elf`.
@@ -101,6 +118,7 @@ pub fn run(arguments: &Export) -> Result<()> {
     let bytes = flashed(arguments, image_bytes.clone())?;
     let place = place(arguments, bytes.len())?;
     let mut outputs = Outputs::default();
+    let for_simulator = |simulator| arguments.model_file.write(&image, simulator, &title).map(String::into_bytes);
     let content = match arguments.to {
         Format::Bin => bytes.clone(),
         Format::Hex => hex::intel_hex(&bytes, place.address).into_bytes(),
@@ -113,8 +131,13 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Sympy => law(&image, Language::SymPy)?,
         Format::Latex => law(&image, Language::Latex)?,
         Format::Text => law(&image, Language::Unicode)?,
-        Format::Mujoco => simulator::mujoco(&image, &title)?.into_bytes(),
-        Format::Urdf => simulator::urdf(&image, &title)?.into_bytes(),
+        Format::Mujoco => for_simulator(Simulator::Mujoco)?,
+        Format::MjcfPatch => for_simulator(Simulator::MjcfPatch)?,
+        Format::Urdf => for_simulator(Simulator::Urdf)?,
+        Format::Sdf => for_simulator(Simulator::Sdf)?,
+        Format::Usd => for_simulator(Simulator::Usd)?,
+        Format::Isaac => for_simulator(Simulator::Isaac)?,
+        Format::Drake => for_simulator(Simulator::Drake)?,
         Format::C => {
             let (name, header) = c_names(&arguments.output)?;
             let evaluator = c::evaluator(&name, &title, &image)?;
@@ -125,6 +148,7 @@ pub fn run(arguments: &Export) -> Result<()> {
     outputs.add(&arguments.output, content);
     let mut inputs = vec![arguments.model.as_path()];
     inputs.extend(arguments.key_file.as_deref());
+    inputs.extend(arguments.model_file.inputs());
     outputs.refuse_overwriting(&inputs)?;
     outputs.write()?;
     if arguments.output == Path::new("-") { Ok(()) } else { print(&advice(arguments, bytes.len())) }

@@ -147,6 +147,10 @@ registry! {
         "The time advances by less than a microsecond a row, or by more than a second without a velocity that confirms it. No motion is sampled like that, and filters on that clock would be as long as memory is large.",
         "Milli-, micro- or nanoseconds in a column that says s, or a row counter in place of the time.",
         "Name the column by its real unit: `time_ms`, `time_us`, `time_ns`; a row counter has to be multiplied by the sample period.";
+    BAD_MODEL_FILE = "FRK-D030" Data "simulator's model file cannot be used",
+        "The file of `export --into` is not valid XML, lacks the joint, or does not say the inertia of its bodies.",
+        "A xacro or a file with includes that has not been expanded, a joint of another name, or bodies that have their inertia from geometries.",
+        "Name the joint by `--joint-name` as the file does; give `--inertia-of-model` where bodies have their inertia from geometries.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",

@@ -97,7 +97,7 @@ fn mapped_columns(header: &[String], joint: &Joint) -> Result<Vec<(usize, Known)
     for (key, mapping) in &joint.columns {
         let Some(quantity) = Quantity::from_name(key) else {
             let names: Vec<&str> = Quantity::ALL.iter().map(|(_, name)| *name).collect();
-            let message = format!("[columns] of joint.toml knows: {}", names.join(", "));
+            let message = format!("the columns that joint.toml maps are of: {}", names.join(", "));
             return Err(Error::new(&codes::BAD_JOINT_FILE, message).with_value(key));
         };
         let suffix = mapping.unit.as_deref().unwrap_or(quantity.units()[0].suffix);
@@ -106,6 +106,9 @@ fn mapped_columns(header: &[String], joint: &Joint) -> Result<Vec<(usize, Known)
             return Err(Error::new(&codes::UNKNOWN_UNIT, message).in_column(&mapping.name).with_value(suffix));
         };
         let Some(index) = header.iter().position(|name| *name == mapping.name) else {
+            if mapping.may_be_absent {
+                continue;
+            }
             let message = format!("joint.toml maps {key} to a column that the recording does not have");
             return Err(Error::new(&codes::MISSING_COLUMN, message).at_row(1).in_column(&mapping.name));
         };

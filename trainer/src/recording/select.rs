@@ -53,6 +53,26 @@ impl Recording {
         self.with_health()
     }
 
+    /// The same recording with torque or force, and the rigid body's part of it, as the current that stands for it,
+    /// `amperes_per_torque` A for each N m or N; as it is where it holds neither.
+    #[must_use]
+    pub fn with_torque_as_current(mut self, amperes_per_torque: f64) -> Self {
+        for channel in &mut self.channels {
+            match channel.quantity {
+                Some(Quantity::Torque | Quantity::Force) => {
+                    channel.quantity = Some(Quantity::Current);
+                    channel.name = Quantity::Current.name().to_owned();
+                }
+                Some(Quantity::RigidBodyTorque) if channel.unit != "A" => {}
+                _ => continue,
+            }
+            channel.unit = "A";
+            channel.si_per_column_unit *= amperes_per_torque;
+            channel.values.iter_mut().for_each(|value| *value *= amperes_per_torque);
+        }
+        self.with_health()
+    }
+
     fn interrupted_at(mut self, mut interruptions: Vec<usize>) -> Self {
         let rows = self.len();
         interruptions.retain(|row| (1..rows).contains(row));

@@ -14,6 +14,7 @@ use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{self, Quantity, Recording};
 use frikan_shared::model::RigidBody;
+use std::path::Path;
 
 /// What the recording is compared with.
 pub(super) enum Compared {
@@ -38,8 +39,7 @@ impl Compared {
 /// The real recordings and what they are compared with.
 pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
     if let Some(path) = &arguments.simulation {
-        let simulated = motion(recording::load(path, joint)?, joint)?.0;
-        same_units(&real[0], &simulated)?;
+        let simulated = simulated(path, &real[0], joint)?;
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
@@ -58,6 +58,19 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
     } else {
         Ok((joined(real, joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
+}
+
+/// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.
+fn simulated(path: &Path, real: &Recording, joint: &Joint) -> Result<Recording> {
+    let joint = joint.of_simulation();
+    let mut simulated = motion(recording::load(path, &joint)?, &joint)?.0;
+    let actuator = |recording: &Recording| recording.actuator().map(|channel| channel.unit);
+    let beside_current = actuator(real) == Some("A") && matches!(actuator(&simulated), Some("Nm" | "N"));
+    if beside_current && joint.drive.torque_constant_nm_a.is_some() {
+        simulated = simulated.with_torque_as_current(joint.actuator_per_torque("A")?);
+    }
+    same_units(real, &simulated)?;
+    Ok(simulated)
 }
 
 /// Signals of recordings of one joint, one behind the other.
@@ -105,11 +118,14 @@ fn same_units(real: &Recording, other: &Recording) -> Result<()> {
         let Units { actuator, rotary } = units(recording);
         format!("{actuator} of a {} axis", if rotary { "rotary" } else { "linear" })
     };
-    let message = format!(
+    let mut message = format!(
         "this gives {}, {} gives {}; both have to be of one axis and one actuator quantity",
         said(other),
         real.file(),
         said(real)
     );
+    if units(real).actuator == "A" && units(real).rotary == units(other).rotary {
+        message += ", or `torque_constant_Nm_A` and `gear_ratio` under [drive] of joint.toml have to say what a current is worth";
+    }
     Err(Error::new(&codes::RECORDINGS_DISAGREE, message).in_file(other.file()))
 }

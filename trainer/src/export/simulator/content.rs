@@ -1,0 +1,232 @@
+//! What an image has to say to a simulator: friction in its forms, inertia, and what no form holds.
+
+use frikan_shared::effect::{Effect, Kind};
+use frikan_shared::image::Image;
+use frikan_shared::model::{Law, RigidBody};
+use frikan_shared::units::Unit;
+
+use super::form::Form;
+use super::law::{FrictionCurve, of_velocity};
+use crate::error::{Error, Result, codes};
+use crate::figures::digits;
+use crate::fit::CELLS;
+use crate::markup::escape;
+
+/// Share of the error that a richer form has to take off a simpler one to be worth its parameters.
+const WORTH_IT: f64 = 0.9;
+
+/// Share of the law below which an error is none: fewer digits than recordings determine.
+const NEGLIGIBLE: f64 = 1e-2;
+
+/// An image in N m or N.
+#[derive(Debug)]
+pub(super) struct Content<'a> {
+    pub(super) title: &'a str,
+    /// Name of the joint in the image; may be empty.
+    pub(super) joint: &'a str,
+    pub(super) is_linear: bool,
+    pub(super) curve: FrictionCurve,
+    pub(super) coulomb_viscous: Form,
+    /// Inertia (kg m2 or kg), gravity and offset (N m or N).
+    pub(super) body: RigidBody,
+    effects: &'a [Effect],
+    torque_per_unit: f64,
+    has_other_inputs: bool,
+}
+
+/// A cogging torque, `amplitude sin(order q + phase)`, that the actuator has to add.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cogging {
+    pub(super) amplitude: f64,
+    pub(super) order: f64,
+    pub(super) phase: f64,
+}
+
+impl<'a> Content<'a> {
+    /// An image for a simulator; `torque_per_ampere` N m (N) at the joint for each ampere of a law of the current.
+    ///
+    /// # Errors
+    /// `FRK-U001` for a law that does not depend on the velocity, or of a current without its constants.
+    pub(super) fn of(image: &'a Image<CELLS>, title: &'a str, torque_per_ampere: Option<f64>) -> Result<Self> {
+        let model = &image.model;
+        let is_linear = model.inputs.iter().any(|input| input.unit == Unit::MetrePerSecond);
+        let torque_per_unit = match (model.output_unit, torque_per_ampere) {
+            (Unit::NewtonMetre | Unit::Newton, _) => 1.0,
+            (Unit::Ampere, Some(constant)) => constant,
+            (other, _) => {
+                let message = format!(
+                    "a simulator takes N m or N, this law is in {}; give `--joint JOINT.toml` with `torque_constant_Nm_A` and `gear_ratio` under [drive]",
+                    other.symbol()
+                );
+                return Err(Error::new(&codes::USAGE, message));
+            }
+        };
+        let scaled = |value: f32| (f64::from(value) * torque_per_unit) as f32;
+        let body = model.rigid_body;
+        let curve = FrictionCurve::of(model, torque_per_unit)?;
+        Ok(Self {
+            title,
+            joint: image.provenance.joint.as_str(),
+            is_linear: is_linear || model.output_unit == Unit::Newton,
+            coulomb_viscous: Form::coulomb_viscous(&curve),
+            body: RigidBody {
+                inertia: scaled(body.inertia * (1.0 + load_scale(&model.effects))),
+                gravity_sin: scaled(body.gravity_sin),
+                gravity_cos: scaled(body.gravity_cos),
+                offset: scaled(body.offset) + curve.offset as f32,
+                ..body
+            },
+            curve,
+            effects: &model.effects,
+            torque_per_unit,
+            has_other_inputs: model.inputs.len() > 1 && matches!(model.law, Law::Network(_) | Law::Expression(_)),
+        })
+    }
+
+    /// Identified inertia, kg m2 or kg; `None` where the image has none.
+    pub(super) fn inertia(&self) -> Option<f64> {
+        Some(f64::from(self.body.inertia)).filter(|inertia| *inertia > 0.0)
+    }
+
+    /// The nearest form with damping in powers of the velocity, where it is worth them.
+    pub(super) fn damped(&self) -> Form {
+        self.better(Form::polynomial(&self.curve), self.coulomb_viscous).unwrap_or(self.coulomb_viscous)
+    }
+
+    /// The nearest form with a Stribeck peak, where it is worth it.
+    pub(super) fn with_stribeck(&self) -> Option<Form> {
+        let [viscous, polynomial] = [1, 3].map(|powers| Form::stribeck(&self.curve, powers));
+        let viscous = self.better(viscous, self.damped());
+        self.better(polynomial, viscous.unwrap_or_else(|| self.damped())).or(viscous)
+    }
+
+    /// Torque at which the joint breaks away, never below the Coulomb friction.
+    pub(super) fn static_friction(&self) -> f64 {
+        let coulomb = self.coulomb_viscous.coulomb;
+        self.with_stribeck().map_or(coulomb, |form| form.at_rest().max(coulomb))
+    }
+
+    /// The unit of the inertia.
+    pub(super) fn inertia_unit(&self) -> &'static str {
+        if self.is_linear { "kg" } else { "kg m2" }
+    }
+
+    /// The joint's name as it may stand in XML; `frikan` where the image has none.
+    pub(super) fn name_in_xml(&self) -> String {
+        if self.joint.is_empty() { "frikan".to_owned() } else { escape(self.joint) }
+    }
+
+    fn better(&self, richer: Option<Form>, simpler: Form) -> Option<Form> {
+        let rms = |form: &Form| form.deviation(&self.curve).rms;
+        let simple = simpler.deviation(&self.curve);
+        richer.filter(|form| simple.rms > NEGLIGIBLE * simple.law && rms(form) < WORTH_IT * simple.rms)
+    }
+
+    /// Torque for each radian (metre) of presliding at a reversal; `None` without such a term.
+    pub(super) fn presliding_stiffness(&self) -> Option<f64> {
+        self.effects.iter().find_map(|effect| match effect {
+            Effect::Presliding { elements, .. } => {
+                Some(self.torque_per_unit * elements.iter().map(|e| f64::from(e.torque / e.distance)).sum::<f64>())
+            }
+            _ => None,
+        })
+    }
+
+    /// Stiffness and rest position of a spring; `None` without one or where it pushes away.
+    pub(super) fn spring(&self) -> Option<(f64, f64)> {
+        self.effects.iter().find_map(|effect| match effect {
+            Effect::Spring { stiffness, rest } if *stiffness > 0.0 => {
+                Some((self.torque_per_unit * f64::from(*stiffness), f64::from(*rest)))
+            }
+            _ => None,
+        })
+    }
+
+    /// Cogging torques, one a line of a ripple that does not depend on the direction.
+    pub(super) fn cogging(&self) -> Vec<Cogging> {
+        let mut found = Vec::new();
+        for effect in self.effects {
+            let Effect::Ripple { kind: Kind::Torque, harmonics, .. } = effect else { continue };
+            found.extend(harmonics.iter().map(|line| {
+                let (sine, cosine) = (f64::from(line.sine), f64::from(line.cosine));
+                let amplitude = self.torque_per_unit * sine.hypot(cosine);
+                Cogging { amplitude, order: f64::from(line.order), phase: cosine.atan2(sine) }
+            }));
+        }
+        found
+    }
+
+    /// Effects of the image that no friction over velocity holds, by their names, but for those that `held` says.
+    pub(super) fn left_out(&self, held: impl Fn(&Effect) -> bool) -> Vec<&'static str> {
+        let rest = self.effects.iter().filter(|effect| of_velocity(effect, 0.0).is_none() && !held(effect));
+        rest.map(name).collect()
+    }
+
+    /// Title, form and its error, and what is left out.
+    pub(super) fn remark(&self, form: &Form, held: impl Fn(&Effect) -> bool) -> String {
+        let [torque, velocity] = if self.is_linear { ["N", "m/s"] } else { ["N m", "rad/s"] };
+        let error = form.deviation(&self.curve);
+        let mut text = format!(
+            "{}. Friction from {} to {} {velocity}: this form leaves {} {torque} rms, {} {torque} at most, of {} {torque} rms.",
+            self.title,
+            digits(self.curve.risen),
+            digits(self.curve.top()),
+            digits(error.rms),
+            digits(error.max),
+            digits(error.law),
+        );
+        if self.has_other_inputs {
+            text += " Other inputs of the law stand in the middle of their trained range.";
+        }
+        let left_out = self.left_out(held);
+        if !left_out.is_empty() {
+            text += &format!(" Left out: {}.", left_out.join(", "));
+        }
+        if f64::from(self.body.offset).abs() > NEGLIGIBLE * error.law {
+            text += &format!(" Left out: a constant torque of {} {torque}.", digits(f64::from(self.body.offset)));
+        }
+        text
+    }
+
+    /// The identified gravity torque, for comparison with the bodies of the simulator.
+    pub(super) fn gravity(&self) -> Option<String> {
+        let (sine, cosine) = (f64::from(self.body.gravity_sin), f64::from(self.body.gravity_cos));
+        (sine != 0.0 || cosine != 0.0).then(|| {
+            format!(
+                "Identified gravity torque {} N m sin(q {} {} rad): compare it with the bodies.",
+                digits(sine.hypot(cosine)),
+                if cosine < 0.0 { '-' } else { '+' },
+                digits(cosine.atan2(sine).abs())
+            )
+        })
+    }
+}
+
+/// By how much driving and backdriving a load differ from it, as a share of the load: what no motion tells from a rigid body that is so
+/// much larger (Hamon, Gautier & Garrec 2010), and a simulator can have as inertia only.
+fn load_scale(effects: &[Effect]) -> f32 {
+    let shares =
+        effects.iter().map(|effect| if let Effect::Load { difference, .. } = effect { *difference } else { 0.0 });
+    shares.sum()
+}
+
+/// Name of an effect in plain words.
+fn name(effect: &Effect) -> &'static str {
+    match effect {
+        Effect::Coulomb { .. } => "Coulomb and viscous friction",
+        Effect::Stribeck { .. } => "Stribeck friction",
+        Effect::PowerViscous { .. } => "nonlinear viscous friction",
+        Effect::Asymmetry { .. } => "friction that differs between the directions",
+        Effect::Temperature { .. } => "friction over temperature",
+        Effect::WarmUp { .. } => "warm-up",
+        Effect::Load { .. } => "load-dependent friction",
+        Effect::FrictionalLag { .. } => "frictional lag",
+        Effect::Presliding { .. } => "presliding",
+        Effect::DwellBreakaway { .. } => "breakaway that rises with the dwell",
+        Effect::Ripple { .. } => "position ripple",
+        Effect::PositionTable { .. } => "friction or torque over position",
+        Effect::Play { .. } => "backlash",
+        Effect::WindupHysteresis { .. } => "wind-up hysteresis",
+        Effect::Spring { .. } => "spring",
+    }
+}
