@@ -14,7 +14,7 @@ pub struct Options {
     /// Limits of the search.
     pub settings: Settings,
     /// Share (0..1) of the torque beside the rigid body, root mean square, below which a finding is listed but not acted on. `None`:
-    /// [`LEAST_EFFECT_SHARE`] for the friction level of a reference; for all else as much where the noise hides it, and less where
+    /// 2 % for the friction level of a reference; for all else as much where the noise hides it, and less where
     /// it does not.
     pub least_effect: Option<f64>,
 }

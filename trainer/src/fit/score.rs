@@ -24,7 +24,7 @@ const TOP_QUANTILE: f64 = 0.999;
 /// What a model makes of a recording, and how well it agrees.
 ///
 /// # Errors
-/// As [`predict`](super::predict::predict) and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
+/// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
 pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
     let rows = every_row(model, recording).map_err(in_file)?;

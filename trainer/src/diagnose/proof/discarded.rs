@@ -8,7 +8,7 @@ use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::thresholds::Settings;
-use crate::numerics::least_squares::dot;
+use crate::numerics::least_squares::{dot, rows_in};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Action, EffectId};
 
@@ -25,10 +25,12 @@ pub(crate) const FORMULA_ERROR_RATIO: f64 = 1.5;
 /// Root mean square over that of the recorded torque below which an effect is too small to matter: no filter, encoder or clock is
 /// that exact, and what they leave has a shape.
 const NEGLIGIBLE_TORQUE_SHARE: f64 = 7e-4;
-/// Effect over the noise behind the filter, root mean squares after whitening, below which an effect that is also less than
-/// [`LEAST_EFFECT_SHARE`] of the torque is listed and not acted on: what grain and interpolation leave near reversals of recordings that
-/// miss nothing is an eighth to a sixth of the noise (recordings of one simulated joint with faults of its measurement).
+/// Effect over the noise behind the filter, root mean squares after whitening, and energy of the effect in units of the variance of the
+/// noise: below both an effect that is also less than [`LEAST_EFFECT_SHARE`] of the torque is listed and not acted on. What grain and
+/// interpolation leave near reversals of recordings that miss nothing reaches a sixth of the noise and an energy of 34 (recordings of
+/// one simulated joint with faults of its measurement).
 const LEAST_NOISE_SHARE: f64 = 1.0 / 6.0;
+const LEAST_ENERGY: f64 = 36.0;
 
 /// Torque (root mean square) that no filter, encoder and clock is exact to.
 pub(crate) fn negligible_torque(workbench: &Workbench) -> f64 {
@@ -79,8 +81,8 @@ struct Explained<'a> {
 }
 
 impl Explained<'_> {
-    /// Root mean square of what it explains over that of the noise, both whitened, on the open rows.
-    fn noise_share(&self, workbench: &Workbench) -> Option<f64> {
+    /// Whether what it explains on the open rows, whitened, is little beside the noise.
+    fn is_hidden(&self, workbench: &Workbench) -> Option<bool> {
         let [with, without] = [refit(workbench, self.with)?, refit(workbench, self.without)?];
         let runs = workbench.prepared.open_runs();
         let energy = |refit: &Refit| {
@@ -88,7 +90,8 @@ impl Explained<'_> {
             dot(&white, &white, &runs)
         };
         let (left, left_without) = (energy(&with), energy(&without));
-        Some(((left_without - left).max(0.0) / left).sqrt())
+        let share = (left_without - left).max(0.0) / left;
+        Some(share < LEAST_NOISE_SHARE * LEAST_NOISE_SHARE && share * (rows_in(&runs) as f64) < LEAST_ENERGY)
     }
 }
 
@@ -109,8 +112,7 @@ pub(crate) fn set_aside_negligible(
     let negligible = negligible_torque(workbench);
     let least = least_effect.unwrap_or(LEAST_EFFECT_SHARE) * torque_beside_rigid_body(workbench);
     let is_hidden = |explained: &Explained| {
-        explained.effect.action() != Action::Maintenance
-            && explained.noise_share(workbench).is_some_and(|share| share < LEAST_NOISE_SHARE)
+        explained.effect.action() != Action::Maintenance && explained.is_hidden(workbench) == Some(true)
     };
     let is_small = |explained: &Explained| {
         explained.torque < negligible || explained.torque < least && (least_effect.is_some() || is_hidden(explained))
