@@ -188,7 +188,7 @@ fn a_base_parameter_has_the_uncertainty_of_the_shape_that_it_trades_with() {
 
 #[test]
 fn the_plain_spring_goes_before_one_with_a_loop_that_explains_a_little_more() {
-    assert_eq!(hidden("elasticity", 80.0, 71_000_055).named(), [EffectId::Elasticity]);
+    assert_eq!(hidden("elasticity", 150.0, 71_000_055).named(), [EffectId::Elasticity]);
 }
 
 /// Of what is weak a fifth of the rows may hold nothing by chance.

@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn what_breaks_physics_has_to_be_wanted_clearly() {
-        let (simple, other) = (trial(1.0, 0.0), trial(0.9, 0.17));
+        let (simple, other) = (trial(1.0, 0.0), trial(0.9, 0.3));
         assert!(Judge::Locked.prefers(&entry(&other, false), &entry(&simple, false)));
         assert!(!Judge::Locked.prefers(&entry(&other, true), &entry(&simple, false)));
         assert!(Judge::Locked.prefers(&entry(&other, true), &entry(&simple, true)));
