@@ -7,9 +7,8 @@ use std::fmt::Write;
 use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::fit::{Options, Training, fit};
 use frikan_trainer::joint::Joint;
+use frikan_trainer::kan::Random;
 use frikan_trainer::recording;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 /// Bits of one turn of the encoder.
 pub const BITS: [u32; 4] = [10, 13, 16, 20];
@@ -50,24 +49,10 @@ impl Found {
     }
 }
 
-struct Draw(ChaCha8Rng);
-
-impl Draw {
-    fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Box and Muller (1958).
-    fn normal(&mut self) -> f64 {
-        let (a, b) = (self.uniform(1e-12, 1.0), self.uniform(0.0, TAU));
-        (-2.0 * a.ln()).sqrt() * b.cos()
-    }
-}
-
 /// A joint that swings at three frequencies, with gravity, Coulomb and viscous friction; its inertia in kg m2 and its recording.
 #[must_use]
 pub fn simulated(setting: Setting, seed: u64) -> (f64, String) {
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
+    let mut draw = Random::new(seed, 0);
     let waves: [[f64; 3]; 3] = [[0.7, 1.1, 0.15], [0.35, 0.6, 0.55], [0.1, 0.2, 1.5]]
         .map(|[low, high, hz]| [draw.uniform(low, high), TAU * hz * draw.uniform(0.6, 1.0), draw.uniform(0.0, TAU)]);
     let (inertia, gravity) = (draw.uniform(0.03, 0.2), draw.uniform(0.5, 2.5));

@@ -9,9 +9,8 @@ use frikan_trainer::fit::predict::{every_row, predict};
 use frikan_trainer::fit::score::trace;
 use frikan_trainer::fit::{Options, Training, fit, model};
 use frikan_trainer::joint::Joint;
+use frikan_trainer::kan::Random;
 use frikan_trainer::recording::{self, Recording};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 const RATE_HZ: f64 = 1000.0;
 const INERTIA: f64 = 2e-4;
@@ -19,8 +18,8 @@ const INERTIA: f64 = 2e-4;
 /// A small motor that accelerates to and fro, its current measured with little noise and its velocity with much.
 /// `amplitudes` are those of its speed, rad/s, at 0.7, 1.17 and 2.9 Hz; `sign` is that of the current.
 fn motor(amplitudes: [f64; 3], sign: f64, seed: u64) -> Recording {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut noise = || (0..12).map(|_| random.next_u64() as f64 / u64::MAX as f64).sum::<f64>() - 6.0;
+    let mut random = Random::new(seed, 0);
+    let mut noise = || random.normal();
     let rates = [0.7, 1.17, 2.9].map(|hz| hz * std::f64::consts::TAU);
     let mut text = String::from("time_s,position_rad,velocity_rad_s,current_A\n");
     for row in 0..8000 {
@@ -99,8 +98,8 @@ fn a_recording_of_one_speed_or_of_a_few_rows_is_predicted() {
 /// out in turn, and the Stribeck shape comes out although the offset of the torque cannot be told from the Coulomb level.
 #[test]
 fn constant_speeds_in_one_direction_show_the_stribeck_shape() {
-    let mut random = ChaCha8Rng::seed_from_u64(6);
-    let mut noise = || (0..12).map(|_| random.next_u64() as f64 / u64::MAX as f64).sum::<f64>() - 6.0;
+    let mut random = Random::new(6, 0);
+    let mut noise = || random.normal();
     let speeds = [0.02, 0.04, 0.07, 0.1, 0.15, 0.25, 0.4, 0.6, 0.9, 1.3];
     let recordings = speeds.map(|speed: f64| {
         let mut text = String::from("time_s,position_rad,torque_Nm\n");

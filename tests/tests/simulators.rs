@@ -1,6 +1,6 @@
 //! The simulator gets its model back: MuJoCo logs a joint and a simulation of it, the diagnosis finds what is missing, the export patches
-//! the simulator's own file, and MuJoCo runs it on a motion that nobody has seen. USD, Drake and SDFormat files are read by their own
-//! programs. `tests/setup.sh` installs them under `target/simulators`; without them these tests say so and do nothing.
+//! the simulator's own file, and MuJoCo runs it on a motion that nobody has seen. `tests/setup.sh` installs it under `target/simulators`;
+//! without it these tests say so and do nothing.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -34,25 +34,22 @@ fn trainer(folder: &Path, line: &str) -> Run {
 }
 
 /// Logs a pair, diagnoses it and patches its model as `patched.xml` and, with attributes of the joint only, `attributes.xml`; gives the
-/// diagnosis and the errors on a fresh motion.
-fn put_right(python: &Path, (pair, joint): (&str, &str), folder: &Path) -> [Value; 2] {
+/// errors on a fresh motion.
+fn put_right(python: &Path, (pair, joint): (&str, &str), folder: &Path) -> Value {
     let at = folder.to_str().expect("a temporary folder has a plain name");
     script(python, &["mujoco_pair.py", "log", pair, at]);
-    let found = trainer(
-        folder,
-        "diagnose real.csv --simulation simulated.csv --joint joint.toml --quiet -o better.frk --json found.json",
-    );
+    let found =
+        trainer(folder, "diagnose real.csv --simulation simulated.csv --joint joint.toml --quiet -o better.frk");
     assert_eq!(found.status, 1, "{}", found.messages);
     for (form, file) in [("mujoco", "patched.xml"), ("mjcf-patch", "attributes.xml")] {
         let line = format!("export better.frk --to {form} --into model.xml --joint-name {joint} -o {file}");
         let exported = trainer(folder, &line);
         assert_eq!(exported.status, 0, "{}", exported.messages);
     }
-    let found = std::fs::read_to_string(folder.join("found.json")).unwrap();
     let errors = script(python, &["mujoco_pair.py", "compare", pair, at, "model.xml", "patched.xml", "attributes.xml"]);
     println!("{pair}: {errors}");
     println!("{}", std::fs::read_to_string(folder.join("patched.xml")).unwrap());
-    [found, errors].map(|text| serde_json::from_str(&text).unwrap())
+    serde_json::from_str(&errors).unwrap()
 }
 
 fn error(errors: &Value, model: &str, what: &str) -> f64 {
@@ -64,7 +61,7 @@ fn error(errors: &Value, model: &str, what: &str) -> f64 {
 fn an_elbow_without_rotor_and_stribeck_friction_is_put_right() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let [_, errors] = put_right(&python, ("elbow", "elbow"), folder.path());
+    let errors = put_right(&python, ("elbow", "elbow"), folder.path());
     let [before, truth] = ["model.xml", "true_parameters"].map(|model| error(&errors, model, "torque"));
     let [patched, attributes] = ["patched.xml", "attributes.xml"].map(|model| error(&errors, model, "torque"));
     assert!(patched < 1.1 * truth, "the true parameters leave {truth} N m, the export {patched}");
@@ -79,7 +76,7 @@ fn an_elbow_without_rotor_and_stribeck_friction_is_put_right() {
 fn a_linear_axis_with_ripple_is_put_right() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let [_, errors] = put_right(&python, ("axis", "slide"), folder.path());
+    let errors = put_right(&python, ("axis", "slide"), folder.path());
     let [before, truth] = ["model.xml", "true_parameters"].map(|model| error(&errors, model, "torque"));
     let patched = error(&errors, "patched.xml", "torque");
     assert!(patched < 1.1 * truth && patched < 0.2 * before, "{before} N before, {patched} after, truth {truth}");

@@ -8,7 +8,7 @@ mod trajectory;
 use crate::commands::measurement::{self, Warning, load_all, units};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
-use crate::compile::improved::{Origin, compared_with, improve};
+use crate::compile::improved::{Origin, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
@@ -75,7 +75,7 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     /// Smallest effect worth acting on, as a share of the torque beside the rigid body (root mean square); what is smaller is listed,
-    /// and does not count [default: 0.02 for the friction level of a simulation or model, what the measurement can leave for all else]
+    /// and does not count [default: 0.02 for the friction level of a simulation or model; for all else as much where the noise hides it]
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     pub least_effect: Option<f64>,
     /// Seed of the null draws: one seed, one result
@@ -148,14 +148,14 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     if is_blocked && arguments.output.is_some() {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
-    if let (Some(path), Some(improved)) = (&arguments.output, &improved) {
-        outputs.add(path, improved.image.clone());
-        remarks.clone_from(&improved.remarks);
+    if let (Some(path), Some(improved)) = (&arguments.output, improved) {
+        outputs.add(path, improved.image);
+        remarks = improved.remarks;
     }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {
             recording: &real.label,
-            compared_with: &name_of_compared(arguments),
+            compared_with: &compared_with(arguments),
             diagnosis: &diagnosis,
             story: &story,
             units,
@@ -247,12 +247,13 @@ fn improved_image(
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.
     let after = fit::model::from_bytes(&image)?.model;
-    let sealed = compared_with(diagnosis, comparison, origin, unit)
-        .and_then(|before| sealed_score(diagnosis, recordings, joint, comparison.signals.period, [&before, &after]));
+    let sealed = improved
+        .compared_with
+        .and_then(|before| sealed_score(&diagnosis.sealed_s, recordings, comparison.signals.period, [&before, &after]));
     Ok(Written { image, remarks: improved.remarks, sealed })
 }
 
-fn name_of_compared(arguments: &Diagnose) -> String {
+fn compared_with(arguments: &Diagnose) -> String {
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match (&arguments.simulation, &arguments.model, arguments.base) {
         (Some(path), _, _) => format!("the simulation {}", name(path)),

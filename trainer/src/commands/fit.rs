@@ -190,8 +190,7 @@ fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64)
         outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
     }
     if let Some(path) = &arguments.report {
-        let told: Vec<String> =
-            warnings.iter().map(|warning| format!("{} {}.", warning.code(), warning.message)).collect();
+        let told: Vec<String> = warnings.iter().map(|warning| format!("{warning}.")).collect();
         outputs.add(path, crate::report::fit(outcome, &told));
     }
     let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);

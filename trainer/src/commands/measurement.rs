@@ -9,6 +9,7 @@ use crate::physics::units::Units;
 use crate::recording::{self, Axis, Recording};
 use crate::report::tell::recording_note::recording_note;
 use serde_json::{Value, json};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// A note on a recording for a reader.
@@ -79,6 +80,13 @@ fn with_warnings(Reviewed { recording, notes }: Reviewed) -> (Recording, Vec<War
     };
     let warnings = notes.into_iter().map(warning).collect();
     (recording, warnings)
+}
+
+/// Stable code and message.
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.code(), self.message)
+    }
 }
 
 impl Warning {

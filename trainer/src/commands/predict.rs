@@ -51,7 +51,7 @@ pub fn run(arguments: &Predict) -> Result<()> {
     outputs.refuse_overwriting(&[arguments.model.as_path(), arguments.recording.as_path()])?;
     outputs.write()?;
     if !arguments.quiet {
-        warnings.iter().for_each(|warning| eprintln!("{} {}", warning.code(), warning.message));
+        warnings.iter().for_each(|warning| eprintln!("{warning}"));
     }
     Ok(())
 }

@@ -42,6 +42,9 @@ pub enum Origin<'a> {
 pub struct Improved {
     /// The model.
     pub model: Box<HostModel>,
+    /// What the recording was compared with, as an image can hold it: a fitted model itself, the law of a simulation as it was given,
+    /// or the static model of the recording. `None` where that is no valid model.
+    pub compared_with: Option<Box<HostModel>>,
     /// One sentence a finding.
     pub remarks: Vec<String>,
 }
@@ -55,70 +58,84 @@ const OUTPUT_ROOM: f64 = 2.0;
 pub fn improve(diagnosis: &Diagnosis, comparison: &Comparison, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
     let state = comparison.prepare(Lock::Nothing).state;
     let places = if let Origin::Model(model) = origin { moving_constants(model, &state) } else { Vec::new() };
-    let [before, friction] = [&diagnosis.baseline_refit, &diagnosis.improved_refit]
-        .map(|refit| refitted_friction(diagnosis.base, refit, (origin, &places), &state));
-    let dissipated =
-        |friction: &Friction<'_>| -> Vec<f64> { state.velocity.iter().map(|v| (friction(*v) * v).abs()).collect() };
-    let [measured, evaluated] = [&before, &friction].map(dissipated);
-    let context = Context {
-        smoothing_velocity: state.sign_velocity,
-        load_scale: quantile_of_load(&state),
-        longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
-        power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
-        power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
-        duration: state.time.last()? - state.time.first()?,
-        may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
-    };
-    let mut terms = Terms { rigid_body: rigid_body(diagnosis, &comparison.signals, origin), ..Terms::default() };
-    if let Origin::Model(model) = origin {
-        terms.effects.extend(model.effects.iter().cloned());
-    }
-    let (mut model, mut cells) = match origin {
-        Origin::Model(model) if movement(model) != Movement::Curve => {
-            (moved_law(diagnosis, (model, &places), &mut terms, &state)?, model.cells.to_vec())
-        }
-        _ => table_model(&friction, origin, &state, unit),
-    };
-    terms.first_cell = cells.len() as u16;
-    let mut remarks = Vec::new();
-    if let Origin::Simulation(law) = origin {
-        let written = |effect| write_term(&mut terms, &context, effect, ", as the simulation holds it");
-        remarks.extend(law.effects().map(written));
-    }
-    remarks.extend(write_findings(diagnosis, &mut terms, &context));
-    model.rigid_body = terms.rigid_body;
-    cells.extend(&terms.cells);
-    model.cells = Pool::from_slice(&cells).ok()?;
-    model.effects = terms.effects.iter().cloned().collect();
-    add_channels(&mut model, &terms.channels, &state)?;
-    let largest = comparison.signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
-    let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
-    model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
-    model.validate().ok()?;
-    Some(Improved { model, remarks })
+    let writer = Writer { diagnosis, signals: &comparison.signals, origin, unit, state, places };
+    let (model, remarks) = writer.model_of(&diagnosis.improved_refit)?;
+    Some(Improved { model, compared_with: writer.compared_with(), remarks })
 }
 
-/// The model that a recording was compared with, as an image can hold it: a fitted model itself, the law of a simulation as it was
-/// given, or the static model of the recording. `None` where that is no valid model.
-pub fn compared_with(
-    diagnosis: &Diagnosis,
-    comparison: &Comparison,
-    origin: Origin<'_>,
+/// What the models of one diagnosis are written from.
+struct Writer<'a> {
+    diagnosis: &'a Diagnosis,
+    signals: &'a Signals,
+    origin: Origin<'a>,
     unit: Unit,
-) -> Option<Box<HostModel>> {
-    let mut baseline = diagnosis.baseline_refit.clone();
-    match origin {
-        Origin::Model(model) => return Some(Box::new(model.clone())),
-        Origin::Simulation(_) => baseline.base.fill(0.0),
-        Origin::Recording(_) => {}
-    }
-    let unimproved = Diagnosis { improved_refit: baseline, ..diagnosis.clone() };
-    Some(improve(&unimproved, comparison, origin, unit)?.model)
+    state: JointState,
+    /// Places of a formula's constants that move.
+    places: Vec<usize>,
 }
 
-fn write_findings(diagnosis: &Diagnosis, terms: &mut Terms, context: &Context) -> Vec<String> {
-    diagnosis
-        .improved_refit
+impl Writer<'_> {
+    /// The model after a refit, and in sentences what of its effects it holds.
+    fn model_of(&self, refit: &Refit) -> Option<(Box<HostModel>, Vec<String>)> {
+        let Self { diagnosis, origin, ref state, ref places, .. } = *self;
+        let [before, friction] = [&diagnosis.baseline_refit, refit]
+            .map(|refit| refitted_friction(diagnosis.base, refit, (origin, places), state));
+        let dissipated =
+            |friction: &Friction<'_>| -> Vec<f64> { state.velocity.iter().map(|v| (friction(*v) * v).abs()).collect() };
+        let [measured, evaluated] = [&before, &friction].map(dissipated);
+        let context = Context {
+            smoothing_velocity: state.sign_velocity,
+            load_scale: quantile_of_load(state),
+            longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
+            power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
+            power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
+            duration: state.time.last()? - state.time.first()?,
+            may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
+        };
+        let rigid_body = rigid_body((diagnosis.base, refit), self.signals, origin);
+        let mut terms = Terms { rigid_body, ..Terms::default() };
+        if let Origin::Model(model) = origin {
+            terms.effects.extend(model.effects.iter().cloned());
+        }
+        let (mut model, mut cells) = match origin {
+            Origin::Model(model) if movement(model) != Movement::Curve => {
+                (moved_law(&refit.base, (model, places), &mut terms, state)?, model.cells.to_vec())
+            }
+            _ => table_model(&friction, origin, state, self.unit),
+        };
+        terms.first_cell = cells.len() as u16;
+        let mut remarks = Vec::new();
+        if let Origin::Simulation(law) = origin {
+            let written = |effect| write_term(&mut terms, &context, effect, ", as the simulation holds it");
+            remarks.extend(law.effects().map(written));
+        }
+        remarks.extend(write_findings(refit, &mut terms, &context));
+        model.rigid_body = terms.rigid_body;
+        cells.extend(&terms.cells);
+        model.cells = Pool::from_slice(&cells).ok()?;
+        model.effects = terms.effects.iter().cloned().collect();
+        add_channels(&mut model, &terms.channels, state)?;
+        let largest = self.signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
+        let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
+        model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
+        model.validate().ok()?;
+        Some((model, remarks))
+    }
+
+    /// The model that the recording was compared with; `None` where that is no valid model.
+    fn compared_with(&self) -> Option<Box<HostModel>> {
+        let mut baseline = self.diagnosis.baseline_refit.clone();
+        match self.origin {
+            Origin::Model(model) => return Some(Box::new(model.clone())),
+            Origin::Simulation(_) => baseline.base.fill(0.0),
+            Origin::Recording(_) => {}
+        }
+        self.model_of(&baseline).map(|(model, _)| model)
+    }
+}
+
+fn write_findings(refit: &Refit, terms: &mut Terms, context: &Context) -> Vec<String> {
+    refit
         .effects
         .iter()
         .map(|fitted| match &fitted.label {
@@ -173,12 +190,12 @@ fn refitted_friction<'a>(
     }
 }
 
-fn rigid_body(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>) -> RigidBody {
+fn rigid_body((base, refit): (BaseKind, &Refit), signals: &Signals, origin: Origin<'_>) -> RigidBody {
     match origin {
         Origin::Recording(mut given) => {
             if signals.rigid_body.is_none() {
-                let friction = friction_basis(diagnosis.base, 1.0, 1.0, 1.0).len();
-                given.inertia += diagnosis.improved_refit.base.get(friction).copied().unwrap_or(0.0) as f32;
+                let friction = friction_basis(base, 1.0, 1.0, 1.0).len();
+                given.inertia += refit.base.get(friction).copied().unwrap_or(0.0) as f32;
             }
             given
         }
@@ -192,12 +209,11 @@ fn rigid_body(diagnosis: &Diagnosis, signals: &Signals, origin: Origin<'_>) -> R
 
 /// The law of a formula or a network with its parameters where the refit moved them.
 fn moved_law(
-    diagnosis: &Diagnosis,
+    refitted: &[f64],
     (model, places): (&HostModel, &[usize]),
     terms: &mut Terms,
     state: &JointState,
 ) -> Option<Box<HostModel>> {
-    let refitted = &diagnosis.improved_refit.base;
     if movement(model) == Movement::Constants {
         return moved_constants(model, places, refitted);
     }

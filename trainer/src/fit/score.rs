@@ -4,10 +4,9 @@ use super::model::HostModel;
 use super::outcome::{RestScore, Score, SplitScore, Trace};
 use super::predict::{Prediction, every_row, nothing_recorded, predict};
 use crate::error::{Error, Result};
-use crate::numerics::statistics::quantile;
 use crate::recording::Recording;
-use crate::samples::Samples;
 use crate::samples::filter::{GaussianFilter, Order};
+use crate::samples::{Samples, top_speed};
 
 /// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
 const COMPARISON_RATE_HZ: f64 = 100.0;
@@ -18,8 +17,6 @@ const COMPARISON_SIGMA_S: f64 = 0.2415 / (0.5 * COMPARISON_RATE_HZ);
 const REST_SHARE: f64 = 0.01;
 /// Up to this share of the top speed friction may be that of break-away.
 const SLOW_SHARE: f64 = 0.1;
-/// Quantile of the speed that counts as the top speed.
-const TOP_QUANTILE: f64 = 0.999;
 
 /// What a model makes of a recording, and how well it agrees.
 ///
@@ -87,7 +84,7 @@ impl SplitScore {
     #[must_use]
     pub fn of(velocity: Option<&[f64]>, measured: &[f64], prediction: &Prediction) -> Self {
         let speed = |row: usize| velocity.map_or(f64::INFINITY, |velocity| velocity[row].abs());
-        let top = velocity.map_or(0.0, |velocity| quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE));
+        let top = velocity.map_or(0.0, top_speed);
         let (moving, rest): (Vec<usize>, Vec<usize>) =
             (0..measured.len()).partition(|&row| speed(row) > REST_SHARE * top);
         let total = prediction.total();
@@ -109,7 +106,7 @@ impl SplitScore {
         let n = traces.iter().map(|trace| trace.split.rest.n).sum();
         let inside: f64 = traces.iter().map(|trace| rows(trace) * trace.split.rest.inside_breakaway).sum();
         for trace in traces {
-            let top = quantile(trace.velocity.iter().map(|v| v.abs()), TOP_QUANTILE);
+            let top = top_speed(&trace.velocity);
             let moves = |row: &usize| trace.velocity.get(*row).is_none_or(|v| v.abs() > REST_SHARE * top);
             for row in (0..trace.measured.len()).filter(moves) {
                 measured.push(trace.measured[row]);

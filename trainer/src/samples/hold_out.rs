@@ -70,7 +70,6 @@ pub fn period(samples: &Samples, rows: &Range<usize>) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Axis;
 
     fn samples(parts: &[Vec<f64>]) -> Samples {
         let mut recordings = Vec::new();
@@ -79,24 +78,7 @@ mod tests {
             recordings.push((String::new(), start..start + part.len()));
             start += part.len();
         }
-        let velocity: Vec<f64> = parts.concat();
-        Samples {
-            axis: Axis::Rotary,
-            time: (0..start).map(|i| i as f64 * 0.01).collect(),
-            position: None,
-            velocity: Some(velocity),
-            acceleration: None,
-            actuator: None,
-            actuator_unit: "Nm",
-            rigid_body: None,
-            friction: None,
-            recorded: None,
-            channels: Vec::new(),
-            segments: recordings.iter().map(|(_, rows)| rows.clone()).collect(),
-            recordings,
-            rate_hz: Some(100.0),
-            filter: String::new(),
-        }
+        Samples { recordings, ..Samples::of_velocity(parts.concat()) }
     }
 
     fn wave(frequencies: &[f64], noise: f64) -> Vec<f64> {

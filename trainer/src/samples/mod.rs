@@ -27,7 +27,16 @@ pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 
 use crate::error::{Error, Result, codes};
+use crate::numerics::statistics::quantile;
 use crate::recording::Axis;
+
+/// Quantile of the speed that counts as the top speed; what is above may be noise.
+const TOP_QUANTILE: f64 = 0.999;
+
+/// Speed that all but a thousandth of the samples stay below, in the unit of the velocity.
+pub(crate) fn top_speed(velocity: &[f64]) -> f64 {
+    quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE)
+}
 
 /// Filtered samples on a uniform grid, segment after segment; every list has the same length.
 #[derive(Clone, Debug)]

@@ -168,7 +168,6 @@ pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Axis;
 
     /// Friction over velocity, optionally growing with load; load and temperature move on their own.
     fn samples(load_share: f64) -> (Samples, Vec<f64>) {
@@ -181,21 +180,8 @@ mod tests {
             .map(|(v, l)| (2.0 + load_share * l.abs()) * (v / 0.01).tanh() + 0.5 * v)
             .collect();
         let samples = Samples {
-            axis: Axis::Rotary,
-            time: (0..n).map(|i| i as f64 * 0.01).collect(),
-            position: None,
-            velocity: Some(velocity),
-            acceleration: None,
-            actuator: None,
-            actuator_unit: "Nm",
-            rigid_body: None,
-            friction: None,
-            recorded: None,
             channels: vec![("load_torque".into(), load), ("temperature".into(), temperature)],
-            segments: std::iter::once(0..n).collect(),
-            recordings: vec![("made".into(), 0..n)],
-            rate_hz: Some(100.0),
-            filter: String::new(),
+            ..Samples::of_velocity(velocity)
         };
         (samples, friction)
     }

@@ -194,3 +194,27 @@ fn a_separated_recording_is_taken_as_it_is() {
     assert_eq!(samples.input("load").unwrap()[7], 7.0);
     assert_eq!(samples.require_input("humidity").unwrap_err().code().id, "FRK-U002");
 }
+
+impl Samples {
+    /// Samples at 100 Hz of one recording of which nothing but the velocity is known.
+    pub(super) fn of_velocity(velocity: Vec<f64>) -> Self {
+        let rows = 0..velocity.len();
+        Self {
+            axis: Axis::Rotary,
+            time: rows.clone().map(|i| i as f64 * 0.01).collect(),
+            position: None,
+            velocity: Some(velocity),
+            acceleration: None,
+            actuator: None,
+            actuator_unit: "Nm",
+            rigid_body: None,
+            friction: None,
+            recorded: None,
+            channels: Vec::new(),
+            segments: vec![rows.clone()],
+            recordings: vec![("made".into(), rows)],
+            rate_hz: Some(100.0),
+            filter: String::new(),
+        }
+    }
+}

@@ -10,10 +10,9 @@ use rayon::prelude::*;
 use super::prepare::prepare;
 use super::regression::{least_squares, norm};
 use super::rigid_body;
-use super::{Preparation, Samples};
+use super::{Preparation, Samples, top_speed};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
-use crate::numerics::statistics::quantile;
 use crate::recording::Recording;
 
 /// Factor from one width to the next.
@@ -30,8 +29,6 @@ const LEARNING_RATIO: f64 = 1.5;
 /// Where the smoothed signs of the velocity have three quarters of their height, as shares of the top speed: sharp as
 /// Coulomb friction, and wide as what a Stribeck curve adds to it.
 const SIGN_WIDTHS: [f64; 2] = [0.02, 0.1];
-/// Quantile of the speed that counts as the top speed; what is above may be noise.
-const TOP_QUANTILE: f64 = 0.999;
 
 /// One preparation with what it leaves.
 #[derive(Clone, Debug)]
@@ -166,7 +163,7 @@ fn given_inertia(joint: &Joint, samples: &Samples) -> f64 {
 
 /// Friction over velocity as a few smooth shapes that serve at any width: signs, viscous, their asymmetries, a constant.
 fn friction_columns(velocity: &[f64]) -> Vec<Vec<f64>> {
-    let top = quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE).max(f64::MIN_POSITIVE);
+    let top = top_speed(velocity).max(f64::MIN_POSITIVE);
     let mut columns: Vec<Vec<f64>> =
         SIGN_WIDTHS.iter().map(|width| velocity.iter().map(|v| (v / (width * top)).tanh()).collect()).collect();
     columns.push(velocity.to_vec());

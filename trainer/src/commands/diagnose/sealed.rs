@@ -1,51 +1,39 @@
 //! The figures that are told of an improved model: the written image against what the recording was compared with, as
 //! `trainer predict` sees them, on rows that decided nothing.
 
-use crate::commands::measurement::motion;
-use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::answer::sealed::{Residuals, SealedScore};
-use crate::error::Result;
+use crate::diagnose::measurement::join::follow_s;
 use crate::fit::HostModel;
-use crate::fit::predict::{every_row, predict};
-use crate::joint::Joint;
+use crate::fit::outcome::Trace;
+use crate::fit::score::trace;
 use crate::recording::Recording;
 use serde_json::{Value, json};
 
-/// Scores two models on the sealed stretches of recordings that follow each other. `None` where nothing is sealed, or a model cannot
+/// Scores two models on stretches (from, to; s) of recordings that follow each other. `None` where there are none, or a model cannot
 /// predict the recordings.
 pub(super) fn sealed_score(
-    diagnosis: &Diagnosis,
+    when_s: &[[f64; 2]],
     recordings: &[Recording],
-    joint: &Joint,
     period_s: f64,
     [before, after]: [&HostModel; 2],
 ) -> Option<SealedScore> {
-    if diagnosis.sealed_s.is_empty() {
+    if when_s.is_empty() {
         return None;
     }
     let mut all = Residuals { time: Vec::new(), before: Vec::new(), after: Vec::new() };
     for recording in recordings {
-        let (recording, _) = motion(recording.clone(), joint).ok()?;
-        let (time, left) = residual(before, &recording).ok()?;
-        let (_, left_after) = residual(after, &recording).ok()?;
-        // Recordings whose clock begins anew follow each other at once, as they do in the diagnosis.
-        let end = all.time.last().copied().unwrap_or(f64::NEG_INFINITY);
-        let begin = *time.first()?;
-        let shift = if begin > end { 0.0 } else { end + period_s - begin };
-        all.time.extend(time.iter().map(|time| time + shift));
-        all.before.extend(left);
-        all.after.extend(left_after);
+        let [before, after] = [trace(before, recording).ok()?, trace(after, recording).ok()?];
+        let shift_s = follow_s(&all.time, &before.time, period_s);
+        all.before.extend(residual(&before));
+        all.after.extend(residual(&after));
+        all.time.extend(before.time.iter().map(|time| time + shift_s));
     }
-    SealedScore::of(&all, &diagnosis.sealed_s)
+    SealedScore::of(&all, when_s)
 }
 
-/// Time of every row, s, and recorded less predicted actuator.
-fn residual(model: &HostModel, recording: &Recording) -> Result<(Vec<f64>, Vec<f64>)> {
-    let samples = every_row(model, recording)?;
-    let predicted = predict(model, &samples)?.total();
-    let recorded = samples.recorded.as_deref().unwrap_or_default();
-    let left = recorded.iter().zip(predicted).map(|(recorded, predicted)| recorded - predicted).collect();
-    Ok((samples.time, left))
+/// Recorded less predicted actuator.
+fn residual(trace: &Trace) -> impl Iterator<Item = f64> {
+    trace.measured.iter().zip(&trace.predicted).map(|(measured, predicted)| measured - predicted)
 }
 
 /// As the JSON of a diagnosis carries it.

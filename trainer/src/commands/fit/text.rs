@@ -14,8 +14,7 @@ const DIGITS: usize = 4;
 
 /// What `trainer fit` prints.
 pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], image: &Path, seconds: f64) -> String {
-    let mut text: String =
-        warnings.iter().map(|warning| format!("warning     {} {}\n", warning.code(), warning.message)).collect();
+    let mut text: String = warnings.iter().map(|warning| format!("warning     {warning}\n")).collect();
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, outcome, image, seconds);
     text

@@ -14,7 +14,6 @@ use crate::numerics::covariance;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Dimension, EffectId};
-use std::ops::Range;
 
 /// Share of the top speed above which a friction curve is taken for Coulomb and viscous: below, it turns over.
 const SLIDING_SHARE: f64 = 0.2;
@@ -58,10 +57,10 @@ impl FrictionLevel {
         if accepted.iter().any(is_scaled) {
             return Self::Unchanged;
         }
-        let given = |refit: &Refit| with_level_as_given(workbench, refit);
-        let Some(change) = Change::of(workbench, &given(improved)) else { return Self::Unchanged };
+        let given = improved.with_base_as_given(workbench);
+        let Some(change) = Change::of(workbench, &given) else { return Self::Unchanged };
         let size = root_mean_square(&change.torque);
-        let Some(proof) = prove(workbench, &given(improved), improved) else { return Self::Unchanged };
+        let Some(proof) = prove(workbench, &given, improved) else { return Self::Unchanged };
         if proof.ratio_ci95[1] >= 1.0 {
             return Self::Unchanged;
         }
@@ -70,15 +69,8 @@ impl FrictionLevel {
         }
         let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: change.p_value(), rivals: 0 };
         let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
-        Self::Wrong { finding, torque: change.torque, as_given: given(baseline) }
+        Self::Wrong { finding, torque: change.torque, as_given: baseline.with_base_as_given(workbench) }
     }
-}
-
-/// A refit with the parameters of the reference back at their given values.
-fn with_level_as_given(workbench: &Workbench, refit: &Refit) -> Refit {
-    let mut given = refit.clone();
-    given.base[..workbench.base.names.len()].fill(0.0);
-    given
 }
 
 /// Coulomb and viscous friction that a reference lacks.
@@ -95,9 +87,8 @@ impl Change {
         let columns = prepared.filtered_all(&[prepared.state.sign.clone(), prepared.state.velocity.clone()]);
         let left = rest(workbench, given);
         let coefficients = least_squares(&columns, &left, &prepared.open_runs())?;
-        let open: Vec<Vec<Range<usize>>> =
-            prepared.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect();
-        let scatter = covariance::of_blocks(&columns, &residual(&columns, &left, &coefficients), &open)?;
+        let left = residual(&columns, &left, &coefficients);
+        let scatter = covariance::of_blocks(&columns, &left, &prepared.open_blocks())?;
         let deviation = (0..columns.len()).map(|i| scatter[(i, i)].max(0.0).sqrt()).collect();
         Some(Self { torque: weighted(&columns, &coefficients), coefficients, deviation })
     }

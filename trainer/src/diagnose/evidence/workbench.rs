@@ -136,10 +136,8 @@ impl<'a> Workbench<'a> {
     }
 
     pub(crate) fn bench(&self, base: Vec<Vec<f64>>, noise: &Noise) -> Bench {
-        let blocks =
-            self.prepared.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect();
         let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
-        Bench::new(self.whitened(&base, noise), target, blocks)
+        Bench::new(self.whitened(&base, noise), target, self.prepared.open_blocks())
     }
 
     /// LawUncertaintys of the reference beside the base of a bench.

@@ -19,6 +19,15 @@ pub enum Unjoinable {
 /// Largest relative difference of two sample periods that are the same.
 const SAME_PERIOD: f64 = 1e-3;
 
+/// By how much (s) the times of a later recording move where it is put behind an earlier one: a clock that began anew goes on a period
+/// after the last row; nothing where it went on by itself, or nothing lies before it.
+pub(crate) fn follow_s(before: &[f64], next: &[f64], period_s: f64) -> f64 {
+    match (before.last(), next.first()) {
+        (Some(end), Some(begin)) if begin <= end => end + period_s - begin,
+        _ => 0.0,
+    }
+}
+
 impl Signals {
     /// Puts a later recording of the same joint behind this one. Where its clock began anew it is taken to follow at
     /// once; a channel that only one of both has is dropped.
@@ -30,9 +39,7 @@ impl Signals {
             return Err(Unjoinable::Period { first: self.period, next: next.period });
         }
         let count = self.time.len();
-        let end = self.time.last().copied().unwrap_or(0.0);
-        let begin = next.time.first().copied().unwrap_or(end);
-        let shift = if begin > end { 0.0 } else { end + self.period - begin };
+        let shift = follow_s(&self.time, &next.time, self.period);
         self.time.extend(next.time.iter().map(|time| time + shift));
         self.position.extend(next.position);
         self.torque.extend(next.torque);

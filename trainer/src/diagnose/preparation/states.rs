@@ -194,7 +194,12 @@ impl Prepared {
 
     /// Runs of rows that take part in fitting and choosing.
     pub fn open_runs(&self) -> Vec<Range<usize>> {
-        self.blocks.iter().filter(|block| !block.locked).flat_map(|block| block.runs.clone()).collect()
+        self.open_blocks().concat()
+    }
+
+    /// The same block by block.
+    pub(crate) fn open_blocks(&self) -> Vec<Vec<Range<usize>>> {
+        self.blocks.iter().filter(|block| !block.locked).map(|block| block.runs.clone()).collect()
     }
 
     /// Sealed stretches of the recording, from and to in s.

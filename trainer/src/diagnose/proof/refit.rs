@@ -25,6 +25,15 @@ pub struct Refit {
     pub plain: bool,
 }
 
+impl Refit {
+    /// The same with the parameters of a reference back where they were given: nuisances and effects stay.
+    pub(crate) fn with_base_as_given(&self, workbench: &Workbench) -> Self {
+        let mut given = self.clone();
+        given.base[..workbench.base.names.len()].fill(0.0);
+        given
+    }
+}
+
 /// Sweeps over the shapes, one effect at a time with the others in the base.
 const SWEEPS: usize = 2;
 

@@ -2,16 +2,13 @@
 
 use super::formula::thinned;
 use crate::fit::data::rigid;
-
 use crate::law::{FormFit, LawData, Shape, SignForm, Structure, Term, fit_structure};
-use crate::numerics::statistics::quantile;
+use crate::samples::top_speed;
 
 /// Most samples that its constants are fitted to.
 const MOST_SAMPLES: usize = 12_000;
 /// Where the smoothed sign has three quarters of its height, as a share of the top speed, unless the data say.
 const SIGN_WIDTH: f64 = 0.02;
-/// Quantile of the speed that counts as the top speed.
-const TOP_QUANTILE: f64 = 0.999;
 
 /// Which terms the simple model has; fewer where more would have the wrong sign.
 #[derive(Clone, Debug)]
@@ -71,7 +68,7 @@ impl SimpleForm {
 /// one or two constants, so that the error on the rows themselves decides.
 pub(in crate::fit) fn simple(data: &LawData) -> (Option<Simple>, Option<Simple>) {
     let velocity = data.channels.first().map(|channel| channel.values.as_slice()).unwrap_or_default();
-    let top_speed = quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE);
+    let top_speed = top_speed(velocity);
     let has_inertia = data.nuisance.iter().any(|column| rigid::is_inertia(&column.name));
     let forms = SimpleForm::all(top_speed).into_iter().filter(|form| form.with_inertia || has_inertia);
     let mut free: Option<Simple> = None;
