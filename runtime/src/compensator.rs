@@ -5,30 +5,93 @@ use frikan_shared::image::ImageError;
 use frikan_shared::model::Model;
 
 use crate::evaluate::within;
-use crate::friction::{Friction, FrictionState, Measurement};
+use crate::friction::{Friction, FrictionState, Measurement, Warmth};
 use crate::slots::load;
 use crate::table_models::{TableWithPresliding, table_alone};
-use crate::usable::from_0_to;
+use crate::usable::above_0_to;
 
 /// Longest sample period that a step takes for real, s.
 const LONGEST_SAMPLE: f32 = 1.0;
 
-/// Limits of the firmware.
+/// Limits of the firmware, all in force at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     gain: f32,
     torque: f32,
     slew: f32,
+    position: f32,
+}
+
+/// Which limit cannot be kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitError {
+    /// The gain is negative or not finite.
+    Gain,
+    /// The largest torque is negative or not finite.
+    Torque,
+    /// The slew is not positive or not finite: a torque that cannot change would stay for ever.
+    Slew,
+    /// The largest position is negative or not finite.
+    Position,
 }
 
 impl Limits {
+    /// No compensation at all.
+    pub const OFF: Self = Self { gain: 0.0, torque: 0.0, slew: f32::MAX, position: 0.0 };
+
     /// `gain`: share of the friction that is compensated, 0 to 1 in most drives; `torque`: largest torque put out, in the unit of the
-    /// model's output; `slew`: its largest change in a second. What is negative or not finite counts as 0, that is, off.
-    #[must_use]
-    pub fn new(gain: f32, torque: f32, slew: f32) -> Self {
-        let sane = |limit: f32| if limit > 0.0 && limit.is_finite() { limit } else { 0.0 };
-        Self { gain: sane(gain), torque: sane(torque), slew: sane(slew) }
+    /// model's output; `slew`: its largest change in a second. No position is put out until [`Limits::with_position`] allows one.
+    ///
+    /// # Errors
+    /// [`LimitError`] where gain or torque is negative, the slew is not positive, or one of them is not finite.
+    pub fn new(gain: f32, torque: f32, slew: f32) -> Result<Self, LimitError> {
+        Ok(Self {
+            gain: not_negative(gain).ok_or(LimitError::Gain)?,
+            torque: not_negative(torque).ok_or(LimitError::Torque)?,
+            slew: not_negative(slew).filter(|slew| *slew > 0.0).ok_or(LimitError::Slew)?,
+            position: 0.0,
+        })
     }
+
+    /// With positions of up to `position` rad put out, to either side.
+    ///
+    /// # Errors
+    /// [`LimitError::Position`] where it is negative or not finite.
+    pub fn with_position(self, position: f32) -> Result<Self, LimitError> {
+        Ok(Self { position: not_negative(position).ok_or(LimitError::Position)?, ..self })
+    }
+
+    /// The share of the friction that is compensated.
+    #[must_use]
+    pub fn gain(&self) -> f32 {
+        self.gain
+    }
+
+    /// The largest torque put out.
+    #[must_use]
+    pub fn torque(&self) -> f32 {
+        self.torque
+    }
+
+    /// Its largest change in a second.
+    #[must_use]
+    pub fn slew(&self) -> f32 {
+        self.slew
+    }
+
+    /// As near to the torque `wanted` as the torque limit allows and a change of at most `reach` from `torque`, which may lie beyond a limit
+    /// that is new. Written as what is taken back of the change wanted, so that rounding does not lead beyond the limit.
+    #[inline(always)]
+    pub(crate) fn approach(&self, torque: f32, wanted: f32, reach: f32) -> f32 {
+        let wanted = within(wanted, self.torque);
+        let change = wanted - torque;
+        wanted - (change - within(change, reach))
+    }
+}
+
+/// A limit without the sign of a zero; none where it is negative or not finite.
+fn not_negative(limit: f32) -> Option<f32> {
+    (limit >= 0.0 && limit.is_finite()).then(|| limit.abs())
 }
 
 /// Whether a torque is a compensation.
@@ -38,7 +101,7 @@ pub enum Status {
     Active,
     /// No usable model: the torque is 0.
     NoModel(ImageError),
-    /// A channel that the model reads, or the sample period, was not finite: the torque is 0.
+    /// A channel that the model reads was missing or not finite, or the sample period not above 0 s and at most 1 s: the torque is 0.
     NotFinite,
 }
 
@@ -47,7 +110,7 @@ pub enum Status {
 pub struct Compensation {
     /// Torque to add, in the unit of the model's output.
     pub torque: f32,
-    /// What the model says of the link's position against the motor's, rad; 0 unless active.
+    /// What the model says of the link's position against the motor's, rad, within the limit; 0 unless active.
     pub position: f32,
     /// Whether it is a compensation.
     pub status: Status,
@@ -106,28 +169,41 @@ impl<const CELLS: usize> Compensator<CELLS> {
         self.model.as_ref().map_or_else(|error| Status::NoModel(*error), |_| Status::Active)
     }
 
-    /// Changes the limits between two steps; the slew limit holds across the change.
+    /// Changes the limits between two steps; the slew limit holds across the change, that of a lower torque limit too.
     pub fn set_limits(&mut self, limits: Limits) {
         self.running.limits = limits;
     }
 
-    /// Forgets what the effects remember and starts from zero torque.
+    /// Starts from zero torque, at rest and with nothing wound up; the warmth of the joint stays.
     pub fn reset(&mut self) {
-        self.running.state = FrictionState::new();
+        self.restore(&self.warmth(), 0.0);
+    }
+
+    /// The warmth of the joint, for the firmware to keep while the power is off.
+    #[must_use]
+    pub fn warmth(&self) -> Warmth {
+        self.model().map_or(Warmth::COLD, |model| self.running.state.warmth(&model.effects))
+    }
+
+    /// As [`Compensator::reset`], and as warm as `warmth` is after a rest of so many seconds. Of a rest that nobody measured, 0 s is the
+    /// safe guess: warm joints have the lower friction.
+    pub fn restore(&mut self, warmth: &Warmth, rest: f32) {
+        let effects = self.model.as_ref().map_or(&[][..], |model| &model.effects);
+        self.running.state = FrictionState::with_warmth(warmth, effects, rest);
         self.running.torque = 0.0;
     }
 
     /// The compensation after a sample period of `dt` seconds. Call it at a fixed rate.
     ///
-    /// Zero torque at once, and the slew starting from there, when anything that the model reads is not finite or `dt` is not from 0 to 1 s;
-    /// what the effects remember is then as before. With a floating-point unit the number of instructions depends on the model alone.
+    /// Zero torque at once, and the slew starting from there, when anything that the model reads is missing or not finite or `dt` is not
+    /// above 0 s and at most 1 s; what the effects remember is then as before. With a floating-point unit the number of instructions depends on the model alone.
     #[must_use]
     pub fn step(&mut self, measurement: &Measurement, dt: f32) -> Compensation {
         let model = match &self.model {
             Ok(model) => model,
             Err(error) => return Compensation { torque: 0.0, position: 0.0, status: Status::NoModel(*error) },
         };
-        let (running, is_step) = (&mut self.running, from_0_to(LONGEST_SAMPLE, dt));
+        let (running, is_step) = (&mut self.running, above_0_to(LONGEST_SAMPLE, dt));
         // The commonest models here, the others in a function of its own: a short way saves no registers of a long one.
         if let Some(friction) = table_alone(model, measurement, is_step) {
             running.put_out(friction, dt)
@@ -135,7 +211,7 @@ impl<const CELLS: usize> Compensator<CELLS> {
             let friction = table.step(&mut running.state, measurement, dt, is_step);
             running.put_out(friction, dt)
         } else {
-            running.step_any(model, measurement, dt)
+            running.step_any(model, measurement, dt, is_step)
         }
     }
 }
@@ -143,8 +219,15 @@ impl<const CELLS: usize> Compensator<CELLS> {
 impl Running {
     /// A step of any model.
     #[inline(never)]
-    fn step_any<const CELLS: usize>(&mut self, model: &Model<CELLS>, sample: &Measurement, dt: f32) -> Compensation {
-        let friction = self.state.step_within(model, sample, dt, LONGEST_SAMPLE);
+    fn step_any<const CELLS: usize>(
+        &mut self,
+        model: &Model<CELLS>,
+        sample: &Measurement,
+        dt: f32,
+        is_step: i32,
+    ) -> Compensation {
+        let mut friction = self.state.step_within(model, sample, dt, is_step);
+        friction.position = within(friction.position, self.limits.position);
         self.put_out(friction, dt)
     }
 
@@ -153,12 +236,14 @@ impl Running {
     fn put_out(&mut self, friction: Friction, dt: f32) -> Compensation {
         let limits = &self.limits;
         // Nothing here is NaN but where the sample is of no use, and then nothing of it is kept.
-        let change = within(limits.gain * friction.torque - self.torque, limits.slew * dt);
-        self.torque = friction.usable.or_zero(within(self.torque + change, limits.torque));
+        let torque = limits.approach(self.torque, limits.gain * friction.torque, limits.slew * dt);
+        self.torque = friction.usable.or_zero(torque);
         let status = if friction.usable.is_usable() { Status::Active } else { Status::NotFinite };
         Compensation { torque: self.torque, position: friction.position, status }
     }
 }
 
+#[cfg(test)]
+mod faults;
 #[cfg(test)]
 mod tests;

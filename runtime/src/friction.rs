@@ -7,10 +7,11 @@ use frikan_shared::units::Quantity;
 
 use crate::effects::{self, Contribution, Memory, Motion, contribution, frictional_lag, travel};
 use crate::evaluate::{evaluate, limited};
-use crate::usable::{Usable, finite, from_0_to};
+use crate::usable::{Usable, finite, from_0_to, not_zero};
 
-/// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything; one that it does use and
+/// that is missing, NaN, gives no friction. By default every channel is missing.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Velocity, measured or of the reference, rad/s.
     pub velocity: f32,
@@ -26,7 +27,23 @@ pub struct Measurement {
     pub other: [f32; MAX_INPUTS],
 }
 
+impl Default for Measurement {
+    fn default() -> Self {
+        Self::MISSING
+    }
+}
+
 impl Measurement {
+    /// No channel is measured.
+    pub const MISSING: Self = Self::all(f32::NAN);
+    /// At rest, at the origin, unloaded, at 0 degC.
+    pub const ZERO: Self = Self::all(0.0);
+
+    const fn all(value: f32) -> Self {
+        let other = [value; MAX_INPUTS];
+        Self { velocity: value, position: value, acceleration: value, load: value, temperature: value, other }
+    }
+
     /// The channels that `inputs` name, in their order; the rest is 0.
     #[must_use]
     pub fn channels(&self, inputs: &[Input]) -> [f32; MAX_INPUTS] {
@@ -70,6 +87,22 @@ pub struct FrictionState {
     pub(crate) travel: Memory,
 }
 
+/// How warm a joint is that has no temperature sensor: what survives a reset, and a loss of power where the firmware keeps it.
+///
+/// Plain numbers, to be written anywhere and read back: the filtered dissipated power of each effect of the model, W, 0 for
+/// effects that are no warm-up. What is negative, not finite or above the model's power limit is taken for the nearest that it may be, so that
+/// the memory of another image, or damaged memory, does no harm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Warmth {
+    /// Filtered dissipated power by the place of the effect, W.
+    pub power: [f32; MAX_EFFECTS],
+}
+
+impl Warmth {
+    /// Nothing has dissipated for long.
+    pub const COLD: Self = Self { power: [0.0; MAX_EFFECTS] };
+}
+
 impl FrictionState {
     /// At rest, cold, nothing wound up.
     #[must_use]
@@ -81,11 +114,26 @@ impl FrictionState {
     /// positive, for then nothing is known of it.
     #[must_use]
     pub fn after_rest(&self, effects: &[Effect], rest: f32) -> Self {
+        if rest > 0.0 { Self::with_warmth(&self.warmth(effects), effects, rest) } else { Self::default() }
+    }
+
+    /// The warmth that `effects` remember.
+    #[must_use]
+    pub fn warmth(&self, effects: &[Effect]) -> Warmth {
+        let mut warmth = Warmth::COLD;
+        for ((power, effect), memory) in warmth.power.iter_mut().zip(effects).zip(&self.memories) {
+            *power = effects::warmth(effect, memory);
+        }
+        warmth
+    }
+
+    /// At rest, nothing wound up, and as warm as `effects` are `rest` seconds after `warmth`; a rest that is not positive is none.
+    #[must_use]
+    pub fn with_warmth(warmth: &Warmth, effects: &[Effect], rest: f32) -> Self {
+        let rest = if rest > 0.0 { rest } else { 0.0 };
         let mut after = Self::default();
-        if rest > 0.0 {
-            for ((memory, effect), before) in after.memories.iter_mut().zip(effects).zip(&self.memories) {
-                *memory = effects::after_rest(effect, before, rest);
-            }
+        for ((memory, effect), power) in after.memories.iter_mut().zip(effects).zip(warmth.power) {
+            *memory = effects::warmed(effect, power, rest);
         }
         after
     }
@@ -96,25 +144,25 @@ impl FrictionState {
     /// memory as it was.
     #[must_use]
     pub fn step<const CELLS: usize>(&mut self, model: &Model<CELLS>, measurement: &Measurement, dt: f32) -> Friction {
-        self.step_within(model, measurement, dt, f32::MAX)
+        self.step_within(model, measurement, dt, from_0_to(f32::MAX, dt))
     }
 
-    /// As [`FrictionState::step`], for a `dt` of at most `longest`. No branch depends on the sample.
+    /// As [`FrictionState::step`]; `is_step` is negative where `dt` is a sample period. No branch depends on the sample.
     #[inline(always)]
     pub(crate) fn step_within<const CELLS: usize>(
         &mut self,
         model: &Model<CELLS>,
         measurement: &Measurement,
         dt: f32,
-        longest: f32,
+        is_step: i32,
     ) -> Friction {
         if model.effects.is_empty() {
-            return law_alone(model, measurement, from_0_to(longest, dt));
+            return law_alone(model, measurement, is_step);
         }
         let mut motion = Motion { angle: measurement.position, dt, ..Motion::default() };
         let mut channels = [0.0; MAX_INPUTS];
         let mut others = measurement.other.iter();
-        let (mut usable, mut reads_position) = (from_0_to(longest, dt), false);
+        let (mut usable, mut reads_position) = (is_step, false);
         for (channel, input) in channels.iter_mut().zip(&model.inputs) {
             *channel = measurement.channel(&input.quantity, &mut others);
             usable &= finite(*channel);
@@ -151,7 +199,18 @@ impl FrictionState {
 fn law_alone<const CELLS: usize>(model: &Model<CELLS>, measurement: &Measurement, is_step: i32) -> Friction {
     let channels = measurement.channels(&model.inputs);
     let usable = Usable::where_negative(channels.iter().fold(is_step, |usable, channel| usable & finite(*channel)));
-    Friction { torque: usable.or_zero(evaluate(model, &channels)), position: 0.0, usable }
+    let torque = unless_at_rest(model, &channels, evaluate(model, &channels));
+    Friction { torque: usable.or_zero(torque), position: 0.0, usable }
+}
+
+/// `torque` of the static law, or 0 where the velocity is 0: friction at rest is what holds the joint, and no law of the velocity knows it.
+#[inline(always)]
+fn unless_at_rest<const CELLS: usize>(model: &Model<CELLS>, channels: &[f32; MAX_INPUTS], torque: f32) -> f32 {
+    let is_at_rest = |(input, channel): (&Input, &f32)| {
+        if input.quantity == Quantity::Velocity { not_zero(*channel) } else { -1 }
+    };
+    let moves = model.inputs.iter().zip(channels).map(is_at_rest).fold(-1, |moves, channel| moves & channel);
+    Usable::where_negative(moves).or_zero(torque)
 }
 
 /// Rigid-body torque in force for one sample: `inertia a + gravity_sin sin q + gravity_cos cos q + offset + given_scale given`.

@@ -27,11 +27,11 @@ pub struct JointMeasurements<const JOINTS: usize> {
 }
 
 impl<const JOINTS: usize> JointMeasurements<JOINTS> {
-    /// Velocities alone; everything else 0.
+    /// Velocities alone; everything else is missing.
     #[must_use]
     pub fn of_velocity(velocity: SVector<f32, JOINTS>) -> Self {
-        let zero = SVector::from([0.0; JOINTS]);
-        Self { velocity, position: zero, acceleration: zero, load: zero, temperature: zero }
+        let missing = SVector::from([f32::NAN; JOINTS]);
+        Self { velocity, position: missing, acceleration: missing, load: missing, temperature: missing }
     }
 }
 

@@ -10,9 +10,9 @@ use crate::effects::{Motion, presliding, travel};
 use crate::evaluate::{held, within};
 use crate::friction::{Friction, FrictionState, Measurement};
 use crate::table::geometric_value;
-use crate::usable::{Usable, finite};
+use crate::usable::{Usable, finite, not_zero};
 
-/// The friction of a table of one input without effects; `None` for any other model. `is_step` is negative where the
+/// The friction of a table of the velocity, some number where it is not usable, without effects; `None` for any other model. `is_step` is negative where the
 /// sample period is one.
 #[inline(always)]
 pub(crate) fn table_alone<const CELLS: usize>(
@@ -23,10 +23,14 @@ pub(crate) fn table_alone<const CELLS: usize>(
     let (Law::Geometric(layout), [input], []) = (&model.law, &model.inputs[..], &model.effects[..]) else {
         return None;
     };
-    let channel = measurement.channel(&input.quantity, &mut measurement.other.iter());
-    let usable = Usable::where_negative(finite(channel) & is_step);
-    // Validation has proved the values of the table within the limit.
-    let torque = usable.or_zero(geometric_value(layout, &model.cells, channel));
+    if input.quantity != Quantity::Velocity {
+        return None;
+    }
+    let velocity = measurement.velocity;
+    let usable = Usable::where_negative(finite(velocity) & is_step);
+    // Validation has proved the values of the table finite and within the limit, for any velocity. At rest there is no friction of it.
+    let moves = (not_zero(velocity) >> 31) as u32;
+    let torque = f32::from_bits(geometric_value(layout, &model.cells, velocity).to_bits() & moves);
     Some(Friction { torque, position: 0.0, usable })
 }
 
@@ -58,21 +62,24 @@ impl<'a, const CELLS: usize> TableWithPresliding<'a, CELLS> {
         Some(Self { model, layout, velocity, reads_position, smoothing_velocity: *smoothing_velocity, elements })
     }
 
-    /// The friction of a sample; `is_step` is negative where the sample period `dt` is one.
+    /// The friction of a sample, some number where it is not usable; `is_step` is negative where the sample period `dt` is one.
     #[inline(always)]
     pub(crate) fn step(&self, state: &mut FrictionState, measurement: &Measurement, dt: f32, is_step: i32) -> Friction {
         let Measurement { velocity: channel, position, .. } = *measurement;
-        let position_or_zero = if self.reads_position { position } else { 0.0 };
-        let usable = Usable::where_negative(is_step & finite(channel) & finite(position_or_zero));
         let velocity = held(self.velocity, channel);
-        let travel =
-            if self.reads_position { travel::step(&mut state.travel, position, usable) } else { velocity * dt };
+        let is_usable = is_step & finite(channel);
+        let (usable, travel) = if self.reads_position {
+            let usable = Usable::where_negative(is_usable & finite(position));
+            (usable, travel::step(&mut state.travel, position, usable))
+        } else {
+            (Usable::where_negative(is_usable), velocity * dt)
+        };
         let motion = Motion { velocity, travel, usable, ..Motion::default() };
         let [memory, ..] = &mut state.memories;
         let added = presliding::step(self.smoothing_velocity, self.elements, memory, &motion);
         // Law and elements are bounded by their validation: no sum of theirs is infinite or NaN.
         let torque =
             within(geometric_value(self.layout, &self.model.cells, channel) + added.torque, self.model.output_limit);
-        Friction { torque: usable.or_zero(torque), position: 0.0, usable }
+        Friction { torque, position: 0.0, usable }
     }
 }

@@ -8,7 +8,7 @@ use core::hint::black_box;
 pub struct Usable(u32);
 
 impl Usable {
-    /// From what is negative where the sample is of use: [`finite`], [`from_0_to`], and what is common to them by `&`.
+    /// From what is negative where the sample is of use: [`finite`], [`from_0_to`], [`above_0_to`], and what is common to them by `&`.
     #[must_use]
     #[inline(always)]
     pub fn where_negative(sign: i32) -> Self {
@@ -53,6 +53,22 @@ pub fn from_0_to(end: f32, x: f32) -> i32 {
     bits.wrapping_sub(end.to_bits() as i32).wrapping_sub(1) & !bits
 }
 
+/// Negative where `x` lies above 0 and at most at `end`, which is positive and finite.
+#[must_use]
+#[inline(always)]
+pub fn above_0_to(end: f32, x: f32) -> i32 {
+    let bits = x.to_bits() as i32;
+    let below = bits.wrapping_sub(1);
+    below.wrapping_sub(end.to_bits() as i32) & !below
+}
+
+/// Negative where `x` is not 0.
+#[must_use]
+#[inline(always)]
+pub fn not_zero(x: f32) -> i32 {
+    (x.abs().to_bits() as i32).wrapping_neg()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,9 +79,15 @@ mod tests {
         let others = [f32::INFINITY, f32::NAN, f32::from_bits(0x7FFF_FFFF), f32::from_bits(0x7F80_0001)];
         for x in numbers.into_iter().chain(others).flat_map(|x| [x, -x]) {
             assert_eq!(Usable::where_negative(finite(x)).is_usable(), x.is_finite(), "{x}");
+            assert_eq!(Usable::where_negative(not_zero(x)).is_usable(), x != 0.0, "{x}");
             for end in [1.0, f32::MAX] {
                 let is_within = (0.0..=end).contains(&x) && x.is_sign_positive();
                 assert_eq!(Usable::where_negative(from_0_to(end, x)).is_usable(), is_within, "{x} to {end}");
+                assert_eq!(
+                    Usable::where_negative(above_0_to(end, x)).is_usable(),
+                    is_within && x > 0.0,
+                    "{x} to {end}"
+                );
             }
         }
     }

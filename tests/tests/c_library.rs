@@ -76,7 +76,7 @@ fn the_example_in_c_computes_the_bits_of_the_host() {
     for (name, model) in [("table", symmetric_table()), ("expression with effects", with_effects())] {
         let image = image(&model);
         let answer = torques(&emulator, &image, &values).unwrap();
-        let mut compensator = Compensator::<CELLS>::new(&image, Limits::new(LIMITS[0], LIMITS[1], LIMITS[2]));
+        let mut compensator = Compensator::<CELLS>::new(&image, Limits::new(LIMITS[0], LIMITS[1], LIMITS[2]).unwrap());
         let (rows, _) = values.as_chunks::<4>();
         let mut active = 0;
         for (row, torque) in rows.iter().zip(&answer.outputs) {

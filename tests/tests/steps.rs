@@ -161,7 +161,7 @@ fn a_wrong_compensator_is_caught() {
     let with = |change: fn(&mut Call)| {
         let mut changed = calls.clone();
         changed.iter_mut().for_each(change);
-        let mut compensator = Compensator::with_model(Ok(model.clone()), Limits::new(0.0, 0.0, 0.0));
+        let mut compensator = Compensator::with_model(Ok(model.clone()), Limits::OFF);
         let answers = changed.iter().map(|call| step(&mut compensator, call));
         compare_answers(&model, &calls, answers.collect::<Vec<_>>())
     };

@@ -33,7 +33,7 @@ enum FrikanStatus
  {
   // The torque compensates friction.
   FRIKAN_STATUS_ACTIVE = 0,
-  // A channel that the model reads, or the sample period, was not finite: the torque is 0.
+  // A channel that the model reads was missing or not finite, or the sample period not above 0 s and at most 1 s: the torque is 0.
   FRIKAN_STATUS_NOT_FINITE = 1,
   // The compensator was never started, or a pointer is null.
   FRIKAN_STATUS_NOT_STARTED = 2,
@@ -57,6 +57,8 @@ enum FrikanStatus
   FRIKAN_STATUS_MALFORMED = 11,
   // The model cannot be evaluated.
   FRIKAN_STATUS_INVALID_MODEL = 12,
+  // A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
+  FRIKAN_STATUS_BAD_LIMITS = 13,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -75,7 +77,7 @@ typedef struct {
   uint64_t storage[FRIKAN_STORAGE_WORDS];
 } FrikanCompensator;
 
-// Limits of the firmware; no image changes them. What is negative or not finite counts as 0, that is, off.
+// Limits of the firmware; no image changes them. All are finite, none is negative, and the slew is above 0.
 typedef struct {
   // Share of the friction that is compensated, 0 to 1 in most drives.
   float gain;
@@ -83,19 +85,22 @@ typedef struct {
   float torque;
   // Its largest change in a second.
   float slew;
+  // Largest position put out, rad or m; 0 for none.
+  float position;
 } FrikanLimits;
 
 // The answer to one sample.
 typedef struct {
   // Torque to add, in the unit of the model's output; 0 unless active.
   float torque;
-  // What the model says of the link's position against the motor's, rad; 0 unless active.
+  // What the model says of the link's position against the motor's, rad, within the limit; 0 unless active.
   float position;
   // Whether it is a compensation.
   FrikanStatus status;
 } FrikanCompensation;
 
-// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything.
+// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything; one that it does use and
+// that nobody measures has to be NaN, as in frikan_no_measurement, and gives no torque.
 typedef struct {
   // Velocity, measured or of the reference, rad/s or m/s.
   float velocity;
@@ -123,7 +128,8 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why.
+// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why; limits that are
+// refused leave the memory as it was.
 //
 // @param flash  where the image begins
 // @param bytes  bytes that may be read there; what follows image and tag is not looked at
@@ -159,13 +165,17 @@ FrikanCompensation frikan_step(FrikanCompensator *compensator,
                                const FrikanMeasurement *measurement,
                                float dt);
 
-// Changes the limits between two steps; the slew limit holds across the change.
+// Changes the limits between two steps; the slew limit holds across the change. BadLimits leaves those before in force.
 //
 // # Safety
 // Pointers are null or good for what their names say.
-void frikan_set_limits(FrikanCompensator *compensator, const FrikanLimits *limits);
+FrikanStatus frikan_set_limits(FrikanCompensator *compensator,
+                               const FrikanLimits *limits);
 
-// Forgets what the effects remember and starts from zero torque.
+// A measurement of which every channel is missing, to be filled in.
+FrikanMeasurement frikan_no_measurement(void);
+
+// Starts from zero torque, at rest and with nothing wound up; the warmth of the joint stays.
 //
 // # Safety
 // The pointer is null or good.

@@ -89,17 +89,18 @@ fn trust_of(key: Option<&Key>) -> Trust<'_> {
     key.map_or(Trust::Anyone, Trust::Key)
 }
 
-/// Limits of C; off for a null pointer.
+/// Limits of C; none for a null pointer and for limits that cannot be kept.
 ///
 /// # Safety
 /// `limits` is null or may be read.
-unsafe fn limits_at(limits: *const FrikanLimits) -> Limits {
+unsafe fn limits_at(limits: *const FrikanLimits) -> Option<Limits> {
     // SAFETY: the caller's word.
-    unsafe { limits.as_ref() }
-        .map_or(Limits::new(0.0, 0.0, 0.0), |limits| Limits::new(limits.gain, limits.torque, limits.slew))
+    let FrikanLimits { gain, torque, slew, position } = *unsafe { limits.as_ref() }?;
+    Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()
 }
 
-/// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why.
+/// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why; limits that are
+/// refused leave the memory as it was.
 ///
 /// @param flash  where the image begins
 /// @param bytes  bytes that may be read there; what follows image and tag is not looked at
@@ -117,6 +118,7 @@ pub unsafe extern "C" fn frikan_start(
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
     let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
+    let Some(limits) = limits else { return FrikanStatus::BadLimits };
     let trust = trust_of(key.as_ref());
     let created = match trust.stored(flash) {
         Ok(image) => Inner::trusting(image, trust, limits),
@@ -146,7 +148,8 @@ pub unsafe extern "C" fn frikan_start_from_slots(
     unsafe {
         let key = key_at(key);
         let (first, second) = (readable(first, first_bytes), readable(second, second_bytes));
-        start(compensator, Inner::from_slots(first, second, trust_of(key.as_ref()), limits_at(limits)))
+        let Some(limits) = limits_at(limits) else { return FrikanStatus::BadLimits };
+        start(compensator, Inner::from_slots(first, second, trust_of(key.as_ref()), limits))
     }
 }
 
@@ -170,20 +173,34 @@ pub unsafe extern "C" fn frikan_step(
     FrikanCompensation { torque: answer.torque, position: answer.position, status: answer.status.into() }
 }
 
-/// Changes the limits between two steps; the slew limit holds across the change.
+/// Changes the limits between two steps; the slew limit holds across the change. BadLimits leaves those before in force.
 ///
 /// # Safety
 /// Pointers are null or good for what their names say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_set_limits(compensator: *mut FrikanCompensator, limits: *const FrikanLimits) {
+pub unsafe extern "C" fn frikan_set_limits(
+    compensator: *mut FrikanCompensator,
+    limits: *const FrikanLimits,
+) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (compensator, limits) = unsafe { (inner(compensator), limits_at(limits)) };
-    if let Some(compensator) = compensator {
-        compensator.set_limits(limits);
+    match unsafe { (inner(compensator), limits_at(limits)) } {
+        (None, _) => FrikanStatus::NotStarted,
+        (_, None) => FrikanStatus::BadLimits,
+        (Some(compensator), Some(limits)) => {
+            compensator.set_limits(limits);
+            compensator.status().into()
+        }
     }
 }
 
-/// Forgets what the effects remember and starts from zero torque.
+/// A measurement of which every channel is missing, to be filled in.
+#[unsafe(no_mangle)]
+pub extern "C" fn frikan_no_measurement() -> FrikanMeasurement {
+    let Measurement { velocity, position, acceleration, load, temperature, other } = Measurement::MISSING;
+    FrikanMeasurement { velocity, position, acceleration, load, temperature, other }
+}
+
+/// Starts from zero torque, at rest and with nothing wound up; the warmth of the joint stays.
 ///
 /// # Safety
 /// The pointer is null or good.

@@ -24,7 +24,7 @@ pub const FRIKAN_OTHER_CHANNELS: usize = 4;
 pub enum FrikanStatus {
     /// The torque compensates friction.
     Active = 0,
-    /// A channel that the model reads, or the sample period, was not finite: the torque is 0.
+    /// A channel that the model reads was missing or not finite, or the sample period not above 0 s and at most 1 s: the torque is 0.
     NotFinite = 1,
     /// The compensator was never started, or a pointer is null.
     NotStarted = 2,
@@ -48,6 +48,8 @@ pub enum FrikanStatus {
     Malformed = 11,
     /// The model cannot be evaluated.
     InvalidModel = 12,
+    /// A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
+    BadLimits = 13,
 }
 
 impl From<ImageError> for FrikanStatus {
@@ -77,7 +79,7 @@ impl From<Status> for FrikanStatus {
     }
 }
 
-/// Limits of the firmware; no image changes them. What is negative or not finite counts as 0, that is, off.
+/// Limits of the firmware; no image changes them. All are finite, none is negative, and the slew is above 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrikanLimits {
@@ -87,9 +89,12 @@ pub struct FrikanLimits {
     pub torque: f32,
     /// Its largest change in a second.
     pub slew: f32,
+    /// Largest position put out, rad or m; 0 for none.
+    pub position: f32,
 }
 
-/// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything.
+/// What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything; one that it does use and
+/// that nobody measures has to be NaN, as in frikan_no_measurement, and gives no torque.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrikanMeasurement {
@@ -113,7 +118,7 @@ pub struct FrikanMeasurement {
 pub struct FrikanCompensation {
     /// Torque to add, in the unit of the model's output; 0 unless active.
     pub torque: f32,
-    /// What the model says of the link's position against the motor's, rad; 0 unless active.
+    /// What the model says of the link's position against the motor's, rad, within the limit; 0 unless active.
     pub position: f32,
     /// Whether it is a compensation.
     pub status: FrikanStatus,

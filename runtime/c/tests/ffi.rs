@@ -5,14 +5,14 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use frikan::ffi::{
-    FrikanCompensator, frikan_next_write, frikan_reset, frikan_set_limits, frikan_slot_header, frikan_start,
-    frikan_start_from_slots, frikan_step,
+    FrikanCompensator, frikan_next_write, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_slot_header,
+    frikan_start, frikan_start_from_slots, frikan_step,
 };
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
 use frikan_runtime::shared::authentication::Key;
 
 const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
-const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9 };
+const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9, position: 0.0 };
 const MOVING: FrikanMeasurement =
     FrikanMeasurement { velocity: 0.5, position: 0.0, acceleration: 0.0, load: 0.0, temperature: 0.0, other: [0.0; 4] };
 
@@ -47,7 +47,10 @@ fn a_compensator_is_off_until_it_has_an_image() {
     assert!(torque > 10.0 && status == FrikanStatus::Active);
     // SAFETY: references.
     unsafe {
-        frikan_set_limits(&mut *elbow, &FrikanLimits { torque: 3.0, ..LIMITS });
+        let _ = frikan_set_limits(&mut *elbow, &FrikanLimits { torque: 3.0, ..LIMITS });
+        for bad in [FrikanLimits { gain: f32::NAN, ..LIMITS }, FrikanLimits { position: -1.0, ..LIMITS }] {
+            assert_eq!(frikan_set_limits(&mut *elbow, &bad), FrikanStatus::BadLimits);
+        }
         assert_eq!(frikan_step(&mut *elbow, &MOVING, 1.0e-3).torque, 3.0);
         frikan_reset(&mut *elbow);
         let answer = frikan_step(&mut *elbow, &FrikanMeasurement { velocity: f32::NAN, ..MOVING }, 1.0e-3);
@@ -62,12 +65,15 @@ fn null_pointers_leave_everything_off() {
     unsafe {
         assert_eq!(frikan_start(null_mut(), IMAGE.as_ptr(), IMAGE.len(), null(), &LIMITS), FrikanStatus::NotStarted);
         assert_eq!(frikan_start(&mut *elbow, null(), 100, null(), &LIMITS), FrikanStatus::Truncated);
-        assert_eq!(frikan_start(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null(), null()), FrikanStatus::Active);
+        assert_eq!(frikan_start(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null(), null()), FrikanStatus::BadLimits);
         assert_eq!(frikan_step(&mut *elbow, &MOVING, 1.0e-3).torque, 0.0);
+        let missing = frikan_no_measurement();
+        assert_eq!(frikan_start(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null(), &LIMITS), FrikanStatus::Active);
+        assert_eq!(frikan_step(&mut *elbow, &missing, 1.0e-3).status, FrikanStatus::NotFinite);
         assert_eq!(frikan_step(&mut *elbow, null(), 1.0e-3).status, FrikanStatus::NotStarted);
         assert_eq!(frikan_step(null_mut(), &MOVING, 1.0e-3).status, FrikanStatus::NotStarted);
         assert!(!frikan_slot_header(1, IMAGE.as_ptr(), IMAGE.len(), null_mut()));
-        frikan_set_limits(null_mut(), &LIMITS);
+        assert_eq!(frikan_set_limits(null_mut(), &LIMITS), FrikanStatus::NotStarted);
         frikan_reset(null_mut());
     }
 }

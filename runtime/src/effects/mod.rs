@@ -97,11 +97,20 @@ pub type Memory = [f32; 4];
 /// What a memory holds that has seen a sample, where that is asked for.
 const STARTED: f32 = 1.0;
 
-/// The memory of `effect` after a rest of so many seconds: its warmth has faded, the rest is as at the start.
+/// The warmth that `effect` remembers, W; 0 where it is no warm-up.
 #[must_use]
-pub fn after_rest(effect: &Effect, memory: &Memory, rest: f32) -> Memory {
-    match effect {
-        Effect::WarmUp { time_constant, .. } => warm_up::after_rest(*time_constant, memory, rest),
+pub fn warmth(effect: &Effect, [heat, ..]: &Memory) -> f32 {
+    if let Effect::WarmUp { .. } = effect { *heat } else { 0.0 }
+}
+
+/// The memory of `effect` a rest of so many seconds after it was as warm as `power`, W: the warmth has faded, the rest is as at the start.
+#[must_use]
+pub fn warmed(effect: &Effect, power: f32, rest: f32) -> Memory {
+    match *effect {
+        Effect::WarmUp { time_constant, power_limit, .. } => {
+            let power = if power > 0.0 { power.min(power_limit) } else { 0.0 };
+            warm_up::after_rest(time_constant, power, rest)
+        }
         _ => Memory::default(),
     }
 }

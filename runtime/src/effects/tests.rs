@@ -18,7 +18,7 @@ fn added(effect: Effect, motion: impl Iterator<Item = Measurement>) -> std::vec:
 }
 
 fn at(velocity: f32) -> Measurement {
-    Measurement { velocity, ..Measurement::default() }
+    Measurement { velocity, ..Measurement::ZERO }
 }
 
 fn presliding(elements: &[(f32, f32)]) -> Effect {
@@ -73,7 +73,7 @@ fn presliding_follows_the_measured_position() {
     let model = coulomb_model(10.0, &[presliding(&[(4.0, 8.0e-3)])]);
     let mut state = FrictionState::new();
     let mut step = |position: f32| {
-        state.step(&model, &Measurement { position, velocity: 1.0, ..Measurement::default() }, DT).torque - 10.0
+        state.step(&model, &Measurement { position, velocity: 1.0, ..Measurement::ZERO }, DT).torque - 10.0
     };
     // The smoothed sign is 1. The first sample has no way.
     assert!((step(0.5) + 4.0).abs() < 1.0e-5);
@@ -158,7 +158,7 @@ fn play_lags_by_half_its_width() {
     let effect = Effect::Play { half_width: 0.1, torque: 2.0 };
     let model = coulomb_model(10.0, &[effect]);
     let mut state = FrictionState::new();
-    let mut step = |position: f32| state.step(&model, &Measurement { position, ..Measurement::default() }, DT);
+    let mut step = |position: f32| state.step(&model, &Measurement { position, ..Measurement::ZERO }, DT);
     assert_eq!(step(0.5).position, 0.0);
     assert!((step(0.7).position + 0.1).abs() < 1.0e-6);
     assert!((step(0.6).position).abs() < 1.0e-6);
@@ -168,7 +168,7 @@ fn play_lags_by_half_its_width() {
 #[test]
 fn static_terms_are_their_equations() {
     let (v, q, load, temperature) = (0.7f32, 1.2f32, -1.5f32, 1.8f32);
-    let measurement = Measurement { velocity: v, position: q, load, temperature, ..Measurement::default() };
+    let measurement = Measurement { velocity: v, position: q, load, temperature, ..Measurement::ZERO };
     let s = (v / SMOOTHING).tanh();
     let smoothing_velocity = SMOOTHING;
     let line = Harmonic { order: 3.0, cosine: 0.4, sine: -0.3 };

@@ -27,8 +27,8 @@ pub fn step(effect: &Effect, [heat, excess, ..]: &mut Memory, motion: &Motion) -
     Contribution::torque(slope * power)
 }
 
-/// The memory after a rest, s, in which nothing dissipates.
+/// The memory after a rest, s, in which nothing dissipates, that begins with a filtered power of `heat`, W.
 #[must_use]
-pub fn after_rest(time_constant: f32, [heat, ..]: &Memory, rest: f32) -> Memory {
-    [*heat * (1.0 - lag_share(rest / time_constant)), 0.0, 0.0, 0.0]
+pub fn after_rest(time_constant: f32, heat: f32, rest: f32) -> Memory {
+    [heat * (1.0 - lag_share(rest / time_constant)), 0.0, 0.0, 0.0]
 }

@@ -29,7 +29,7 @@ fn check(bytes: &[u8], data: &[u8]) {
     assert_eq!(decode::<CELLS>(again).as_ref(), Ok(&image));
 
     let limit = image.model.output_limit;
-    let mut compensator = Compensator::<CELLS>::new(bytes, Limits::new(1.0, limit, f32::MAX));
+    let mut compensator = Compensator::<CELLS>::new(bytes, Limits::new(1.0, limit, f32::MAX).expect("a model is valid"));
     let specials = [0.0, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN_POSITIVE];
     let from_data = data.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
     for x in specials.into_iter().chain(from_data) {

@@ -10,6 +10,9 @@ use crate::{CELLS, reason};
 /// measurement: velocity, position, acceleration, load, temperature and four other channels.
 const ROW_WORDS: usize = 14;
 
+/// Largest position put out, rad; that of `trainer verify`.
+const POSITION_LIMIT: f32 = 0.4;
+
 /// A drive that compensates the friction of one joint.
 pub struct Drive {
     compensator: Compensator<CELLS>,
@@ -24,7 +27,7 @@ impl Evaluator for Drive {
     const OUTPUTS: usize = 3;
 
     fn decode(image: &'static [u8]) -> Result<Self, u32> {
-        let compensator = Compensator::new(image, Limits::new(0.0, 0.0, 0.0));
+        let compensator = Compensator::new(image, Limits::OFF);
         match compensator.status() {
             Status::NoModel(error) => Err(reason(error)),
             status => {
@@ -43,7 +46,10 @@ impl Evaluator for Drive {
         if reset.to_bits() & 1 == 1 {
             self.compensator.reset();
         }
-        self.compensator.set_limits(Limits::new(gain, torque, slew));
+        // Limits that are refused leave those before in force.
+        if let Ok(limits) = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(POSITION_LIMIT)) {
+            self.compensator.set_limits(limits);
+        }
         self.measurement = Measurement { velocity, position, acceleration, load, temperature, other };
         self.dt = dt;
     }

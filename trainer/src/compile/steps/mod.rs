@@ -23,6 +23,9 @@ pub const CALL_WORDS: usize = 14;
 /// Words of an answer as an emulated drive gives them.
 pub const ANSWER_WORDS: usize = 3;
 
+/// Largest position that the firmware of a comparison allows, rad: effects exceed it, but not always.
+pub const POSITION_LIMIT: f32 = 0.4;
+
 /// One call of the step, with what the firmware does before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Call {
@@ -126,13 +129,16 @@ pub fn step<const CELLS: usize>(compensator: &mut Compensator<CELLS>, call: &Cal
         compensator.reset();
     }
     let [gain, torque, slew] = call.limits;
-    compensator.set_limits(Limits::new(gain, torque, slew));
+    // Limits that are refused leave those before in force.
+    if let Ok(limits) = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(POSITION_LIMIT)) {
+        compensator.set_limits(limits);
+    }
     compensator.step(&call.measurement, call.dt).into()
 }
 
 /// Compares the runtime's compensator over `calls`.
 #[must_use]
 pub fn compare<const CELLS: usize>(model: &Model<CELLS>, calls: &[Call]) -> Comparison<StepDifference> {
-    let mut compensator = Compensator::with_model(Ok(model.clone()), Limits::new(0.0, 0.0, 0.0));
+    let mut compensator = Compensator::with_model(Ok(model.clone()), Limits::OFF);
     compare_answers(model, calls, calls.iter().map(|call| step(&mut compensator, call)))
 }

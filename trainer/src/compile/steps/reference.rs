@@ -7,7 +7,7 @@ use frikan_shared::model::{MAX_INPUTS, Model};
 use frikan_shared::units::Quantity;
 
 use super::effects::{Added, Memory, Seen};
-use super::{Answer, Call};
+use super::{Answer, Call, POSITION_LIMIT};
 use crate::compile::reference::evaluate_one;
 
 /// Longest sample period that a step takes, s.
@@ -21,6 +21,8 @@ pub struct Reference<'a, const CELLS: usize, E> {
     memories: Vec<Memory>,
     /// Position of the sample before.
     position: Option<f32>,
+    /// The limits in force: gain, torque, slew.
+    limits: [f32; 3],
     /// What was put out last.
     torque: f32,
 }
@@ -29,30 +31,38 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
     /// A compensator at its start.
     #[must_use]
     pub fn new(model: &'a Model<CELLS>, effect: E) -> Self {
-        Self { model, effect, memories: vec![None; model.effects.len()], position: None, torque: 0.0 }
+        Self { model, effect, memories: vec![None; model.effects.len()], position: None, limits: [0.0; 3], torque: 0.0 }
     }
 
     /// The answer to a call.
     pub fn step(&mut self, call: &Call) -> Answer {
         if call.reset {
-            self.memories.fill(None);
+            for (memory, effect) in self.memories.iter_mut().zip(&self.model.effects) {
+                // The warmth stays, without what rounding put in too much.
+                let is_warm = matches!(effect, Effect::WarmUp { .. });
+                *memory = memory.filter(|_| is_warm).map(|[heat, ..]| [heat, 0.0, 0.0, 0.0]);
+            }
             self.position = None;
             self.torque = 0.0;
         }
-        let [gain, most, slew] = call.limits.map(|limit| if limit > 0.0 && limit.is_finite() { limit } else { 0.0 });
+        let [gain, torque, slew] = call.limits;
+        if call.limits.iter().all(|limit| *limit >= 0.0 && limit.is_finite()) && slew > 0.0 {
+            self.limits = [gain, torque, slew].map(f32::abs);
+        }
+        let [gain, most, slew] = self.limits;
         let channels = channels(self.model, &call.measurement);
-        let is_usable = channels.iter().all(|channel| channel.is_finite())
-            && (0.0..=LONGEST_SAMPLE).contains(&call.dt)
-            && call.dt.is_sign_positive();
+        let is_usable =
+            channels.iter().all(|channel| channel.is_finite()) && call.dt > 0.0 && call.dt <= LONGEST_SAMPLE;
         if !is_usable {
             self.torque = 0.0;
             return Answer::new(0.0, 0.0, false);
         }
         let friction = self.friction(&channels, &call.measurement, call.dt);
         let reach = slew * call.dt;
-        let change = (gain * friction.torque - self.torque).clamp(-reach, reach);
-        self.torque = (self.torque + change).clamp(-most, most);
-        Answer::new(self.torque, friction.position, true)
+        let wanted = (gain * friction.torque).clamp(-most, most);
+        let change = wanted - self.torque;
+        self.torque = wanted - (change - change.clamp(-reach, reach));
+        Answer::new(self.torque, friction.position.clamp(-POSITION_LIMIT, POSITION_LIMIT), true)
     }
 
     /// Law and effects of one sample.
@@ -81,6 +91,7 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
         let mut to_law: Vec<f32> = channels.to_vec();
         let (lags, others): (Vec<_>, Vec<_>) = (self.model.effects.iter().zip(&mut self.memories))
             .partition(|(effect, _)| matches!(effect, Effect::FrictionalLag { .. }));
+        let is_lagged = !lags.is_empty();
         for (effect, memory) in lags {
             let lagged = (self.effect)(effect, memory, &seen).velocity;
             for (value, input) in to_law.iter_mut().zip(inputs) {
@@ -89,8 +100,14 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
                 }
             }
         }
-        seen.law = evaluate_one(self.model, &padded(&to_law));
+        let is_at_rest = inputs.iter().zip(&to_law).any(|(input, x)| input.quantity == Quantity::Velocity && *x == 0.0);
+        let is_static = self.model.effects.is_empty();
+        seen.law = if is_static && is_at_rest { 0.0 } else { evaluate_one(self.model, &padded(&to_law)) };
         let mut sum = Added { torque: seen.law, ..Added::default() };
+        if is_lagged {
+            // A lag adds the number 0, which takes the sign from a negative zero.
+            sum.torque += 0.0;
+        }
         for (effect, memory) in others {
             let added = (self.effect)(effect, memory, &seen);
             sum.torque += added.torque;

@@ -74,7 +74,7 @@ fn outside<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Outs
 #[allow(clippy::field_reassign_with_default)] // struct update trips the compiler over the length of `other`
 fn measurement(state: &JointState, i: usize) -> Measurement {
     let channel = |series: &Option<Vec<f64>>| series.as_ref().map_or(0.0, |values| values[i] as f32);
-    let mut measurement = Measurement::default();
+    let mut measurement = Measurement::ZERO;
     measurement.velocity = state.velocity[i] as f32;
     measurement.position = state.position[i] as f32;
     measurement.acceleration = state.acceleration[i] as f32;
@@ -101,7 +101,7 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
 #[allow(clippy::field_reassign_with_default)]
 pub(crate) fn mean_measurement(state: &JointState) -> Measurement {
     let mean = |series: &[f64]| (series.iter().sum::<f64>() / series.len().max(1) as f64) as f32;
-    let mut measurement = Measurement::default();
+    let mut measurement = Measurement::ZERO;
     measurement.position = mean(&state.position);
     measurement.load = state.load.as_deref().map_or(0.0, mean);
     measurement.temperature = state.temperature.as_deref().map_or(0.0, mean);

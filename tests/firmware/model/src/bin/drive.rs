@@ -14,7 +14,8 @@ use frikan_shared::image::image_bytes;
 fn main() -> ! {
     let image = image_bytes(flash()).ok().and_then(|length| flash().get(..length)).unwrap_or_default();
     // Without a valid image compensation is off.
-    let mut compensator = Compensator::<CELLS>::new(image, black_box(Limits::new(1.0, 1.0, 1.0)));
+    let mut compensator =
+        Compensator::<CELLS>::new(image, black_box(Limits::new(1.0, 1.0, 1.0).unwrap_or(Limits::OFF)));
     loop {
         let measurement = black_box(Measurement::default());
         black_box(compensator.step(&measurement, black_box(1.0e-3)));
