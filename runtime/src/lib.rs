@@ -10,6 +10,8 @@
 extern crate std;
 
 pub mod compensator;
+pub mod controller;
+pub mod drive;
 pub mod effects;
 pub mod evaluate;
 pub mod expression;
@@ -18,6 +20,7 @@ pub mod integer_table;
 pub mod joints;
 pub mod network;
 pub mod slots;
+pub mod supervised;
 pub mod table;
 mod table_models;
 pub mod usable;

@@ -1,0 +1,210 @@
+//! A compensator that watches what it does: it takes the velocity of the reference and of the joint, lowers its gain where compensation feeds
+//! the joint, holds its torque at rest, and ramps down where velocity and position contradict each other.
+//!
+//! Around [`Compensator`], whose step costs what it costs without supervision. Branches depend on the sample here.
+
+use crate::compensator::{Compensator, Limits, Status};
+use crate::evaluate::limited;
+use crate::friction::Measurement;
+
+pub mod blend;
+pub mod monitor;
+pub mod plausibility;
+
+use blend::{blended, share_without_reference};
+use monitor::Monitor;
+use plausibility::Plausibility;
+
+/// Gain for a supervised compensator. Between what tracks best where the model is right (1) and what leaves dissipation where it is a
+/// little too large; `tests/tests/closed_loop.rs` runs it with frictions of 50 to 120 % of the model's.
+pub const DEFAULT_GAIN: f32 = 0.95;
+
+/// Which velocity is compensated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VelocitySource {
+    /// The measured one always: hunts at rest, for trials.
+    Measured,
+    /// That of the reference always: blind to what the joint does.
+    Reference,
+    /// As [`blended`].
+    #[default]
+    Blended,
+}
+
+/// Settings of the supervision; what a constructor does not ask for has a default that is documented with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supervision {
+    /// Inertia of the joint, kg m^2; an error of it of a tenth is seen as friction of a tenth of the inertial torque.
+    pub inertia: f32,
+    /// Which velocity is compensated.
+    pub source: VelocitySource,
+    /// Whether the gain follows the monitor.
+    pub monitored: bool,
+    /// Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+    pub rest_velocity: f32,
+    /// Way after a reversal in which the contact is elastic, rad.
+    pub presliding: f32,
+    /// Time constant of the monitor's low-pass, s.
+    pub observer_time: f32,
+    /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
+    pub fall_time: f32,
+    /// Time in which it raises it again where nothing is compensated, s.
+    pub rise_time: f32,
+    /// Friction below which the monitor takes no ratios, N m.
+    pub least_friction: f32,
+    /// How long velocity and position may contradict each other, s.
+    pub implausible_time: f32,
+}
+
+impl Supervision {
+    /// Defaults for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m.
+    #[must_use]
+    pub fn new(inertia: f32, friction: f32) -> Self {
+        Self {
+            inertia,
+            source: VelocitySource::Blended,
+            monitored: true,
+            rest_velocity: 0.02,
+            presliding: 2.0e-3,
+            observer_time: 0.01,
+            fall_time: 0.02,
+            rise_time: 0.5,
+            least_friction: 0.1 * friction.abs(),
+            implausible_time: 0.2,
+        }
+    }
+}
+
+/// One sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The joint, `velocity` as measured; `position` has to be filled, and without jumps.
+    pub measurement: Measurement,
+    /// Velocity of the reference, rad/s; none while no position or velocity loop is closed, as in hand guiding.
+    pub reference_velocity: Option<f32>,
+    /// Torque that acted on the joint since the sample before, N m, without compensation and without the torque for gravity.
+    pub loop_torque: f32,
+}
+
+/// Whether the torque is a compensation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supervised {
+    /// As the compensator says.
+    Compensator(Status),
+    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+    Implausible,
+}
+
+/// The answer to a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupervisedCompensation {
+    /// Torque to add, in the unit of the model's output.
+    pub torque: f32,
+    /// What the model says of the link's position against the motor's, rad.
+    pub position: f32,
+    /// Share of the firmware's gain that the monitor leaves, 0 to 1.
+    pub gain_share: f32,
+    /// Whether it is a compensation.
+    pub status: Supervised,
+}
+
+/// A compensator under supervision.
+#[derive(Clone, Debug)]
+pub struct SupervisedCompensator<const CELLS: usize> {
+    compensator: Compensator<CELLS>,
+    limits: Limits,
+    supervision: Supervision,
+    monitor: Monitor,
+    plausibility: Plausibility,
+    /// What was put out last, before the share of the monitor.
+    held: f32,
+    torque: f32,
+}
+
+impl<const CELLS: usize> SupervisedCompensator<CELLS> {
+    /// Supervises `compensator` within `limits`.
+    #[must_use]
+    pub fn new(mut compensator: Compensator<CELLS>, limits: Limits, supervision: Supervision) -> Self {
+        compensator.set_limits(limits);
+        let (monitor, plausibility) = (Monitor::new(), Plausibility::default());
+        Self { compensator, limits, supervision, monitor, plausibility, held: 0.0, torque: 0.0 }
+    }
+
+    /// The compensator, for its model, its warmth and its reset.
+    pub fn compensator(&mut self) -> &mut Compensator<CELLS> {
+        &mut self.compensator
+    }
+
+    /// Changes the limits between two steps; the slew limit holds across the change.
+    pub fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+        self.compensator.set_limits(limits);
+    }
+
+    /// The compensation after a sample period of `dt` seconds.
+    #[must_use]
+    pub fn step(&mut self, sample: &Sample, dt: f32) -> SupervisedCompensation {
+        let Measurement { velocity, position, .. } = sample.measurement;
+        let reference = sample.reference_velocity;
+        let is_finite = velocity.is_finite()
+            && position.is_finite()
+            && sample.loop_torque.is_finite()
+            && reference.is_none_or(f32::is_finite)
+            && dt > 0.0;
+        if !is_finite {
+            return self.off(Status::NotFinite);
+        }
+        let rest = self.supervision.rest_velocity;
+        let chosen = match (self.supervision.source, reference) {
+            (VelocitySource::Measured, _) | (VelocitySource::Blended, None) => velocity,
+            (VelocitySource::Reference, reference) => reference.unwrap_or(0.0),
+            (VelocitySource::Blended, Some(reference)) => blended(&self.supervision, velocity, reference),
+        };
+        let answer = self.compensator.step(&Measurement { velocity: chosen, ..sample.measurement }, dt);
+        if answer.status != Status::Active {
+            return self.off(answer.status);
+        }
+        // What no joint does must not overflow what the filters remember.
+        let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST));
+        self.monitor.observe(&self.supervision, velocity, loop_torque, answer.torque, dt);
+        let is_plausible = self.plausibility.observe(&self.supervision, velocity, position, dt);
+        let is_blended = self.supervision.source == VelocitySource::Blended;
+        let wanted = match reference {
+            // At rest the torque stays as it is: to switch it would move the joint.
+            Some(reference) if is_blended && reference.abs() < HOLD * rest && velocity.abs() < rest => self.held,
+            None if is_blended => share_without_reference(&self.supervision, velocity) * answer.torque,
+            _ => answer.torque,
+        };
+        self.held = wanted;
+        let share = if self.supervision.monitored { self.monitor.share() } else { 1.0 };
+        let believed = if is_plausible { share * wanted } else { 0.0 };
+        let reach = if is_plausible { self.limits.slew() * dt } else { self.ramp(dt) };
+        self.torque = self.limits.approach(self.torque, believed, reach);
+        let status = if is_plausible { Supervised::Compensator(Status::Active) } else { Supervised::Implausible };
+        SupervisedCompensation { torque: self.torque, position: answer.position, gain_share: share, status }
+    }
+
+    /// Largest change of an implausible torque in `dt`: all of the torque limit in the time in which the contradiction was found.
+    fn ramp(&self, dt: f32) -> f32 {
+        self.limits.torque() * dt / self.supervision.implausible_time
+    }
+
+    /// No torque, at once.
+    fn off(&mut self, status: Status) -> SupervisedCompensation {
+        (self.torque, self.held) = (0.0, 0.0);
+        let gain_share = self.monitor.share();
+        SupervisedCompensation { torque: 0.0, position: 0.0, gain_share, status: Supervised::Compensator(status) }
+    }
+}
+
+/// Speed beyond any joint's, rad/s.
+const FASTEST: f32 = 1.0e6;
+
+/// Torque beyond any drive's, N m.
+const STRONGEST: f32 = 1.0e9;
+
+/// Share of the rest velocity below which a reference stands still.
+const HOLD: f32 = 0.05;
+
+#[cfg(test)]
+mod tests;
