@@ -22,4 +22,5 @@ pub mod physics;
 pub mod plant;
 pub mod recording;
 pub mod report;
+pub mod rig;
 pub mod samples;

@@ -1,7 +1,7 @@
 //! Which velocity the friction is compensated at (Olsson et al. 1998, section 6): that of the reference is free of noise and delay and makes
 //! no feedback, that of the joint is true.
 
-use super::Supervision;
+use super::settings::Supervision;
 
 /// The velocity of the reference up to `rest_velocity`, through zero and at rest; the measured one from twice that on; between them in
 /// proportion to the speed of the reference. A joint that does not go the way of its reference is compensated at the reference's velocity:

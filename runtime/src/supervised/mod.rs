@@ -10,70 +10,14 @@ use crate::friction::Measurement;
 pub mod blend;
 pub mod monitor;
 pub mod plausibility;
+mod settings;
 
 use blend::{blended, share_without_reference};
 use monitor::Monitor;
 use plausibility::Plausibility;
+use settings::FASTEST;
 
-/// Gain for a supervised compensator. Between what tracks best where the model is right (1) and what leaves dissipation where it is a
-/// little too large; `tests/tests/closed_loop.rs` runs it with frictions of 50 to 120 % of the model's.
-pub const DEFAULT_GAIN: f32 = 0.95;
-
-/// Which velocity is compensated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum VelocitySource {
-    /// The measured one always: hunts at rest, for trials.
-    Measured,
-    /// That of the reference always: blind to what the joint does.
-    Reference,
-    /// As [`blended`].
-    #[default]
-    Blended,
-}
-
-/// Settings of the supervision; what a constructor does not ask for has a default that is documented with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Supervision {
-    /// Inertia of the joint, kg m^2; an error of it of a tenth is seen as friction of a tenth of the inertial torque.
-    pub inertia: f32,
-    /// Which velocity is compensated.
-    pub source: VelocitySource,
-    /// Whether the gain follows the monitor.
-    pub monitored: bool,
-    /// Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
-    pub rest_velocity: f32,
-    /// Way after a reversal in which the contact is elastic, rad.
-    pub presliding: f32,
-    /// Time constant of the monitor's low-pass, s.
-    pub observer_time: f32,
-    /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
-    pub fall_time: f32,
-    /// Time in which it raises it again where nothing is compensated, s.
-    pub rise_time: f32,
-    /// Friction below which the monitor takes no ratios, N m.
-    pub least_friction: f32,
-    /// How long velocity and position may contradict each other, s.
-    pub implausible_time: f32,
-}
-
-impl Supervision {
-    /// Defaults for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m.
-    #[must_use]
-    pub fn new(inertia: f32, friction: f32) -> Self {
-        Self {
-            inertia,
-            source: VelocitySource::Blended,
-            monitored: true,
-            rest_velocity: 0.02,
-            presliding: 2.0e-3,
-            observer_time: 0.01,
-            fall_time: 0.02,
-            rise_time: 0.5,
-            least_friction: 0.1 * friction.abs(),
-            implausible_time: 0.2,
-        }
-    }
-}
+pub use settings::{DEFAULT_GAIN, Supervision, VelocitySource};
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -196,9 +140,6 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
         SupervisedCompensation { torque: 0.0, position: 0.0, gain_share, status: Supervised::Compensator(status) }
     }
 }
-
-/// Speed beyond any joint's, rad/s.
-const FASTEST: f32 = 1.0e6;
 
 /// Torque beyond any drive's, N m.
 const STRONGEST: f32 = 1.0e9;

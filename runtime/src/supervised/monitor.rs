@@ -6,7 +6,7 @@
 
 use frikan_shared::elementary::lag_share;
 
-use super::Supervision;
+use super::settings::Supervision;
 
 /// What the monitor remembers.
 #[derive(Clone, Copy, Debug, PartialEq)]

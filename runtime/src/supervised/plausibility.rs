@@ -2,7 +2,7 @@
 
 use frikan_shared::elementary::lag_share;
 
-use super::{FASTEST, Supervision};
+use super::settings::{FASTEST, Supervision};
 use crate::evaluate::limited;
 
 /// What the check remembers.

@@ -1,0 +1,100 @@
+//! What a run is worth.
+
+/// One sample of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Start of the sample, s.
+    pub time: f64,
+    /// Position, rad, and velocity, rad/s, of the joint.
+    pub position: f64,
+    /// See `position`.
+    pub velocity: f64,
+    /// Position, rad, and velocity, rad/s, of the reference; NaN without a position loop.
+    pub reference: [f32; 2],
+    /// Torque of the drive and, of it, the compensation, N m.
+    pub torque: f32,
+    /// See `torque`.
+    pub compensation: f32,
+    /// Share of the gain in force.
+    pub gain_share: f32,
+}
+
+/// All numbers of a run as bytes, for its checksum.
+#[must_use]
+pub fn trace_bytes(rows: &[Row]) -> Vec<u8> {
+    let bytes = |row: &Row| {
+        let joint = [row.position, row.velocity].map(f64::to_le_bytes).concat();
+        let drive = [row.torque, row.compensation, row.gain_share].map(f32::to_le_bytes).concat();
+        [joint, drive].concat()
+    };
+    rows.iter().flat_map(bytes).collect()
+}
+
+/// Scores of a run, over all of it but the first second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scores {
+    /// Root mean square of reference less position, rad.
+    pub rms_error: f64,
+    /// Largest magnitude of it, rad.
+    pub peak_error: f64,
+    /// Largest range of the position in a stretch where the reference has stood still for half a second, rad.
+    pub hold_peak_to_peak: f64,
+    /// Root mean square of the torque, N m.
+    pub torque_rms: f64,
+    /// Speed at the end, rad/s.
+    pub final_speed: f64,
+    /// Growth of the speed after the nudge: the largest speed less that at its end, rad/s; 0 where there is no nudge.
+    pub speed_gain_after_nudge: f64,
+    /// Largest speed after the end of the nudge, rad/s.
+    pub max_speed_after_nudge: f64,
+}
+
+/// What the loop is given to settle, s.
+const SETTLING_S: f64 = 1.0;
+/// How long a reference has to have stood still, s.
+const STILL_S: f64 = 0.5;
+
+impl Scores {
+    /// Scores of `rows`; the joint was let go at `nudge_end`, s.
+    #[must_use]
+    pub fn of(rows: &[Row], nudge_end: Option<f64>) -> Self {
+        let settled = rows.iter().filter(|row| row.time >= SETTLING_S);
+        let errors: Vec<f64> = settled.map(|row| f64::from(row.reference[0]) - row.position).collect();
+        let finite = errors.iter().copied().filter(|error| error.is_finite());
+        let let_go: Vec<f64> = nudge_end
+            .map(|end| rows.iter().filter(|row| row.time >= end).map(|row| row.velocity.abs()).collect())
+            .unwrap_or_default();
+        let largest = let_go.iter().copied().fold(0.0, f64::max);
+        Self {
+            rms_error: root_mean_square(finite.clone()),
+            peak_error: finite.map(f64::abs).fold(0.0, f64::max),
+            hold_peak_to_peak: hold_peak_to_peak(rows),
+            torque_rms: root_mean_square(rows.iter().map(|row| f64::from(row.torque))),
+            final_speed: rows.last().map_or(0.0, |row| row.velocity.abs()),
+            speed_gain_after_nudge: largest - let_go.first().copied().unwrap_or(0.0),
+            max_speed_after_nudge: largest,
+        }
+    }
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0usize, 0.0), |(count, sum), value| (count + 1, sum + value * value));
+    (sum / count.max(1) as f64).sqrt()
+}
+
+fn hold_peak_to_peak(rows: &[Row]) -> f64 {
+    let mut still_since: Option<f64> = None;
+    let (mut low, mut high, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+    for row in rows {
+        if row.reference[1] != 0.0 {
+            still_since = None;
+            (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            continue;
+        }
+        if row.time - *still_since.get_or_insert(row.time) >= STILL_S {
+            (low, high) = (low.min(row.position), high.max(row.position));
+            largest = largest.max(high - low);
+        }
+    }
+    largest
+}
