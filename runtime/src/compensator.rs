@@ -13,6 +13,9 @@ use crate::usable::above_0_to;
 /// Longest sample period that a step takes for real, s.
 const LONGEST_SAMPLE: f32 = 1.0;
 
+/// Largest torque limit: the difference of two torques within it is finite.
+pub const LARGEST_TORQUE: f32 = 0.25 * f32::MAX;
+
 /// Limits of the firmware, all in force at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -40,14 +43,15 @@ impl Limits {
     pub const OFF: Self = Self { gain: 0.0, torque: 0.0, slew: f32::MAX, position: 0.0 };
 
     /// `gain`: share of the friction that is compensated, 0 to 1 in most drives; `torque`: largest torque put out, in the unit of the
-    /// model's output; `slew`: its largest change in a second. No position is put out until [`Limits::with_position`] allows one.
+    /// model's output, [`LARGEST_TORQUE`] at most; `slew`: its largest change in a second. A change in one sample below the rounding step of the
+    /// torque (6e-8 of it) does not move it. No position is put out until [`Limits::with_position`] allows one.
     ///
     /// # Errors
     /// [`LimitError`] where gain or torque is negative, the slew is not positive, or one of them is not finite.
     pub fn new(gain: f32, torque: f32, slew: f32) -> Result<Self, LimitError> {
         Ok(Self {
             gain: not_negative(gain).ok_or(LimitError::Gain)?,
-            torque: not_negative(torque).ok_or(LimitError::Torque)?,
+            torque: within(not_negative(torque).ok_or(LimitError::Torque)?, LARGEST_TORQUE),
             slew: not_negative(slew).filter(|slew| *slew > 0.0).ok_or(LimitError::Slew)?,
             position: 0.0,
         })

@@ -36,6 +36,15 @@ fn limits_that_cannot_be_kept_are_refused_by_name() {
 }
 
 #[test]
+fn the_largest_numbers_that_are_limits_leave_the_torque_finite() {
+    let mut compensator = compensator(coulomb_model(10.0, &[]), Limits::new(f32::MAX, f32::MAX, f32::MAX).unwrap());
+    for velocity in [1.0, -1.0, 1.0, -1.0] {
+        let torque = compensator.step(&moving(velocity), 1.0).torque;
+        assert!(torque.is_finite() && torque * velocity > 0.0, "{torque}");
+    }
+}
+
+#[test]
 fn a_lower_torque_limit_is_reached_no_faster_than_the_slew_limit() {
     let slew = 1000.0;
     let mut compensator = compensator(coulomb_model(20.0, &[]), Limits::new(1.0, 19.8, slew).unwrap());

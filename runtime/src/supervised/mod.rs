@@ -109,7 +109,7 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
             return self.off(answer.status);
         }
         // What no joint does must not overflow what the filters remember.
-        let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST));
+        let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
         self.monitor.observe(&self.supervision, velocity, loop_torque, answer.torque, dt);
         let is_plausible = self.plausibility.observe(&self.supervision, velocity, position, dt);
         let is_blended = self.supervision.source == VelocitySource::Blended;
@@ -142,7 +142,7 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
 }
 
 /// Torque beyond any drive's, N m.
-const STRONGEST: f32 = 1.0e9;
+const STRONGEST_LOOP: f32 = 1.0e9;
 
 /// Share of the rest velocity below which a reference stands still.
 const HOLD: f32 = 0.05;
