@@ -83,6 +83,12 @@ impl Limits {
         self.slew
     }
 
+    /// The largest position put out, rad.
+    #[must_use]
+    pub fn position(&self) -> f32 {
+        self.position
+    }
+
     /// As near to the torque `wanted` as the torque limit allows and a change of at most `reach` from `torque`, which may lie beyond a limit
     /// that is new. Written as what is taken back of the change wanted, so that rounding does not lead beyond the limit.
     #[inline(always)]
@@ -165,6 +171,14 @@ impl<const CELLS: usize> Compensator<CELLS> {
     #[must_use]
     pub fn model(&self) -> Option<&Model<CELLS>> {
         self.model.as_ref().ok()
+    }
+
+    /// Goes on with another model, at the torque put out last, from where the slew limit leads; what the effects of the one before
+    /// remember is gone, and so is the warmth, whose meaning belongs to a model.
+    pub fn replace_model(&mut self, model: Result<Model<CELLS>, ImageError>) {
+        self.running.state = FrictionState::new();
+        self.running.torque = if model.is_ok() { self.running.torque } else { 0.0 };
+        self.model = model;
     }
 
     /// What a step would say of the model: active, or why there is none.

@@ -1,34 +1,17 @@
 //! The drive of one joint: position loop and supervised compensator, once a sample. The same code runs on the host and on the
 //! emulated microcontrollers.
 
-use crate::controller::{Controller, Settings, Target};
+use crate::compensator::Compensator;
+use crate::controller::Controller;
 use crate::evaluate::limited;
 use crate::friction::Measurement;
-use crate::supervised::{Sample, SupervisedCompensation, SupervisedCompensator};
+use crate::supervised::{Sample, SupervisedCompensator};
 
-/// What the sensors and the reference say at the start of a sample.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DriveInput {
-    /// Counts of the encoder.
-    pub counts: i32,
-    /// What the joint is to do; none in hand guiding.
-    pub target: Option<Target>,
-    /// Torque of gravity that the drive knows of, N m; it is added to the loop's.
-    pub gravity: f32,
-    /// Temperature, degC; NaN where there is no sensor.
-    pub temperature: f32,
-}
+mod sample;
+mod words;
 
-/// What the drive does about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveOutput {
-    /// Torque of the motor at the joint, N m, within the torque limit.
-    pub torque: f32,
-    /// Velocity behind the encoder's filter, rad/s.
-    pub velocity: f32,
-    /// What of the torque compensates friction.
-    pub compensation: SupervisedCompensation,
-}
+pub use sample::{DriveInput, DriveOutput};
+pub use words::{DriveSettings, INPUT_WORDS, OUTPUT_WORDS, SETTINGS_WORDS};
 
 /// A drive between two samples.
 #[derive(Clone, Debug)]
@@ -37,13 +20,16 @@ pub struct JointDrive<const CELLS: usize> {
     compensator: SupervisedCompensator<CELLS>,
     /// What the loop put out in the two samples before, without compensation and gravity, N m: it acts a sample later.
     loop_torque: [f32; 2],
+    /// Sample period, s.
+    dt: f32,
 }
 
 impl<const CELLS: usize> JointDrive<CELLS> {
-    /// At rest.
+    /// At rest, set to `settings`; their limits are in force for the compensator.
     #[must_use]
-    pub fn new(settings: Settings, compensator: SupervisedCompensator<CELLS>) -> Self {
-        Self { controller: Controller::new(settings), compensator, loop_torque: [0.0; 2] }
+    pub fn new(settings: &DriveSettings, compensator: Compensator<CELLS>) -> Self {
+        let compensator = SupervisedCompensator::new(compensator, settings.limits, settings.supervision);
+        Self { controller: Controller::new(settings.controller), compensator, loop_torque: [0.0; 2], dt: settings.dt }
     }
 
     /// The compensator.
@@ -51,9 +37,10 @@ impl<const CELLS: usize> JointDrive<CELLS> {
         &mut self.compensator
     }
 
-    /// The answer to the sample that begins `dt` seconds after the one before; it acts one sample later.
+    /// The answer to the sample that begins a sample period after the one before; it acts one sample later.
     #[must_use]
-    pub fn step(&mut self, input: &DriveInput, dt: f32) -> DriveOutput {
+    pub fn step(&mut self, input: &DriveInput) -> DriveOutput {
+        let dt = self.dt;
         let sample = self.controller.step(input.counts, input.target.as_ref(), dt);
         let [before, acting] = self.loop_torque;
         let loop_torque = sample.feedback + sample.feed_forward;

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use frikan_trainer::commands::output::print;
-use frikan_trainer::commands::{diagnose, explain, export, fit, predict, show, simulate, verify};
+use frikan_trainer::commands::{closed_loop, diagnose, explain, export, fit, predict, show, simulate, verify};
 use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
@@ -27,6 +27,7 @@ enum Command {
     Export(export::Export),
     Diagnose(diagnose::Diagnose),
     Simulate(simulate::Simulate),
+    Loop(closed_loop::Loop),
     Explain(explain::Explain),
 }
 
@@ -39,6 +40,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments).map(|()| 0),
+        Command::Loop(arguments) => closed_loop::run(arguments).map(|()| 0),
         Command::Explain(arguments) => arguments.run().and_then(|text| print(&text)).map(|()| 0),
     }
 }

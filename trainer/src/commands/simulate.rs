@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, codes};
 use crate::files::write_whole;
 use crate::joint;
-use crate::plant::{self, Hidden, NoiseKind, PlantError, SimulatedRecording};
+use crate::plant::{self, Hidden, NoiseKind, SimulatedRecording};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -63,7 +63,7 @@ pub fn run(arguments: &Simulate) -> Result<()> {
         }
         joint.campaign = joint.campaign.with_duration(duration);
     }
-    let recording = plant::simulate(&joint, arguments.seed).map_err(|error| explain(&error, &label))?;
+    let recording = plant::simulate(&joint, arguments.seed).map_err(|error| Error::from(error).in_file(&label))?;
     write_recording(arguments, &recording)?;
     if let Some(path) = &arguments.truth {
         write_whole(path, recording.truth_to_csv().as_bytes())?;
@@ -110,15 +110,7 @@ fn summary(joint: &plant::Joint, recording: &SimulatedRecording, seed: u64) -> S
     .to_string()
 }
 
-fn explain(error: &PlantError, label: &str) -> Error {
-    let code = match error {
-        PlantError::UnknownEffect(_) | PlantError::TwoTransmissions(_) => &codes::USAGE,
-        PlantError::OutOfRange { .. } | PlantError::Unstable(_) => &codes::BAD_JOINT_FILE,
-    };
-    Error::new(code, error.to_string()).in_file(label)
-}
-
-fn parse_effect(text: &str) -> std::result::Result<Hidden, String> {
+pub(super) fn parse_effect(text: &str) -> std::result::Result<Hidden, String> {
     let (name, amplitude) = text.split_once('=').unwrap_or((text, "1"));
     if plant::find(name).is_none() {
         let known: Vec<&str> = plant::CATALOGUE.iter().chain(plant::OUTSIDE).map(|entry| entry.name).collect();

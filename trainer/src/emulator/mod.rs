@@ -1,16 +1,18 @@
 //! Runs an image on an emulated drive: the firmware is built for the target, QEMU carries it and the very image file,
-//! rows go in, output bits and instruction counts come back.
+//! rows go in, output bits and instruction counts come back, all at once or in lockstep with a joint that the host moves.
 //!
 //! Knows files, processes and the firmware folder; knows nothing of models, recordings or commands.
 
 mod elf;
 mod firmware;
+mod lockstep;
 mod protocol;
 mod qemu;
 mod target;
 
 pub use elf::{Footprint, footprint, forbidden_symbols};
 pub use firmware::{FIRMWARE_VARIABLE, Firmware, firmware_folder};
+pub use lockstep::Lockstep;
 pub use protocol::{Answer, MAX_INPUTS, Mode, Request};
 pub use target::Target;
 

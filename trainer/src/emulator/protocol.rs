@@ -137,15 +137,17 @@ impl Answer {
 }
 
 /// Turns ticks into instructions.
-#[derive(Clone, Copy)]
-struct Clock {
-    empty: u32,
-    calibration: u32,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    /// Ticks of an empty call.
+    pub(super) empty: u32,
+    /// Ticks of one with [`CALIBRATION_NOPS`] more instructions.
+    pub(super) calibration: u32,
 }
 
 impl Clock {
     /// Instructions beyond an empty call.
-    fn instructions(self, ticks: u32) -> Result<u32> {
+    pub(super) fn instructions(self, ticks: u32) -> Result<u32> {
         let ticks_an_instruction = f64::from(self.calibration.saturating_sub(self.empty)) / f64::from(CALIBRATION_NOPS);
         let instructions = f64::from(ticks.saturating_sub(self.empty)) / ticks_an_instruction;
         let whole = instructions.round();

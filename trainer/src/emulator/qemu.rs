@@ -33,6 +33,20 @@ pub(super) fn check_installed(target: &Target) -> Result<()> {
     Err(Error::new(&codes::EMULATOR_MISSING, message))
 }
 
+/// Name of the file with the image, in the folder of a run.
+pub(super) const IMAGE_FILE: &str = "model.frk";
+
+/// The emulator over `elf`, with the image of the folder in its flash and no device of the host but those that are added.
+pub(super) fn command(target: &Target, folder: &Path, elf: &Path, window: Window) -> Result<Command> {
+    let elf = std::path::absolute(elf).map_err(|error| Error::from_io(elf, &error))?;
+    let mut qemu = Command::new(&target.emulator);
+    qemu.current_dir(folder).args(&target.machine).arg("-kernel").arg(elf);
+    qemu.arg("-device").arg(format!("loader,file={IMAGE_FILE},addr={:#x},force-raw=on", window.start));
+    qemu.args(["-display", "none", "-monitor", "none"]);
+    qemu.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    Ok(qemu)
+}
+
 /// Runs `request` in the firmware `elf` on `target`.
 pub(super) fn run(target: &Target, elf: &Path, window: Window, request: &Request<'_>) -> Result<Answer> {
     if request.image.len() as u64 > window.bytes {
@@ -43,20 +57,16 @@ pub(super) fn run(target: &Target, elf: &Path, window: Window, request: &Request
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).map_err(|error| Error::from_io(&path, &error))
     };
-    write("model.frk", request.image)?;
+    write(IMAGE_FILE, request.image)?;
     write("request.bin", &request.to_bytes()?)?;
 
-    let elf = std::path::absolute(elf).map_err(|error| Error::from_io(elf, &error))?;
-    let mut qemu = Command::new(&target.emulator);
-    qemu.current_dir(folder.path()).args(&target.machine).arg("-kernel").arg(elf);
-    qemu.arg("-device").arg(format!("loader,file=model.frk,addr={:#x},force-raw=on", window.start));
+    let mut qemu = command(target, folder.path(), elf, window)?;
     qemu.args(["-semihosting-config", "enable=on,target=native"]);
-    qemu.args(["-display", "none", "-monitor", "none", "-serial", "none"]);
+    qemu.args(["-serial", "none"]);
     if request.mode == Mode::Count {
         qemu.arg("-icount").arg(format!("shift={}", target.icount_shift));
     }
-    let child = qemu.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
-    let child = child.map_err(|error| Error::from_io(Path::new(&target.emulator), &error))?;
+    let child = qemu.spawn().map_err(|error| Error::from_io(Path::new(&target.emulator), &error))?;
     let status = wait(child)?;
     if !status.success() {
         let message = match status.code() {

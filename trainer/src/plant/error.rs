@@ -1,5 +1,7 @@
 //! What keeps a joint from being simulated.
 
+use crate::error::{Error, codes};
+
 /// What keeps a joint from being simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
@@ -22,4 +24,15 @@ pub enum PlantError {
     /// The motion left all bounds: the effects are too strong for the controller.
     #[error("the joint became unstable {0} s into the recording; lower the amplitudes")]
     Unstable(f64),
+}
+
+impl From<PlantError> for Error {
+    /// `FRK-U001` for effects that do not exist or exclude each other, `FRK-D015` for all else: the description of the joint.
+    fn from(error: PlantError) -> Self {
+        let code = match error {
+            PlantError::UnknownEffect(_) | PlantError::TwoTransmissions(_) => &codes::USAGE,
+            PlantError::OutOfRange { .. } | PlantError::Unstable(_) => &codes::BAD_JOINT_FILE,
+        };
+        Self::new(code, error.to_string())
+    }
 }

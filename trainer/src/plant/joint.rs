@@ -56,6 +56,9 @@ pub struct Friction {
     pub stribeck_torque_nm: f64,
     /// Stribeck velocity, rad/s (> 0).
     pub stribeck_velocity_rad_s: f64,
+    /// Stiffness of the contact before it slips, N m/rad; 0 for a contact that does not yield.
+    #[serde(rename = "contact_stiffness_Nm_rad")]
+    pub contact_stiffness_nm_rad: f64,
 }
 
 /// Proportional-derivative position control with feed-forward of the nominal law.
@@ -245,7 +248,13 @@ impl Default for Joint {
 
 impl Default for Friction {
     fn default() -> Self {
-        Self { coulomb_torque_nm: 2.0, viscous_nm_s_rad: 1.2, stribeck_torque_nm: 0.0, stribeck_velocity_rad_s: 0.05 }
+        Self {
+            coulomb_torque_nm: 2.0,
+            viscous_nm_s_rad: 1.2,
+            stribeck_torque_nm: 0.0,
+            stribeck_velocity_rad_s: 0.05,
+            contact_stiffness_nm_rad: 0.0,
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::concealed::Concealed;
 use super::error::PlantError;
 use super::integrator::integrate;
 use super::joint::{Hidden, Joint};
+use super::moving::MovingJoint;
 use super::random::{Draws, Purpose};
 use crate::plant::measurement::recording::SimulatedRecording;
 use crate::plant::measurement::sensors::record;
@@ -14,11 +15,9 @@ use crate::plant::trajectory::reference::Reference;
 /// # Errors
 /// [`PlantError`] for a value out of range, an unknown effect, or an unstable motion.
 pub fn simulate(joint: &Joint, seed: u64) -> Result<SimulatedRecording, PlantError> {
-    validate(joint)?;
-    let references = references(joint, seed);
-    let mut hidden = Concealed::draw(joint, &references, seed)?;
-    let history = integrate(joint, &references, &mut hidden, seed)?;
-    Ok(record(joint, history, &hidden.faults, hidden.parameters, seed))
+    let (mut moving, references) = with_references(joint, seed)?;
+    let history = integrate(&mut moving, &references)?;
+    Ok(record(joint, history, &moving.hidden.faults, moving.hidden.parameters, seed))
 }
 
 /// Simulates with one more effect hidden at `amplitude`; motions, noise and the shape of the effect depend on the seed
@@ -30,6 +29,25 @@ pub fn conceal(joint: &Joint, name: &str, amplitude: f64, seed: u64) -> Result<S
     let mut joint = joint.clone();
     joint.effects.push(Hidden { name: name.to_owned(), amplitude });
     simulate(&joint, seed)
+}
+
+/// `joint` at rest, with the effects that [`simulate`] hides in it for the same seed.
+///
+/// # Errors
+/// As [`simulate`], but for an unstable motion.
+pub(crate) fn at_rest(joint: &Joint, seed: u64) -> Result<MovingJoint<'_>, PlantError> {
+    with_references(joint, seed).map(|(moving, _)| moving)
+}
+
+/// A reference, and its gravity torque, N m.
+type Trajectory = (Reference, f64);
+
+/// The joint at rest, and the references that it is to follow: effects are drawn for their range.
+fn with_references(joint: &Joint, seed: u64) -> Result<(MovingJoint<'_>, Vec<Trajectory>), PlantError> {
+    validate(joint)?;
+    let references = references(joint, seed);
+    let hidden = Concealed::draw(joint, &references, seed)?;
+    Ok((MovingJoint::new(joint, hidden, seed), references))
 }
 
 fn validate(joint: &Joint) -> Result<(), PlantError> {
@@ -55,6 +73,7 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
     let not_negative = [
         ("friction.coulomb_torque_Nm", joint.friction.coulomb_torque_nm),
         ("friction.viscous_Nm_s_rad", joint.friction.viscous_nm_s_rad),
+        ("friction.contact_stiffness_Nm_rad", joint.friction.contact_stiffness_nm_rad),
         ("drive.torque_resolution_Nm", joint.drive.torque_resolution_nm),
         ("drive.torque_limit_Nm", joint.drive.torque_limit_nm),
         ("noise.white_torque_Nm", joint.noise.white_torque_nm),

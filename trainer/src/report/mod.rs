@@ -3,6 +3,7 @@
 
 mod axis;
 mod chart;
+mod closed_loop;
 mod diagnosis;
 mod finding;
 mod fit;
@@ -13,5 +14,6 @@ mod page;
 pub mod picture;
 pub mod tell;
 
+pub use closed_loop::closed_loop;
 pub use diagnosis::{DiagnosisPage, diagnosis};
 pub use fit::fit;

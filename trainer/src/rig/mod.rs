@@ -1,18 +1,20 @@
 //! The drive in closed loop with a joint: what a compensator is for, tried before it meets a machine.
 //!
-//! The joint moves in `f64`, the drive is the firmware's code in `f32`, and both exchange counts and torques in lockstep, the torque one
-//! sample late. Knows no command line and no files.
+//! The joint moves in `f64` as the simulator moves it, the drive is the firmware's code in `f32`, on the host or on an emulated
+//! microcontroller, and both exchange counts and torques in lockstep, the torque one sample late. Knows no command line and no files.
 
-mod joint;
+mod course;
+mod drive;
 mod lockstep;
 mod motion;
 mod nominal;
 mod scores;
 mod settings;
 
-pub use joint::{JointState, LuGreJoint};
-pub use lockstep::{Bench, drive_of, run};
+pub use course::Course;
+pub use drive::{Answer, DriveUnderTest, host_drive};
+pub use lockstep::{Bench, run};
 pub use motion::Motion;
 pub use nominal::nominal_model;
 pub use scores::{Row, Scores, trace_bytes};
-pub use settings::{joint_of, limits_of, settings_of, supervision_of};
+pub use settings::{drive_settings, with_contact};

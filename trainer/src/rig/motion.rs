@@ -21,12 +21,22 @@ pub enum Motion {
     Nudge,
     /// A sine while the load steps.
     LoadStep,
+    /// A sine of a joint that starts cold and warms up.
+    ColdStart,
 }
 
 impl Motion {
     /// All motions, in an order that is kept.
-    pub const ALL: [Self; 7] =
-        [Self::Hold, Self::Creep, Self::Reversals, Self::Dwells, Self::Sine, Self::Nudge, Self::LoadStep];
+    pub const ALL: [Self; 8] = [
+        Self::Hold,
+        Self::Creep,
+        Self::Reversals,
+        Self::Dwells,
+        Self::Sine,
+        Self::Nudge,
+        Self::LoadStep,
+        Self::ColdStart,
+    ];
 
     /// Its name.
     #[must_use]
@@ -39,6 +49,7 @@ impl Motion {
             Self::Sine => "sine",
             Self::Nudge => "nudge",
             Self::LoadStep => "load-step",
+            Self::ColdStart => "cold-start",
         }
     }
 
@@ -48,6 +59,7 @@ impl Motion {
         match self {
             Self::Nudge => 5.0,
             Self::Reversals => 40.0,
+            Self::ColdStart => 60.0,
             _ => 20.0,
         }
     }
@@ -60,7 +72,7 @@ impl Motion {
             Self::Creep => Some(ramp(CREEP_VELOCITY, time)),
             Self::Reversals => Some(sine(0.05, 0.1, time)),
             Self::Dwells => Some(dwells(time)),
-            Self::Sine => Some(sine(0.5, 0.5, time)),
+            Self::Sine | Self::ColdStart => Some(sine(0.5, 0.5, time)),
             Self::LoadStep => Some(sine(0.2, 0.25, time)),
             Self::Nudge => None,
         }
@@ -80,6 +92,15 @@ impl Motion {
         }
     }
 
+    /// Friction at a time, s, over that of the warm joint.
+    #[must_use]
+    pub fn friction_factor(self, time: f64) -> f64 {
+        match self {
+            Self::ColdStart => 1.0 + COLD_EXCESS * (-time / WARMING_S).exp(),
+            _ => 1.0,
+        }
+    }
+
     /// When the joint is let go, s.
     #[must_use]
     pub fn nudge_end(self) -> Option<f64> {
@@ -87,6 +108,10 @@ impl Motion {
     }
 }
 
+/// Friction of the cold joint beyond that of the warm one, and the time constant of its fall, s. Chosen by judgement: a large excess, gone
+/// within a run of a minute, where the housing of a real joint takes an hour.
+const COLD_EXCESS: f64 = 0.4;
+const WARMING_S: f64 = 15.0;
 const NUDGE_START: f64 = 0.5;
 const NUDGE_END: f64 = 0.7;
 /// rad/s

@@ -1,5 +1,7 @@
 //! What a run is worth.
 
+use super::drive::Answer;
+
 /// One sample of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
@@ -11,12 +13,10 @@ pub struct Row {
     pub velocity: f64,
     /// Position, rad, and velocity, rad/s, of the reference; NaN without a position loop.
     pub reference: [f32; 2],
-    /// Torque of the drive and, of it, the compensation, N m.
-    pub torque: f32,
-    /// See `torque`.
-    pub compensation: f32,
-    /// Share of the gain in force.
-    pub gain_share: f32,
+    /// Temperature of the housing, degC.
+    pub temperature: f64,
+    /// What the drive answered.
+    pub answer: Answer,
 }
 
 /// All numbers of a run as bytes, for its checksum.
@@ -24,8 +24,9 @@ pub struct Row {
 pub fn trace_bytes(rows: &[Row]) -> Vec<u8> {
     let bytes = |row: &Row| {
         let joint = [row.position, row.velocity].map(f64::to_le_bytes).concat();
-        let drive = [row.torque, row.compensation, row.gain_share].map(f32::to_le_bytes).concat();
-        [joint, drive].concat()
+        let Answer { torque, velocity, compensation, gain_share, status } = row.answer;
+        let drive = [torque, velocity, compensation, gain_share].map(f32::to_le_bytes).concat();
+        [joint, drive, status.to_le_bytes().to_vec()].concat()
     };
     rows.iter().flat_map(bytes).collect()
 }
@@ -69,7 +70,7 @@ impl Scores {
             rms_error: root_mean_square(finite.clone()),
             peak_error: finite.map(f64::abs).fold(0.0, f64::max),
             hold_peak_to_peak: hold_peak_to_peak(rows),
-            torque_rms: root_mean_square(rows.iter().map(|row| f64::from(row.torque))),
+            torque_rms: root_mean_square(rows.iter().map(|row| f64::from(row.answer.torque))),
             final_speed: rows.last().map_or(0.0, |row| row.velocity.abs()),
             speed_gain_after_nudge: largest - let_go.first().copied().unwrap_or(0.0),
             max_speed_after_nudge: largest,

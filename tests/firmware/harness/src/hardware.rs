@@ -28,8 +28,19 @@ pub fn flash() -> &'static [u8] {
     let (start, end) = (&raw const _image_start, &raw const _image_end);
     let bytes = (end as usize).saturating_sub(start as usize);
     // SAFETY: `memory.x` keeps the window out of every section, it lies in memory that is there from reset on, and
-    // nothing ever writes to it.
+    // `write_flash` is called only while nobody holds what this returns.
     unsafe { core::slice::from_raw_parts(start, bytes) }
+}
+
+/// Writes words to a place of the flash, a multiple of four bytes behind its start; what lies beyond its end is not written. The boards'
+/// code memory takes writes as they are, where a drive's flash wants to be erased. Nobody may hold a slice of [`flash`] meanwhile.
+pub fn write_flash(place: u32, words: &[u32]) {
+    let (start, end) = (&raw const _image_start as usize, &raw const _image_end as usize);
+    let first = start.saturating_add((place & !3) as usize);
+    for (address, word) in (first..end).step_by(4).zip(words) {
+        // SAFETY: inside the window, aligned, and borrowed by nobody.
+        unsafe { ptr::with_exposed_provenance_mut::<u32>(address).write_volatile(*word) };
+    }
 }
 
 const PAINT: u32 = 0xA5C3_3C5A;
@@ -166,6 +177,11 @@ pub(crate) fn set_floating_point_control(bits: u32) -> bool {
     }
     #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
     false
+}
+
+/// Starts the instruction clock, for a program that does not [`serve`](crate::serve).
+pub fn start_clock() {
+    clock::start();
 }
 
 /// A fault ends the emulation instead of hanging it.

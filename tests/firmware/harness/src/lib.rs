@@ -3,7 +3,8 @@
 //!
 //! The harness knows no model. The image stands in the emulated flash, between the linker symbols `_image_start` and
 //! `_image_end` of the target's `memory.x`; the inputs come from the file `request.bin` and the outputs go to
-//! `answer.bin`, both by semihosting and a chunk at a time, so that a vector may be longer than the memory of the part.
+//! `answer.bin`, both by semihosting and a chunk at a time, so that a vector may be longer than the memory of the part. A program that
+//! runs in lockstep with the host exchanges words through the board's UART instead, and needs no semihosting.
 #![no_std]
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -15,10 +16,14 @@ mod protocol;
 #[allow(unsafe_code)]
 mod semihosting;
 mod session;
+#[allow(unsafe_code)]
+mod uart;
 
-pub use hardware::flash;
+pub use hardware::{flash, start_clock, write_flash};
+pub use measure::{calibration, counted};
 pub use protocol::Row;
 pub use session::{Evaluator, serve};
+pub use uart::Uart;
 
 /// Marks the firmware's `main`.
 #[cfg(target_arch = "arm")]

@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 
-use crate::hardware::{clock, stack_depth};
-use crate::protocol::Row;
+use crate::hardware::{calibration_call, clock, empty_call, stack_depth};
+use crate::protocol::{MAX_INPUTS, Row};
 
 /// An evaluation as the harness calls it.
 pub(crate) type Call<E> = extern "C" fn(&mut E, &Row) -> f32;
@@ -23,6 +23,22 @@ pub(crate) fn ticks<E>(call: Call<E>, evaluator: &mut E, row: &Row) -> (f32, u32
 #[inline(never)]
 pub(crate) fn ticks_and_stack<R>(work: impl Fn() -> R) -> (u32, u32) {
     (ticks_of(&work), stack_of(&work))
+}
+
+/// Ticks of a call that only returns and of one with [`CALIBRATION_NOPS`](crate::protocol::CALIBRATION_NOPS) more instructions, for the
+/// host to turn ticks into instructions.
+#[must_use]
+pub fn calibration() -> [u32; 2] {
+    let row = [0.0; MAX_INPUTS];
+    [empty_call::<()>, calibration_call::<()>].map(|call: Call<()>| ticks(call, &mut (), &row).1)
+}
+
+/// What `work` returns, and the ticks that it took.
+#[inline(never)]
+pub fn counted<R>(work: impl FnOnce() -> R) -> (R, u32) {
+    let start = clock::now();
+    let result = work();
+    (result, clock::elapsed(start, clock::now()))
 }
 
 // Frames of their own, so that only one result of `work` is on the stack at a time.

@@ -67,7 +67,7 @@ impl Evaluator for IntegerDrive {
 const NOT_AN_INTEGER_TABLE: u32 = 10;
 
 /// The number by which the host knows a refusal.
-fn reason(error: ImageError) -> u32 {
+pub fn reason(error: ImageError) -> u32 {
     match error {
         ImageError::Truncated => 1,
         ImageError::BadMagic => 2,

@@ -11,7 +11,7 @@ pub(crate) struct DryLevels {
 }
 
 impl DryLevels {
-    fn towards(self, direction: f64) -> f64 {
+    pub(crate) fn towards(self, direction: f64) -> f64 {
         if direction > 0.0 { self.forward } else { self.backward }
     }
 }

@@ -2,6 +2,7 @@
 //! concealed effect and no sensor.
 
 pub mod channels;
+pub mod contact;
 pub mod control;
 pub mod friction;
 pub mod transmission;

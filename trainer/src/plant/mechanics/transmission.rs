@@ -1,6 +1,7 @@
 //! How the motor moves the link: rigidly, through a gear with kinematic error, or through a compliant gear.
 
 use super::friction::{DryLevels, Motion1D, advance};
+use crate::plant::joint::Joint;
 
 /// What acts on the motor side during one step.
 pub(crate) struct Push {
@@ -20,6 +21,16 @@ pub(crate) struct Load {
 }
 
 impl Load {
+    /// What `joint` carries under a payload of `gravity_torque` N m.
+    pub(crate) fn of(joint: &Joint, gravity_torque: f64) -> Self {
+        Self {
+            motor_inertia: joint.motor_inertia_share * joint.inertia_kgm2,
+            link_inertia: (1.0 - joint.motor_inertia_share) * joint.inertia_kgm2,
+            gravity_torque,
+            gravity_phase: joint.gravity_phase_rad,
+        }
+    }
+
     pub(crate) fn gravity(&self, position: f64) -> f64 {
         self.gravity_torque * (position + self.gravity_phase).sin()
     }

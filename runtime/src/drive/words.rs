@@ -1,0 +1,179 @@
+//! A drive's settings, inputs and outputs as 32-bit words: what a test bench sends to a drive and gets back, over whatever carries words.
+//! Numbers are the bits of `f32`.
+
+use super::sample::{DriveInput, DriveOutput};
+use crate::compensator::{Limits, Status};
+use crate::controller::{Settings, Target};
+use crate::supervised::{Supervised, Supervision, VelocitySource};
+
+/// Words of a [`DriveInput`].
+pub const INPUT_WORDS: usize = 6;
+/// Words of a [`DriveOutput`].
+pub const OUTPUT_WORDS: usize = 5;
+/// Words of [`DriveSettings`].
+pub const SETTINGS_WORDS: usize = 21;
+
+/// All that a drive is set to, but for its model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveSettings {
+    /// The position loop.
+    pub controller: Settings,
+    /// Limits of the compensation.
+    pub limits: Limits,
+    /// Its supervision.
+    pub supervision: Supervision,
+    /// Sample period, s.
+    pub dt: f32,
+}
+
+impl DriveInput {
+    /// Counts, target (position, velocity, acceleration; NaN for none), gravity, temperature.
+    #[must_use]
+    pub fn to_words(&self) -> [u32; INPUT_WORDS] {
+        let none = Target { position: f32::NAN, velocity: f32::NAN, acceleration: f32::NAN };
+        let Target { position, velocity, acceleration } = self.target.unwrap_or(none);
+        let [position, velocity, acceleration, gravity, temperature] =
+            [position, velocity, acceleration, self.gravity, self.temperature].map(f32::to_bits);
+        [self.counts.cast_unsigned(), position, velocity, acceleration, gravity, temperature]
+    }
+
+    /// The input of [`DriveInput::to_words`]; a target whose position is NaN is none.
+    #[must_use]
+    pub fn from_words(words: &[u32; INPUT_WORDS]) -> Self {
+        let [counts, numbers @ ..] = *words;
+        let [position, velocity, acceleration, gravity, temperature] = numbers.map(f32::from_bits);
+        let target = (!position.is_nan()).then_some(Target { position, velocity, acceleration });
+        Self { counts: counts.cast_signed(), target, gravity, temperature }
+    }
+}
+
+impl DriveOutput {
+    /// Torque, velocity, compensation, its gain share, and the status: 0 active, 1 no model, 2 not finite, 3 implausible.
+    #[must_use]
+    pub fn to_words(&self) -> [u32; OUTPUT_WORDS] {
+        let status = match self.compensation.status {
+            Supervised::Compensator(Status::Active) => 0,
+            Supervised::Compensator(Status::NoModel(_)) => 1,
+            Supervised::Compensator(Status::NotFinite) => 2,
+            Supervised::Implausible => 3,
+        };
+        let [torque, velocity, compensation, share] =
+            [self.torque, self.velocity, self.compensation.torque, self.compensation.gain_share].map(f32::to_bits);
+        [torque, velocity, compensation, share, status]
+    }
+}
+
+impl DriveSettings {
+    /// All settings, in the order of their fields.
+    #[must_use]
+    pub fn to_words(&self) -> [u32; SETTINGS_WORDS] {
+        let Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit } = self.controller;
+        let (limits, watch) = (&self.limits, &self.supervision);
+        let source = match watch.source {
+            VelocitySource::Measured => 0,
+            VelocitySource::Reference => 1,
+            VelocitySource::Blended => 2,
+        };
+        let numbers = [
+            stiffness,
+            damping,
+            inertia,
+            count,
+            velocity_corner,
+            torque_limit,
+            limits.gain(),
+            limits.torque(),
+            limits.slew(),
+            limits.position(),
+            watch.inertia,
+            watch.rest_velocity,
+            watch.presliding,
+            watch.observer_time,
+            watch.fall_time,
+            watch.rise_time,
+            watch.least_friction,
+            watch.implausible_time,
+            self.dt,
+        ];
+        let mut words = [0; SETTINGS_WORDS];
+        words.iter_mut().zip(numbers).for_each(|(word, number)| *word = number.to_bits());
+        [words[SETTINGS_WORDS - 2], words[SETTINGS_WORDS - 1]] = [source, u32::from(watch.monitored)];
+        words
+    }
+
+    /// The settings of [`DriveSettings::to_words`]; `None` where the limits cannot be kept or the source of the velocity is unknown.
+    #[must_use]
+    pub fn from_words(words: &[u32; SETTINGS_WORDS]) -> Option<Self> {
+        let [numbers @ .., source, monitored] = *words;
+        let [
+            stiffness,
+            damping,
+            inertia,
+            count,
+            velocity_corner,
+            torque_limit,
+            gain,
+            torque,
+            slew,
+            position,
+            watched_inertia,
+            rest_velocity,
+            presliding,
+            observer_time,
+            fall_time,
+            rise_time,
+            least_friction,
+            implausible_time,
+            dt,
+        ] = numbers.map(f32::from_bits);
+        let source = match source {
+            0 => VelocitySource::Measured,
+            1 => VelocitySource::Reference,
+            2 => VelocitySource::Blended,
+            _ => return None,
+        };
+        let supervision = Supervision {
+            inertia: watched_inertia,
+            source,
+            monitored: monitored != 0,
+            rest_velocity,
+            presliding,
+            observer_time,
+            fall_time,
+            rise_time,
+            least_friction,
+            implausible_time,
+        };
+        let controller = Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit };
+        let limits = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()?;
+        Some(Self { controller, limits, supervision, dt })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_bring_back_what_was_sent() {
+        let controller = Settings {
+            stiffness: 1.0,
+            damping: 2.0,
+            inertia: 3.0,
+            count: 4.0,
+            velocity_corner: 5.0,
+            torque_limit: 6.0,
+        };
+        let limits = Limits::new(0.7, 8.0, 9.0).unwrap().with_position(0.1).unwrap();
+        for source in [VelocitySource::Measured, VelocitySource::Reference, VelocitySource::Blended] {
+            let supervision = Supervision { source, ..Supervision::new(0.5, 2.0) };
+            let settings = DriveSettings { controller, limits, supervision, dt: 1e-3 };
+            assert_eq!(DriveSettings::from_words(&settings.to_words()), Some(settings));
+        }
+        let target = Some(Target { position: 1.0, velocity: -2.0, acceleration: 3.0 });
+        for target in [target, None] {
+            let input = DriveInput { counts: -7, target, gravity: 2.0, temperature: 25.0 };
+            assert_eq!(DriveInput::from_words(&input.to_words()), input);
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! `trainer loop`: a joint in closed loop with the drive's own code, with and without compensation, on the host or an emulated drive.
+
+mod account;
+mod follow;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use frikan_runtime::drive::DriveSettings;
+use frikan_runtime::shared::image::Image;
+use frikan_runtime::shared::units::Unit;
+use frikan_runtime::supervised::{DEFAULT_GAIN, VelocitySource};
+
+use super::output::{Outputs, print};
+use super::progress::Reporter;
+use super::simulate::parse_effect;
+use crate::emulator::Lockstep;
+use crate::error::{Error, Result, codes};
+use crate::fit::model::{self, CELLS, HostModel};
+use crate::joint;
+use crate::plant::{self, Hidden};
+use crate::report;
+use crate::rig::{Bench, Row, Scores, drive_settings, host_drive, nominal_model, run as run_bench, with_contact};
+use account::Account;
+
+/// Follow a motion in closed loop with a simulated joint, with and without friction compensation: what an image is worth before it meets a
+/// machine.
+///
+/// The drive is the firmware's code: position loop, encoder filter and supervised compensator, on the host or on an emulated
+/// microcontroller, bit for bit the same. The joint is that of `trainer simulate`, effects included.
+#[derive(Args, Clone, Debug)]
+pub struct Loop {
+    /// Description of the joint; its `[plant]` section and every key in it are optional
+    #[arg(value_name = "JOINT.toml")]
+    pub joint: PathBuf,
+    /// Image that compensates; without one the very law of the simulated joint
+    #[arg(long, value_name = "MODEL.frk")]
+    pub image: Option<PathBuf>,
+    /// Where the drive runs: host, or emulated: cortex-m0plus, cortex-m33, cortex-m4f, cortex-m7, riscv32imac, riscv32imc
+    #[arg(long, default_value = "host")]
+    pub target: String,
+    /// hold, creep, reversals, dwells, sine, nudge, load-step, cold-start, or a recording whose reference (or position) is followed
+    #[arg(long, value_name = "MOTION|FILE.csv", default_value = "reversals")]
+    pub motion: String,
+    /// Coulomb, Stribeck and viscous friction of the joint over that of its description
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub friction_scale: f64,
+    /// Share of the friction that is compensated
+    #[arg(long, default_value_t = DEFAULT_GAIN)]
+    pub gain: f32,
+    /// Velocity at which friction is compensated
+    #[arg(long, value_enum, default_value_t = Velocity::Blended)]
+    pub velocity: Velocity,
+    /// Leave the gain as it is where compensation feeds the joint
+    #[arg(long)]
+    pub no_monitor: bool,
+    /// Hide an effect in the joint at an amplitude, as `trainer simulate` does; may be given several times
+    #[arg(long = "effect", value_name = "NAME=AMPLITUDE", value_parser = parse_effect)]
+    pub effects: Vec<Hidden>,
+    /// Seed of the shapes of effects: that of the recording in which they are hidden
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Length of the run, s
+    #[arg(long, value_name = "SECONDS")]
+    pub duration: Option<f64>,
+    /// Flash another image into the running drive
+    #[arg(long, value_name = "MODEL.frk", requires = "swap_at")]
+    pub swap_image: Option<PathBuf>,
+    /// When, s
+    #[arg(long, value_name = "SECONDS", requires = "swap_image")]
+    pub swap_at: Option<f64>,
+    /// Write the run with compensation, a row a sample
+    #[arg(short, long, value_name = "TRACE.csv")]
+    pub output: Option<PathBuf>,
+    /// Also write the result as JSON; `-` for standard output
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    pub json: Option<PathBuf>,
+    /// Also write a page with plots
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Say nothing on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Velocity at which friction is compensated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Velocity {
+    /// The joint's, behind the encoder's filter: hunts at rest
+    Measured,
+    /// The reference's: blind to what the joint does
+    Reference,
+    /// The reference's through zero and at rest, the joint's in sliding
+    Blended,
+}
+
+impl From<Velocity> for VelocitySource {
+    fn from(velocity: Velocity) -> Self {
+        match velocity {
+            Velocity::Measured => Self::Measured,
+            Velocity::Reference => Self::Reference,
+            Velocity::Blended => Self::Blended,
+        }
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// `FRK-D015` for a joint that cannot be simulated, `FRK-D019` and `FRK-D020` for what is no image, `FRK-U001` for numbers out of range, a
+/// motion that does not exist or a model that is not in N m, `FRK-U004` and `FRK-I004` to `FRK-I008` for targets that do not
+/// exist or cannot be emulated. Nothing is written unless both runs ended.
+pub fn run(arguments: &Loop) -> Result<()> {
+    let label = arguments.joint.display().to_string();
+    let mut joint =
+        plant::Joint::described_by(&joint::Joint::load(&arguments.joint)?).map_err(|e| e.in_file(&label))?;
+    joint.effects.extend(arguments.effects.iter().cloned());
+    let joint = with_contact(&joint);
+    let (image, model) = image_of(arguments, &joint)?;
+    let settings = settings_of(arguments, &joint, model.output_limit)?;
+    let bench = bench_of(arguments, joint)?;
+    let of_joint = |error: Error| error.in_file(&label);
+
+    let reporter = Reporter::new(arguments.quiet);
+    let off = drive_settings(&bench.joint, 0.0, model.output_limit).unwrap_or(settings);
+    let alone = Bench { swap: None, ..bench.clone() };
+    let uncompensated = run_bench(&alone, &mut host_drive(model.clone(), &off)).map_err(of_joint)?;
+    let (compensated, instructions) = if arguments.target == "host" {
+        (run_bench(&bench, &mut host_drive(model, &settings)).map_err(of_joint)?, None)
+    } else {
+        reporter.say("building the firmware and running it in lockstep");
+        let mut drive = Lockstep::start(&arguments.target, &image, &settings.to_words(), true)?;
+        (run_bench(&bench, &mut drive)?, drive.instructions())
+    };
+    drop(reporter);
+    let nudge_end = bench.course.motion().and_then(|motion| motion.nudge_end());
+    let scores = |rows: &[Row]| Scores::of(rows, nudge_end);
+    let account = Account {
+        target: &arguments.target,
+        motion: bench.course.name(),
+        friction_scale: arguments.friction_scale,
+        gain: arguments.gain,
+        uncompensated: scores(&uncompensated),
+        compensated: scores(&compensated),
+        instructions,
+        rows: &compensated,
+    };
+    write(arguments, &account, &uncompensated)
+}
+
+fn write(arguments: &Loop, account: &Account<'_>, uncompensated: &[Row]) -> Result<()> {
+    let mut outputs = Outputs::default();
+    if let Some(path) = &arguments.output {
+        outputs.add(path, account::trace(account.rows));
+    }
+    if let Some(path) = &arguments.json {
+        outputs.add(path, format!("{}\n", account.to_json()));
+    }
+    if let Some(path) = &arguments.report {
+        outputs.add(path, report::closed_loop(account.motion, &account.lines(), uncompensated, account.rows));
+    }
+    let inputs = [Some(arguments.joint.as_path()), arguments.image.as_deref(), arguments.swap_image.as_deref()];
+    outputs.refuse_overwriting(&inputs.into_iter().flatten().collect::<Vec<&Path>>())?;
+    outputs.write()?;
+    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+        print(&(account.lines().join("\n") + "\n"))?;
+    }
+    Ok(())
+}
+
+/// The bytes and the model of the image that compensates.
+fn image_of(arguments: &Loop, joint: &plant::Joint) -> Result<(Vec<u8>, HostModel)> {
+    let (bytes, image) = if let Some(path) = &arguments.image {
+        model::load(path)?
+    } else {
+        let nominal = nominal_model::<CELLS>(&joint.friction)
+            .ok_or_else(|| Error::new(&codes::BAD_JOINT_FILE, "an image cannot hold this friction"))?;
+        let image = Box::new(Image { model: nominal, provenance: model::provenance("", &[], arguments.seed) });
+        (model::to_bytes(&image)?, image)
+    };
+    if image.model.output_unit != Unit::NewtonMetre {
+        let message = "the loop puts out torques: it needs a model in N m";
+        let path = arguments.image.as_deref().unwrap_or(Path::new("")).display().to_string();
+        return Err(Error::new(&codes::USAGE, message).in_file(path).with_value(image.model.output_unit.symbol()));
+    }
+    Ok((bytes, image.model))
+}
+
+fn settings_of(arguments: &Loop, joint: &plant::Joint, largest: f32) -> Result<DriveSettings> {
+    let mut settings = drive_settings(joint, arguments.gain, largest).ok_or_else(|| {
+        let message = "the gain has to be finite and not negative";
+        Error::new(&codes::USAGE, message).with_value(arguments.gain.to_string())
+    })?;
+    settings.supervision.source = arguments.velocity.into();
+    settings.supervision.monitored = !arguments.no_monitor;
+    Ok(settings)
+}
+
+fn bench_of(arguments: &Loop, joint: plant::Joint) -> Result<Bench> {
+    let course = follow::course(&arguments.motion, joint.drive.rate_hz)?;
+    let duration = arguments.duration.unwrap_or_else(|| course.duration(joint.drive.rate_hz));
+    let positive = [("--friction-scale", arguments.friction_scale), ("--duration", duration)];
+    for (name, value) in positive {
+        if !(value.is_finite() && value > 0.0) {
+            let message = format!("`{name}` has to be a finite number above zero");
+            return Err(Error::new(&codes::USAGE, message).with_value(value.to_string()));
+        }
+    }
+    if duration * joint.drive.rate_hz > follow::MOST_SAMPLES {
+        let message = format!("a run has at most {} samples", follow::MOST_SAMPLES);
+        return Err(Error::new(&codes::USAGE, message).with_value((duration * joint.drive.rate_hz).to_string()));
+    }
+    let swap = match (&arguments.swap_image, arguments.swap_at) {
+        (Some(path), Some(at)) => Some((at, model::load(path)?.0)),
+        _ => None,
+    };
+    Ok(Bench { joint, seed: arguments.seed, friction_scale: arguments.friction_scale, course, duration, swap })
+}

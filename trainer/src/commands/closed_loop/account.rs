@@ -1,0 +1,147 @@
+//! What a run in closed loop gives: sentences, JSON, and the trace.
+
+use std::fmt::Write;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use serde_json::{Value, json};
+
+use crate::figures::{digits, quantity};
+use crate::rig::{Row, Scores, trace_bytes};
+
+/// Both runs, and where the compensated one ran.
+pub(super) struct Account<'a> {
+    pub(super) target: &'a str,
+    pub(super) motion: &'a str,
+    pub(super) friction_scale: f64,
+    pub(super) gain: f32,
+    pub(super) uncompensated: Scores,
+    pub(super) compensated: Scores,
+    pub(super) instructions: Option<(u32, u32)>,
+    /// The compensated run.
+    pub(super) rows: &'a [Row],
+}
+
+/// Names of the drive's status by its number.
+const STATUS: [&str; 4] = ["active", "no_model", "not_finite", "implausible"];
+
+impl Account<'_> {
+    /// CRC-32 (ISO-HDLC) of the numbers of the trace.
+    fn trace_crc32(&self) -> u32 {
+        Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&trace_bytes(self.rows))
+    }
+
+    /// The result in sentences, one a line.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let (before, after) = (&self.uncompensated, &self.compensated);
+        let mut lines = vec![format!(
+            "{} for {} samples on {}, friction {} of the model's, gain {}",
+            self.motion,
+            self.rows.len(),
+            self.target,
+            digits(self.friction_scale),
+            digits(f64::from(self.gain)),
+        )];
+        let mut compared = |what: &str, unit: &str, before: f64, after: f64| {
+            lines.push(format!(
+                "{what}: {} without compensation, {} with it",
+                quantity(before, unit),
+                quantity(after, unit)
+            ));
+        };
+        if after.rms_error > 0.0 {
+            compared("tracking error (RMS)", "rad", before.rms_error, after.rms_error);
+            compared("largest tracking error", "rad", before.peak_error, after.peak_error);
+        }
+        if after.hold_peak_to_peak > 0.0 {
+            compared("range of the position at rest", "rad", before.hold_peak_to_peak, after.hold_peak_to_peak);
+        }
+        if after.max_speed_after_nudge > 0.0 {
+            compared(
+                "largest speed after the nudge",
+                "rad/s",
+                before.max_speed_after_nudge,
+                after.max_speed_after_nudge,
+            );
+            compared("speed at the end", "rad/s", before.final_speed, after.final_speed);
+        }
+        let lowest = self.rows.iter().map(|row| row.answer.gain_share).fold(1.0, f32::min);
+        if lowest < 1.0 {
+            lines.push(format!("the monitor lowered the gain to {} of its setting", digits(f64::from(lowest))));
+        }
+        for (index, name) in STATUS.iter().enumerate().skip(1) {
+            let count = self.rows.iter().filter(|row| row.answer.status as usize == index).count();
+            if count > 0 {
+                lines.push(format!("no compensation in {count} samples: {}", name.replace('_', " ")));
+            }
+        }
+        if let Some((fewest, most)) = self.instructions {
+            lines.push(format!("the drive's step took {fewest} to {most} instructions"));
+        }
+        lines.push(format!("trace: CRC-32 {:08x}", self.trace_crc32()));
+        lines
+    }
+
+    /// The result as JSON.
+    pub(super) fn to_json(&self) -> Value {
+        let statuses: serde_json::Map<String, Value> = STATUS
+            .iter()
+            .enumerate()
+            .map(|(index, name)| {
+                let count = self.rows.iter().filter(|row| row.answer.status as usize == index).count();
+                ((*name).to_owned(), count.into())
+            })
+            .collect();
+        json!({
+            "schema": "frikan.loop/1",
+            "target": self.target,
+            "motion": self.motion,
+            "friction_scale": self.friction_scale,
+            "gain": self.gain,
+            "steps": self.rows.len(),
+            "compensated": scores(&self.compensated),
+            "uncompensated": scores(&self.uncompensated),
+            "lowest_gain_share": self.rows.iter().map(|row| row.answer.gain_share).fold(1.0, f32::min),
+            "status": statuses,
+            "instructions": self.instructions.map(|(fewest, most)| json!({"min": fewest, "max": most})),
+            "trace_crc32": format!("{:08x}", self.trace_crc32()),
+        })
+    }
+}
+
+fn scores(scores: &Scores) -> Value {
+    json!({
+        "rms_error": scores.rms_error,
+        "peak_error": scores.peak_error,
+        "hold_peak_to_peak": scores.hold_peak_to_peak,
+        "torque_rms": scores.torque_rms,
+        "final_speed": scores.final_speed,
+        "max_speed_after_nudge": scores.max_speed_after_nudge,
+    })
+}
+
+/// The run as a recording, with what the drive did beside it.
+pub(super) fn trace(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "time_s,position_rad,velocity_rad_s,temperature_C,reference_position_rad,reference_velocity_rad_s,torque_Nm,\
+         filtered_velocity_rad_s,compensation_torque_Nm,gain_share,status\n",
+    );
+    for row in rows {
+        let [position, velocity] =
+            row.reference.map(|value| if value.is_nan() { String::new() } else { value.to_string() });
+        let answer = &row.answer;
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{position},{velocity},{},{},{},{},{}",
+            row.time,
+            row.position,
+            row.velocity,
+            row.temperature,
+            answer.torque,
+            answer.velocity,
+            answer.compensation,
+            answer.gain_share,
+            answer.status,
+        );
+    }
+    text
+}
