@@ -1,6 +1,7 @@
 //! What the cross-crate tests share.
 
 pub mod c;
+pub mod closed_loop;
 pub mod command;
 pub mod concealed;
 pub mod cost;

@@ -85,3 +85,52 @@ fn a_strong_warm_up_survives_the_way_into_the_image() {
     assert!(before > 2.0 * after, "{before} -> {after} is not strong");
     assert!(rmse < MAY_LEAVE * after, "the image leaves {rmse} instead of {after}");
 }
+
+/// The quotient has factors that do the same, and a power law is far from what the effects leave of the friction: a refit moves its constants
+/// further than a linear step goes.
+#[test]
+fn a_formula_whose_constants_move_far_is_written_as_what_was_refitted() {
+    use frikan_runtime::shared::expression::{Operation, Program};
+    use frikan_runtime::shared::model::{Input, Law, Model};
+    use frikan_runtime::shared::units::Quantity;
+    let case = Case {
+        hidden: Hidden::Effect("presliding", 300.0),
+        noise: NoiseKind::White,
+        base: BaseKind::CoulombViscous,
+        seed: 5,
+    };
+    let Concealed { recording, joint, .. } = conceal(&case).unwrap();
+    let signals = signals(&recording, &joint);
+    let operations = [
+        Operation::ScaledInput(0, 3.7),
+        Operation::ScaledMagnitude(0, 1.0),
+        Operation::Offset(1e-9),
+        Operation::PowerOf(0.7),
+        Operation::Divide,
+    ];
+    let model = Model {
+        inputs: [Input { quantity: Quantity::Velocity, unit: Unit::RadianPerSecond, low: -4.0, high: 4.0 }]
+            .into_iter()
+            .collect(),
+        output_unit: Unit::NewtonMetre,
+        output_limit: 40.0,
+        rigid_body: RigidBody { given_scale: 1.0, ..RigidBody::default() },
+        law: Law::Expression(Program { operations: operations.into_iter().collect() }),
+        effects: [].into_iter().collect(),
+        cells: Default::default(),
+    };
+    model.validate().unwrap();
+    let state = signals.states();
+    let reference = model::at(&model, &state, signals.rigid_body.as_deref()).unwrap();
+    let comparison = Comparison::with(signals.clone(), reference);
+    let diagnosis = diagnose(&comparison, &Options { base: BaseKind::Reference, ..Options::default() }).unwrap();
+    let improved = improve(&diagnosis, &comparison, Origin::Model(&model), Unit::NewtonMetre).unwrap();
+    let torque = model::at(&improved.model, &state, signals.rigid_body.as_deref()).unwrap().torque;
+    let prepared = Comparison::from(signals.clone()).prepare(Lock::Nothing);
+    let residual: Vec<f64> = signals.torque.iter().zip(&torque).map(|(recorded, model)| recorded - model).collect();
+    let residual = prepared.filtered(&residual);
+    let rmse = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len() as f64).sqrt();
+    let [before, after] = [diagnosis.baseline.rmse, diagnosis.improved.rmse];
+    println!("{before} -> {after}, image {rmse}; {:?}", improved.remarks);
+    assert!(after < 0.5 * before && rmse < 1.5 * after, "{before} -> {after}, image {rmse}");
+}

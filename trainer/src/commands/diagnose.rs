@@ -148,9 +148,16 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     if is_blocked && arguments.output.is_some() {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
-    if let (Some(path), Some(improved)) = (&arguments.output, improved) {
-        outputs.add(path, improved.image);
-        remarks = improved.remarks;
+    let is_worse = sealed.is_some_and(SealedScore::is_worse);
+    if let (Some(path), Some(improved)) = (&arguments.output, &improved) {
+        remarks.clone_from(&improved.remarks);
+        if is_worse {
+            remarks.push(
+                "no model is written: it would leave more of the torque than the model compared with".to_string(),
+            );
+        } else {
+            outputs.add(path, improved.image.clone());
+        }
     }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {

@@ -9,7 +9,7 @@ use crate::compile::tables::compile_layout;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::from_model::{
-    Movement, hats, is_odd, law_at, mean_measurement, moved, movement, moving_constants,
+    Movement, hats, is_odd, law_at, mean_measurement, movement, moving_constants,
 };
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::InverseLaw;
@@ -25,6 +25,10 @@ use frikan_shared::model::{Input, Law, RigidBody};
 use frikan_shared::pool::Pool;
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
+
+mod moved_formula;
+
+use moved_formula::{MovedFormula, moved_formula};
 
 /// Where the base law comes from.
 #[derive(Clone, Copy, Debug)]
@@ -97,11 +101,16 @@ impl Writer<'_> {
         if let Origin::Model(model) = origin {
             terms.effects.extend(model.effects.iter().cloned());
         }
-        let (mut model, mut cells) = match origin {
-            Origin::Model(model) if movement(model) != Movement::Curve => {
-                (moved_law(&refit.base, (model, places), &mut terms, state)?, model.cells.to_vec())
+        let as_formula = match origin {
+            Origin::Model(model) => moved_law(&refit.base, (model, places), &mut terms, state)?,
+            _ => None,
+        };
+        let (mut model, mut cells) = match as_formula {
+            Some(model) => {
+                let cells = model.cells.to_vec();
+                (model, cells)
             }
-            _ => table_model(&friction, origin, state, self.unit),
+            None => table_model(&friction, origin, state, self.unit),
         };
         terms.first_cell = cells.len() as u16;
         let mut remarks = Vec::new();
@@ -178,10 +187,11 @@ fn refitted_friction<'a>(
     };
     let mean = mean_measurement(state);
     match movement(model) {
-        Movement::Constants => {
-            let law = moved_constants(model, places, &refit.base).unwrap_or_else(|| Box::new(model.clone()));
-            Box::new(move |v| law_at(&law, &mean, v))
-        }
+        Movement::Constants => match moved_formula(model, places, &refit.base, state) {
+            Some(MovedFormula::Formula(law)) => Box::new(move |v| law_at(&law, &mean, v)),
+            Some(MovedFormula::Curve(law)) => Box::new(move |v| law.at(v)),
+            None => Box::new(move |v| law_at(model, &mean, v)),
+        },
         Movement::Curve => {
             let is_odd = is_odd(&model.law);
             Box::new(move |v| law_at(model, &mean, v) + sum(hats(v, eps, top, is_odd)))
@@ -207,28 +217,30 @@ fn rigid_body((base, refit): (BaseKind, &Refit), signals: &Signals, origin: Orig
     }
 }
 
-/// The law of a formula or a network with its parameters where the refit moved them.
+/// The law of a formula or a network with its parameters where the refit moved them, `Some(None)` where that is a table of velocity, `None`
+/// where it is no model.
 fn moved_law(
     refitted: &[f64],
     (model, places): (&HostModel, &[usize]),
     terms: &mut Terms,
     state: &JointState,
-) -> Option<Box<HostModel>> {
-    if movement(model) == Movement::Constants {
-        return moved_constants(model, places, refitted);
+) -> Option<Option<Box<HostModel>>> {
+    match movement(model) {
+        Movement::Curve => return Some(None),
+        Movement::Constants => {
+            return moved_formula(model, places, refitted, state).map(|moved| match moved {
+                MovedFormula::Formula(model) => Some(model),
+                MovedFormula::Curve(_) => None,
+            });
+        }
+        Movement::Beside => {}
     }
     terms.effects.push(Effect::Coulomb {
         coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
         viscous: refitted.get(1).copied().unwrap_or(0.0) as f32,
         smoothing_velocity: state.sign_velocity as f32,
     });
-    Some(Box::new(model.clone()))
-}
-
-/// A formula with its constants moved; `None` where that is no model.
-fn moved_constants(model: &HostModel, places: &[usize], by: &[f64]) -> Option<Box<HostModel>> {
-    let mut constants = places.iter().zip(by);
-    constants.try_fold(Box::new(model.clone()), |law, (place, by)| moved(*law, *place, *by).map(Box::new))
+    Some(Some(Box::new(model.clone())))
 }
 
 /// A model whose law is a table of the refitted friction, without effects, and the cells of its pool. Behind the table it reads

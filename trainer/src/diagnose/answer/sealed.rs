@@ -31,6 +31,22 @@ pub struct SealedScore {
 }
 
 impl SealedScore {
+    /// Whether the written model leaves more than the model compared with, by the interval of their ratio.
+    ///
+    /// # Examples
+    /// ```
+    /// use frikan_trainer::diagnose::{Residuals, SealedScore};
+    /// let time: Vec<f64> = (0..100).map(f64::from).collect();
+    /// let after: Vec<f64> = time.iter().map(|t| 2.0 + 0.1 * t.sin()).collect();
+    /// let residuals = Residuals { before: vec![1.0; 100], after, time };
+    /// let stretches: Vec<[f64; 2]> = (0..10).map(|k| [10.0 * f64::from(k), 10.0 * f64::from(k) + 9.0]).collect();
+    /// assert!(SealedScore::of(&residuals, &stretches).unwrap().is_worse());
+    /// ```
+    #[must_use]
+    pub fn is_worse(&self) -> bool {
+        self.ratio_ci95[0] > 1.0
+    }
+
     /// Scores two models on stretches of a recording (from, to; s). `None` where no row lies within, or nothing was left before.
     ///
     /// # Examples

@@ -3,6 +3,7 @@
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
+use crate::numerics::least_squares::{dot, project_out};
 use crate::physics::JointState;
 use crate::samples::blocks::rests;
 use frikan_runtime::evaluate::evaluate;
@@ -13,7 +14,7 @@ use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
 /// Relative step of the central differences; far above the roundoff of `f32`.
-const DIFFERENCE_STEP_SHARE: f64 = 1e-2;
+pub(crate) const DIFFERENCE_STEP_SHARE: f64 = 1e-2;
 
 /// The model at the states of a recording. `given` is a rigid-body torque that the recording carries.
 ///
@@ -158,13 +159,34 @@ fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
     }
 }
 
-/// Change of the friction with each constant of a formula that changes it at all, by the constant's place.
+/// Least share of a column's energy that those before it may leave. Of two constants of which one does what the other does, such as the
+/// factors of a quotient, only the first moves: a refit would move both without bound against each other. The columns are
+/// differences in `f32` over a hundredth of the constant, good to about a thousandth; this is a hundredth of the column.
+const OWN_ENERGY_SHARE: f64 = 1e-4;
+
+/// Change of the friction with each constant of a formula that changes it as those before do not, by the constant's place.
 fn moving_columns<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(usize, Vec<f64>)> {
+    let all = [0..state.len()];
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let is_own = |(_, column): &(usize, Vec<f64>)| {
+        let mut own = column.clone();
+        project_out(&mut own, &basis, &all);
+        let energy = dot(&own, &own, &all);
+        if energy <= OWN_ENERGY_SHARE * dot(column, column, &all) {
+            return false;
+        }
+        basis.push(own.iter().map(|value| value / energy.sqrt()).collect());
+        true
+    };
+    changing_columns(model, state).into_iter().filter(is_own).collect()
+}
+
+/// Change of the friction with each constant of a formula that changes it at all, by the constant's place.
+fn changing_columns<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec<(usize, Vec<f64>)> {
     let Law::Expression(program) = &model.law else { return Vec::new() };
     (0..program.operations.len())
         .filter_map(|place| {
-            let constant = *constant(&mut program.operations[place].clone())?;
-            let step = DIFFERENCE_STEP_SHARE * f64::from(constant).abs().max(1e-3);
+            let step = DIFFERENCE_STEP_SHARE * constant_at(model, place)?.abs().max(1e-3);
             let shifted = |by: f64| moved(model.clone(), place, by).map(|model| friction(&model, state));
             let (up, down) = (shifted(step)?, shifted(-step)?);
             Some((place, up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * step)).collect::<Vec<f64>>()))
@@ -204,6 +226,13 @@ fn constant(operation: &mut Operation) -> Option<&mut f32> {
         | Operation::PowerOf(value) => Some(value),
         _ => None,
     }
+}
+
+/// The constant at a place of a model's formula.
+pub(crate) fn constant_at<const CELLS: usize>(model: &Model<CELLS>, place: usize) -> Option<f64> {
+    let Law::Expression(program) = &model.law else { return None };
+    let mut operation = program.operations.get(place)?.clone();
+    constant(&mut operation).map(|value| f64::from(*value))
 }
 
 /// The model with one constant of its formula moved; `None` where that is no model.
