@@ -20,7 +20,7 @@ pub(crate) mod request;
 pub(crate) mod run;
 pub(crate) mod search;
 
-pub use advice::{Limits, Plan, Question, TOLD_APART_NATS, plan};
+pub use advice::{Limits, Plan, Question, plan};
 pub use answer::location::Location;
 pub use answer::outcome::{DetectionLimit, Diagnosis, Estimate, Evidence, Finding, Given, Score, Verdict};
 pub use answer::region::{Region, Side};
@@ -47,4 +47,4 @@ pub use proof::rollout::Rollout;
 pub use request::{Options, Refusal};
 pub use run::{diagnose, learn_simulation};
 pub use search::round::Scored;
-pub use search::thresholds::Settings;
+pub use search::thresholds::{AMBIGUITY_MARGIN_NATS, Settings};

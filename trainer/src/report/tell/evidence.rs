@@ -1,6 +1,7 @@
 //! What speaks for a finding, what would separate it from its rivals, and its parameters with their units.
 
-use crate::diagnose::advice::{Plan, TOLD_APART_NATS};
+use crate::diagnose::AMBIGUITY_MARGIN_NATS;
+use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::figures::{digits, pair};
@@ -75,12 +76,12 @@ pub fn planned_motion(plan: &Plan) -> String {
     if !plan.suffices() {
         return format!(
             "no motion within the limits tells {pairs}: the best of them, {seconds:.0} s of {words}, promises \
-             {expected:.1} nats, where {TOLD_APART_NATS} are needed"
+             {expected:.1} nats, where {AMBIGUITY_MARGIN_NATS} are needed"
         );
     }
     let told = format!(
         "{seconds:.0} s of {words}, recorded next, would tell {pairs}: expected margin {expected:.1} nats, where \
-         {TOLD_APART_NATS} suffice and this recording holds {present:.1}"
+         {AMBIGUITY_MARGIN_NATS} suffice and this recording holds {present:.1}"
     );
     if plan.left_open.is_empty() { told } else { format!("{told}; it cannot tell {}", text(&plan.left_open)) }
 }
