@@ -41,6 +41,7 @@ pub use measurement::signals::Signals;
 pub use noise::autoregression::Noise;
 pub use preparation::rows::Lock;
 pub use preparation::states::Prepared;
+pub use proof::discarded::Discarded;
 pub use proof::locked_rows::Proof;
 pub use proof::refit::Refit;
 pub use proof::rollout::Rollout;

@@ -3,8 +3,9 @@
 use super::{EffectId, JointState, OtherJoint, Twist};
 use crate::numerics::statistics::{mean, quantile};
 
-/// Variant of a shape that works out the twist from the motor's own motion, and the one that takes it from both encoders.
+/// Variant of a shape that works out the twist from the motor's own motion.
 pub(super) const INFERRED: f64 = 0.0;
+/// Variant that takes it from both encoders.
 pub(super) const MEASURED: f64 = 1.0;
 
 /// Integration steps a sample of a twist that is not linear. Chosen by judgement: a twist is then within its play or loop for

@@ -28,7 +28,8 @@ const EVENT_ERROR_RATIO: f64 = 1.1;
 /// The same of a named effect whose loss is certain from block to block. Chosen by judgement: what is to be compensated
 /// may not cost more than the scatter of such a ratio, some per cent.
 const NAMED_ERROR_RATIO: f64 = 1.03;
-/// Error of the locked rows over that without an effect, from which nothing speaks for it.
+/// The same of a structure without a name, which is not compensated. Chosen by judgement: it may err by half where the locked rows
+/// suit its form less; larger keeps structures that only the open rows show.
 const UNNAMED_ERROR_RATIO: f64 = 1.5;
 
 /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value

@@ -35,6 +35,26 @@ const LEAST_NOISE_SHARE: f64 = 1.0 / 6.0;
 /// Energy of such an effect in variances of the noise, below which it is small. The same recordings reach 34.
 const LEAST_EFFECT_ENERGY: f64 = 36.0;
 
+/// Effects that were found and are no findings: they are not in the improved model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Discarded {
+    /// Found beside larger ones and of little of the torque, with their share (0..1) of the removable error.
+    pub minor: Vec<(EffectId, f64)>,
+    /// No larger than what the formulas of the reference get wrong, with the torque that they explain (root mean square).
+    pub doubtful: Vec<(EffectId, f64)>,
+    /// Below the least effect, with the torque that they explain (root mean square).
+    pub negligible: Vec<(EffectId, f64)>,
+    /// Withdrawn, because locked rows did not confirm them.
+    pub withdrawn: Vec<EffectId>,
+}
+
+impl Discarded {
+    /// Whether nothing was discarded.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.minor.is_empty() && self.doubtful.is_empty() && self.negligible.is_empty() && self.withdrawn.is_empty()
+    }
+}
+
 /// Torque (root mean square) that no filter, encoder and clock is exact to.
 pub(crate) fn negligible_torque(workbench: &Workbench) -> f64 {
     NEGLIGIBLE_TORQUE_SHARE * root_mean_square(&workbench.prepared.filtered(&workbench.prepared.torque))
