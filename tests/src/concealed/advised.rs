@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::summary::share;
 use super::{set_of, signals};
 use frikan_trainer::diagnose::{
-    Comparison, Diagnosis, Limits, Lock, Options, Plan, Question, TOLD_APART_NATS, diagnose, plan,
+    AMBIGUITY_MARGIN_NATS, Comparison, Diagnosis, Limits, Lock, Options, Plan, Question, diagnose, plan,
 };
 use frikan_trainer::physics::EffectId;
 use frikan_trainer::plant::{self, Campaign, Motion, Trajectory};
@@ -159,7 +159,7 @@ impl Advised {
     /// Whether truth and rival are told apart after the proposed motion.
     #[must_use]
     pub fn is_resolved(&self, case: &Confounded) -> bool {
-        self.reached_nats(case).is_some_and(|nats| nats > TOLD_APART_NATS)
+        self.reached_nats(case).is_some_and(|nats| nats > AMBIGUITY_MARGIN_NATS)
     }
 }
 

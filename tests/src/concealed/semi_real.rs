@@ -87,7 +87,7 @@ pub fn run(folder: &Path, name: &'static str) -> Result<Vec<Added>, String> {
 
 fn sets(diagnosis: &Diagnosis) -> Vec<Vec<&'static str>> {
     let set = |found| set_of(found).map(EffectId::name).collect();
-    let minor = diagnosis.minor.iter().map(|(effect, _)| vec![effect.name()]);
+    let minor = diagnosis.discarded.minor.iter().map(|(effect, _)| vec![effect.name()]);
     diagnosis.findings.iter().map(set).chain(minor).collect()
 }
 

@@ -4,10 +4,10 @@ use super::law::{Law, moving};
 use super::motion::{smooth, top_speed, torque};
 use super::note::{Fault, Note};
 use super::steps::{others, stretches};
+use crate::numerics::products::{dot, norm};
 use crate::numerics::statistics::mean;
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
-use crate::samples::regression::{dot, norm};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 

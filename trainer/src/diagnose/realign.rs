@@ -6,15 +6,20 @@ use crate::diagnose::checks::health::late_torque;
 use crate::diagnose::comparison::delay::LONGEST_SAMPLING_DELAY;
 use crate::physics::EffectId;
 
-/// Realignments after the first: the linear regressor of a delay falls short of a long one.
+/// Realignments after the first: the linear regressor of a delay falls short of a long one. A limit of the computing
+/// time.
 const MOST_REALIGNMENTS: usize = 2;
-/// Samples of the sampling's own delay from which it is felt.
+/// Delay in samples above which the torque is shifted before the search. Chosen by judgement: less is carried by the
+/// nuisance of a delay, to first order; a larger value leaves its second order to the hypotheses.
 const LEAST_SAMPLING_DELAY: f64 = 0.3;
-/// Samples of a longer shift that are left to the regressor of a delay.
+/// Samples of a longer shift that are left to the linear regressor of a delay, which names it. Chosen by judgement:
+/// fewer are the sampling's own and name nothing, more are beyond its first order.
 const SAMPLES_LEFT_TO_REGRESSOR: f64 = 2.0;
-/// Ratio of two errors up to which they are equal.
+/// Error of one diagnosis over that of another (root mean squares), up to which they leave as much. Chosen by
+/// judgement: the scatter of refits of one recording; larger gives up real effects for fewer findings.
 const EQUAL_ERROR_RATIO: f64 = 1.02;
-/// Ratio of two errors below which the first is clearly less.
+/// The same below which the first leaves so much less that it is preferred with as many findings. Chosen by judgement:
+/// nearer to one a chance optimum names a delay, smaller misses one.
 const LESSER_ERROR_RATIO: f64 = 0.8;
 
 /// A diagnosis of signals whose torque was put back by a delay.

@@ -5,22 +5,22 @@ use crate::diagnose::answer::finding::{unexplained_event, unexplained_finding};
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
 use crate::diagnose::answer::traces::WorstLocked;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::search::thresholds::OTHER_ROWS_ERROR_RATIO;
 use crate::physics::EffectId;
 
-/// Ratio of what a locked stretch is left with to what any open one is, root mean square, from which other blocks are locked.
-const EVENT_RATIO: f64 = 1.5;
-/// The same from which it is no noise, whatever it is.
-const NO_NOISE_RATIO: f64 = 6.0;
+/// Error of the worst locked stretch over that of the worst open one (root mean squares), above which it is a finding whatever it is. Chosen by judgement: four times the ratio that asks for another
+/// lock; lower reports noise as an event.
+const EVENT_FINDING_ERROR_RATIO: f64 = 6.0;
 
 /// The locked stretch that the open rows do not explain.
 pub(crate) fn locked_event(diagnosis: &Diagnosis) -> Option<WorstLocked> {
-    let worst = diagnosis.traces.worst_locked().filter(|worst| worst.over_open > EVENT_RATIO);
+    let worst = diagnosis.traces.worst_locked().filter(|worst| worst.over_open > OTHER_ROWS_ERROR_RATIO);
     worst.filter(|_| diagnosis.lock == Lock::Spread)
 }
 
 /// Adds what happened once in the locked rows to a diagnosis that cannot name it.
 pub(crate) fn add_locked_event(diagnosis: &mut Diagnosis, event: WorstLocked) {
-    if event.over_open <= NO_NOISE_RATIO {
+    if event.over_open <= EVENT_FINDING_ERROR_RATIO {
         return;
     }
     match diagnosis.verdict {

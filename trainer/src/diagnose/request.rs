@@ -19,8 +19,9 @@ pub struct Options {
     pub least_effect: Option<f64>,
 }
 
-/// Share of the torque beside the rigid body, root mean square, below which an effect is not acted on unless the recording shows it far
-/// above its noise: a joint's own friction drifts by as much from one day to the next (Bittencourt and Gunnarsson 2012).
+/// Share (0..1) of the torque beside the rigid body (root mean squares), below which an effect is not acted on unless
+/// the recording shows it far above its noise: a joint's own friction drifts by as much from one day to the next
+/// (Bittencourt and Gunnarsson 2012).
 pub const LEAST_EFFECT_SHARE: f64 = 0.02;
 
 impl Default for Options {

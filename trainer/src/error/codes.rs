@@ -104,7 +104,7 @@ registry! {
         "A misspelt key, a number without its unit's magnitude (zero, negative, infinite), or a missing bracket.",
         "Correct the line that the message names.";
     NO_MOTION = "FRK-D016" Data "too little motion",
-        "The velocity hardly changes over the recording, so friction cannot be told from an offset.",
+        "The velocity hardly changes over the recording, so friction cannot be separated from an offset.",
         "The joint stood still or ran at one constant speed, or the wrong column is mapped.",
         "Record both directions and several speeds, slow ones included.";
     SEGMENTS_TOO_SHORT = "FRK-D017" Data "no stretch long enough",
@@ -244,7 +244,7 @@ registry! {
         "A channel that is not filled, a slow filter in the drive, a velocity on the motor side, or the velocity of another joint.",
         "Nothing has to be done where the position is good. Otherwise map the right column in joint.toml, with its unit and side.";
     ONE_DIRECTION = "FRK-W008" Warning "motion in one direction only",
-        "The joint never turns round. A Coulomb torque in one direction cannot be told from an offset, nor from a constant load.",
+        "The joint never turns round. A Coulomb torque in one direction cannot be separated from an offset, nor from a constant load.",
         "A conveyor, a spindle, or an excerpt of a longer motion.",
         "Record both directions. What is found holds for the recorded direction only.";
 }

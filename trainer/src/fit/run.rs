@@ -266,7 +266,7 @@ fn soundness(
     }
     if let Some(name) = rigid::collinear(material) {
         return Soundness::NotIdentifiable(format!(
-            "{name} cannot be told from the other terms on this motion; drive several speeds and accelerations"
+            "{name} cannot be separated from the other terms on this motion; drive several speeds and accelerations"
         ));
     }
     let by_expression = form != Form::Network;

@@ -1,11 +1,12 @@
 //! Small dense least squares over columns and runs of rows.
 
+use crate::numerics::products::interleaved_dot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
 /// Inner product of two columns over runs of rows.
 pub(crate) fn dot(a: &[f64], b: &[f64], runs: &[Range<usize>]) -> f64 {
-    runs.iter().map(|run| dot_slices(&a[run.clone()], &b[run.clone()])).sum()
+    runs.iter().map(|run| interleaved_dot::<4>(&a[run.clone()], &b[run.clone()])).sum()
 }
 
 /// Rows in runs.
@@ -20,19 +21,6 @@ pub(crate) fn weighted(columns: &[Vec<f64>], coefficients: &[f64]) -> Vec<f64> {
         sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
     }
     sum
-}
-
-/// Inner product with four partial sums in a fixed order, so that it vectorises and always rounds alike.
-fn dot_slices(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a_chunks, b_chunks) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = a_chunks.remainder().iter().zip(b_chunks.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a_chunks.zip(b_chunks) {
-        for lane in 0..4 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
 }
 
 /// Normal matrix of columns over runs.

@@ -4,5 +4,6 @@ pub(crate) mod covariance;
 pub(crate) mod derivatives;
 pub(crate) mod least_squares;
 pub(crate) mod pattern_search;
+pub(crate) mod products;
 pub(crate) mod random;
 pub(crate) mod statistics;

@@ -4,6 +4,7 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
 pub(super) struct DirectionAsymmetry;
 
+/// Variants of the shape: which of the two friction terms differs between the directions.
 const COULOMB: f64 = 0.0;
 const VISCOUS: f64 = 1.0;
 const BOTH: f64 = 2.0;

@@ -2,30 +2,32 @@
 //! link is caught. With a motor encoder alone both follow from the torque that the transmission would have to carry.
 
 use super::transmission::{
-    INFERRED, MEASURED, column, half_span_of_twist, is_possible, is_shown, left_behind, nominal_inertia, opening,
+    INFERRED, MEASURED, SUBSTEPS, column, half_span_of_twist, is_possible, is_shown, left_behind, nominal_inertia,
+    opening, usual_link_inertia,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::numerics::statistics::quantile;
 
 pub(super) struct Backlash;
 
-/// Shares of the whole inertia that may lie behind the play.
+/// Shares (0..1) of the inertia that may lie behind the play, on the grid; refined afterwards. In steps of 1.7 about
+/// the half that a transmission is usually matched to.
 const LINK_SHARES: [f64; 3] = [0.25, 0.42, 0.7];
-/// Shortest and longest time in s in which a play worth testing is crossed.
+/// Shortest and longest time in which a play is crossed, s. Chosen by judgement: a shorter one is within one sample of
+/// a drive, a longer one is free motion that position shows.
 const CROSSING_S: (f64, f64) = (0.001, 0.06);
 
 /// What the twist within a play leaves behind: free between the flanks, caught where it reaches one.
 fn crossing(state: &JointState, link_inertia: f64, half_width: f64) -> Vec<f64> {
-    const STEPS: usize = 4;
     let opening = opening(state, link_inertia);
-    let h = state.period / STEPS as f64;
+    let h = state.period / SUBSTEPS as f64;
     let mut column = vec![0.0; state.len()];
     for segment in &state.segments {
         let mut twist = half_width * opening[segment.start].signum();
         let mut rate = 0.0;
         for i in segment.clone() {
             let before = rate;
-            for _ in 0..STEPS {
+            for _ in 0..SUBSTEPS {
                 rate += h * opening[i];
                 let free = twist + h * rate;
                 twist = free.clamp(-half_width, half_width);
@@ -54,7 +56,8 @@ impl Hypothesis for Backlash {
         };
         let mut shapes: Vec<Shape> = half_span_of_twist(state)
             .filter(|_| is_shown(state, self.id()))
-            .map(|half| vec![half, 0.5 * inertia, MEASURED])
+            .zip(usual_link_inertia(state))
+            .map(|(half, link)| vec![half, link, MEASURED])
             .into_iter()
             .collect();
         for share in LINK_SHARES {

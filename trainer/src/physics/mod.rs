@@ -35,6 +35,7 @@ mod warm_up;
 mod windup;
 
 pub use identity::{Action, EffectId};
+pub(crate) use position_friction::SERIES_ORDERS;
 pub(crate) use state::top_speed;
 pub use state::{JointState, MemoryAxes, OtherJoint, Twist};
 pub(crate) use transmission::{carried_torque, nominal_inertia, usual_link_inertia};

@@ -6,6 +6,10 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
 pub(super) struct PositionFriction;
 
+/// Orders of a cosine series over the range of a channel: half periods over the range, up to four and a half periods. Chosen by
+/// judgement: something narrower is a place to look at, not a law; each order more costs evidence.
+pub(crate) const SERIES_ORDERS: [f64; 3] = [3.0, 6.0, 9.0];
+
 impl Hypothesis for PositionFriction {
     fn id(&self) -> EffectId {
         EffectId::PositionFriction
@@ -20,8 +24,7 @@ impl Hypothesis for PositionFriction {
         if high - low <= 0.0 {
             return Vec::new();
         }
-        // Broad variation only: something narrow in position is a place to look at, not a law.
-        [3.0, 6.0, 9.0].into_iter().map(|order| vec![order, low, high]).collect()
+        SERIES_ORDERS.into_iter().map(|order| vec![order, low, high]).collect()
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {

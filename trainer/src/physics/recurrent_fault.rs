@@ -5,17 +5,19 @@ use std::f64::consts::TAU;
 
 pub(super) struct RecurrentFault;
 
-/// Widths of a pulse that comes back in another turn, in turns.
-const WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
-/// Widths of a pulse that is only passed to and fro: what is wider has other names.
-const NARROW_TURNS: [f64; 2] = [0.004, 0.008];
-/// Widest pulse: what is wider is the ripple of that order.
+/// Widths of a pulse that comes back in another turn on the grid, turns; refined afterwards up to [`WIDEST_TURNS`].
+const PULSE_WIDTHS_TURNS: [f64; 2] = [0.02, 0.05];
+/// Widths of a pulse that is only passed to and fro, turns. Chosen by judgement: a wider one is also a
+/// position-dependent friction or torque, which would go by its name.
+const SINGLE_TURN_WIDTHS_TURNS: [f64; 2] = [0.004, 0.008];
+/// Largest width, turns. Chosen by judgement: a wider pulse is told from the ripple of its order by little; larger
+/// names ripples as faults.
 const WIDEST_TURNS: f64 = 0.08;
-/// Passes of an angle from which a pulse there comes back; what is passed once is a one-off event.
+/// Passes of an angle from which a pulse there recurs, by definition; what is passed once is a one-off event.
 const LEAST_PASSES: usize = 2;
 
-/// Logarithm of the pulse's height below which it is nothing.
-const NOTHING_LEFT: f64 = 40.0;
+/// Exponent above which a pulse is zero: exp(-40) is below the roundoff of its height.
+const LARGEST_EXPONENT: f64 = 40.0;
 
 impl Hypothesis for RecurrentFault {
     fn id(&self) -> EffectId {
@@ -37,7 +39,7 @@ impl Hypothesis for RecurrentFault {
         let (once, again): (Vec<f64>, Vec<f64>) =
             orders.into_iter().partition(|order| order * (high - low) <= 1.5 * TAU);
         for order in once {
-            for width in NARROW_TURNS {
+            for width in SINGLE_TURN_WIDTHS_TURNS {
                 let places = ((high - low) * order / (1.2 * TAU * width)).ceil() as usize;
                 let at = |place: usize| order * (low + (high - low) * (place as f64 + 0.5) / places as f64);
                 let comes_back =
@@ -46,7 +48,7 @@ impl Hypothesis for RecurrentFault {
             }
         }
         for order in again {
-            for width in WIDTHS_TURNS {
+            for width in PULSE_WIDTHS_TURNS {
                 let places = (0.7 / width).round() as usize;
                 for place in 0..places {
                     let phase = TAU * place as f64 / places as f64;
@@ -62,7 +64,7 @@ impl Hypothesis for RecurrentFault {
         let sharpness = (TAU * shape[2]).powi(-2);
         vec![state.map(|i| {
             let fall = (1.0 - (order * state.position[i] - phase).cos()) * sharpness;
-            let pulse = if fall < NOTHING_LEFT { (-fall).exp() } else { 0.0 };
+            let pulse = if fall < LARGEST_EXPONENT { (-fall).exp() } else { 0.0 };
             if friction == 1.0 { pulse * state.sign[i] } else { pulse }
         })]
     }
@@ -83,7 +85,9 @@ impl Hypothesis for RecurrentFault {
     fn bounds(&self, _state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         match index {
             1 => Some((-TAU, 2.0 * TAU)),
-            2 if shape[2] < WIDTHS_TURNS[0] => Some((0.5 * NARROW_TURNS[0], 1.5 * NARROW_TURNS[1])),
+            2 if shape[2] < PULSE_WIDTHS_TURNS[0] => {
+                Some((0.5 * SINGLE_TURN_WIDTHS_TURNS[0], 1.5 * SINGLE_TURN_WIDTHS_TURNS[1]))
+            }
             2 => Some((0.003, WIDEST_TURNS)),
             _ => None,
         }

@@ -5,12 +5,13 @@ use crate::numerics::statistics::quantile;
 
 pub(super) struct PositionRipple;
 
-/// Torque that does not turn with the direction (cogging).
+/// Variant of a torque that does not turn with the direction (cogging).
 pub(crate) const COGGING: f64 = 0.0;
-/// Ripple of the friction: turns with the direction.
+/// Variant of a friction, which turns with the direction.
 pub(crate) const FRICTION: f64 = 1.0;
 
-/// Periods that a wave has to show over the travel: one with fewer is gravity or position-dependent friction.
+/// Periods over the travel, above which a wave is a ripple. Chosen by judgement: one of fewer is gravity or
+/// position-dependent friction, whose series reach four and a half.
 const LEAST_PERIODS: f64 = 3.0;
 
 /// Orders (rad of phase per unit of position) between three periods a travel and what the sampling can follow.

@@ -6,11 +6,13 @@ use crate::numerics::statistics::quantile;
 
 pub(super) struct Saturation;
 
-/// Shares of the samples that stay below the limits that are tried: a limit far below would be a wrong scale.
-const BELOW: [f64; 7] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99];
+/// Quantiles of the torque at which limits are tried; refined afterwards. Chosen by judgement: a limit below the median
+/// would be a wrong scale; denser to the top, where limits are usual.
+const LIMIT_QUANTILES: [f64; 7] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99];
 
-/// Which torque goes beyond the limit: the one that the model needs, or the recorded one.
+/// Variant in which the torque that the model needs goes beyond the limit.
 const NEEDED: f64 = 0.0;
+/// Variant in which the recorded torque does.
 const RECORDED: f64 = 1.0;
 
 fn torque_beyond(state: &JointState, variant: f64) -> &[f64] {
@@ -20,7 +22,7 @@ fn torque_beyond(state: &JointState, variant: f64) -> &[f64] {
 fn levels(state: &JointState, variant: f64) -> Vec<f64> {
     let at = |share| quantile(torque_beyond(state, variant).iter().map(|t| t.abs()), share);
     let lowest = if variant == RECORDED { 0.0 } else { 0.45 * at(0.998) };
-    BELOW.into_iter().map(at).filter(|level| *level > lowest).collect()
+    LIMIT_QUANTILES.into_iter().map(at).filter(|level| *level > lowest).collect()
 }
 
 impl Hypothesis for Saturation {

@@ -4,8 +4,9 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 
 pub(super) struct Stribeck;
 
-/// Stribeck velocity at most, as a share of the top speed: beyond it the law is a curved viscous one.
-const WIDEST: f64 = 0.3;
+/// Largest Stribeck velocity over the top speed. Chosen by judgement: beyond it the law is a curved viscous one over
+/// all recorded speeds; smaller misses slow motions.
+const LARGEST_VELOCITY_SHARE: f64 = 0.3;
 
 /// Narrower than this it could not be told from the width of the smoothed sign, or from a reversal between two samples.
 fn narrowest(state: &JointState) -> f64 {
@@ -25,7 +26,10 @@ impl Hypothesis for Stribeck {
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
         let top = state.top_speed();
         let low = narrowest(state);
-        geometric_grid(low, WIDEST * top, 7).into_iter().flat_map(|v| [vec![v, 1.0], vec![v, 2.0]]).collect()
+        geometric_grid(low, LARGEST_VELOCITY_SHARE * top, 7)
+            .into_iter()
+            .flat_map(|v| [vec![v, 1.0], vec![v, 2.0]])
+            .collect()
     }
 
     fn only_positive(&self) -> bool {
@@ -54,6 +58,6 @@ impl Hypothesis for Stribeck {
     }
 
     fn bounds(&self, state: &JointState, index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
-        Some(if index == 0 { (narrowest(state), WIDEST * state.top_speed()) } else { (0.5, 2.5) })
+        Some(if index == 0 { (narrowest(state), LARGEST_VELOCITY_SHARE * state.top_speed()) } else { (0.5, 2.5) })
     }
 }

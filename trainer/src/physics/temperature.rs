@@ -6,11 +6,15 @@ use crate::numerics::statistics::quantile;
 
 pub(super) struct Temperature;
 
-/// Least spread of temperature, in K, that can show an effect.
+/// Spread of the temperature (98 % of the samples), K, above which its effect is looked for. Chosen by judgement: the
+/// step of a coarse sensor, over which a viscosity changes by one or two per cent.
 const LEAST_SPREAD_K: f64 = 0.5;
-/// Fall of a grease's viscosity with temperature that is looked for first, 1/K, and the range in which it is refined.
-const DECAY: f64 = 0.03;
-const DECAYS: (f64, f64) = (0.005, 0.12);
+/// Relative fall of a grease's viscosity with temperature that is tried first, 1/K, which halves it over 23 K; refined
+/// within [`VISCOSITY_DECAY_RANGE_PER_K`].
+const VISCOSITY_DECAY_PER_K: f64 = 0.03;
+/// Range of that fall, 1/K: halved over 139 K to halved over 6 K. Chosen by judgement: beyond either end it is linear,
+/// or a step.
+const VISCOSITY_DECAY_RANGE_PER_K: (f64, f64) = (0.005, 0.12);
 
 impl Hypothesis for Temperature {
     fn id(&self) -> EffectId {
@@ -28,7 +32,7 @@ impl Hypothesis for Temperature {
             return Vec::new();
         }
         let reference = at(0.5);
-        let viscous = |variant| [0.0, DECAY].map(|decay| vec![variant, reference, decay]);
+        let viscous = |variant| [0.0, VISCOSITY_DECAY_PER_K].map(|decay| vec![variant, reference, decay]);
         [vec![vec![0.0, reference, 0.0]], viscous(1.0).into(), viscous(2.0).into()].concat()
     }
 
@@ -66,6 +70,6 @@ impl Hypothesis for Temperature {
     }
 
     fn bounds(&self, _state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
-        (index == 2 && shape[2] > 0.0).then_some(DECAYS)
+        (index == 2 && shape[2] > 0.0).then_some(VISCOSITY_DECAY_RANGE_PER_K)
     }
 }

@@ -7,15 +7,17 @@ use std::ops::Range;
 
 pub(super) struct TransientEvent;
 
-/// Lengths of the scanned windows in s.
+/// Lengths of the scanned windows, s, in steps of three at which a window still holds most of an event (Kulldorff
+/// 1997); refined afterwards. Chosen by judgement: shorter ones are glitches, longer ones drift.
 const WINDOWS_S: [f64; 4] = [0.12, 0.35, 1.0, 3.0];
 
-/// Windows of a length that are proposed.
-const PROPOSED: usize = 6;
+/// Windows of a length that are proposed. A limit of the computing time; the score pays for all that were scanned.
+const PROPOSED_WINDOWS: usize = 6;
 
-/// Mean deviation of a window, in medians of a sample's, from which its edges show by themselves. What such an event is left with
-/// beside a window that misses its edges would pass for strong noise.
-const CLEAR: f64 = 6.0;
+/// Mean deviation of a window in medians of a sample's deviation, above which its edges show by themselves and are
+/// fitted. Chosen by judgement: what such an event is left with beside a window that misses its edges would pass for
+/// strong noise; lower fits the edges of noise.
+const EDGE_DEVIATION_RATIO: f64 = 6.0;
 
 /// Of all windows at half-window steps, those in which the residual of the base deviates most on one side, a clear one from edge
 /// to edge. Samples slower than `slow` do not count: near standstill the residual is that of stiction.
@@ -45,9 +47,9 @@ fn most_deviating(state: &JointState, window: f64, slow: f64) -> Vec<Shape> {
     }
     windows.sort_by(|a, b| b.0.total_cmp(&a.0));
     let usual = quantile((0..rest.len()).filter(|&i| moving[i]).map(|i| (rest[i] - mean).abs()), 0.5);
-    let proposed = windows.into_iter().take(PROPOSED).map(|(_, range, segment)| {
+    let proposed = windows.into_iter().take(PROPOSED_WINDOWS).map(|(_, range, segment)| {
         let (sum, moved) = deviation(&range);
-        if sum.abs() > CLEAR * usual * moved { from_edge_to_edge(range, segment, energy) } else { range }
+        if sum.abs() > EDGE_DEVIATION_RATIO * usual * moved { from_edge_to_edge(range, segment, energy) } else { range }
     });
     proposed.map(|range| vec![state.time[range.start], state.time[range.end - 1] + state.period]).collect()
 }

@@ -4,7 +4,8 @@ use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geome
 
 pub(super) struct WarmUp;
 
-/// No joint, however light, warms up faster: what decays sooner is memory of the contact, not heat.
+/// Shortest thermal time constant, s. Chosen by judgement: no joint, however light, warms up faster; what decays sooner
+/// is memory of the contact.
 const LEAST_TIME_CONSTANT_S: f64 = 5.0;
 
 /// Power that friction dissipates, smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.

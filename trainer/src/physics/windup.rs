@@ -4,32 +4,33 @@
 
 use super::elasticity::highest_antiresonance;
 use super::transmission::{
-    INFERRED, MEASURED, antiresonance_of_twist, column, half_span_of_twist, is_possible, is_shown, left_behind,
-    opening, usual_link_inertia,
+    INFERRED, MEASURED, SUBSTEPS, antiresonance_of_twist, column, half_span_of_twist, is_possible, is_shown,
+    left_behind, opening, usual_link_inertia,
 };
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::numerics::statistics::quantile;
 
 pub(super) struct WindupHysteresis;
 
-/// Stiffness of the loop at a reversal over that of the spring.
-const LOOP_STIFFNESS: f64 = 1.5;
-/// Damping ratio of the spring.
+/// Stiffness of the loop at a reversal over that of the spring (dimensionless). Chosen by judgement: fixed, as a
+/// further shape parameter would cost evidence; a wrong one changes the fitted loop twist and inertia.
+const LOOP_STIFFNESS_RATIO: f64 = 1.5;
+/// Damping ratio of the spring (dimensionless). Chosen by judgement: fixed for the same reason, between those tried for
+/// an elastic gear; raised from 0.1 with a denser grid of antiresonances.
 const DAMPING_RATIO: f64 = 0.15;
 
 /// What the twist leaves behind, by `e'' = u - w^2 (e + r L z) - 2 zeta w e'`, `dz = (sign(de) - z) |de| / L`.
 fn winding(state: &JointState, link_inertia: f64, antiresonance: f64, loop_twist: f64) -> Vec<f64> {
-    const STEPS: usize = 4;
     let drive = opening(state, link_inertia);
-    let h = state.period / STEPS as f64;
+    let h = state.period / SUBSTEPS as f64;
     let (stiffness, damping) = (antiresonance * antiresonance, 2.0 * DAMPING_RATIO * antiresonance);
     let mut column = vec![0.0; state.len()];
     for segment in &state.segments {
         let (mut twist, mut rate, mut memory) = (drive[segment.start] / stiffness, 0.0, 0.0);
         for i in segment.clone() {
             let before: f64 = rate;
-            for _ in 0..STEPS {
-                let restoring = stiffness * (twist + LOOP_STIFFNESS * loop_twist * memory);
+            for _ in 0..SUBSTEPS {
+                let restoring = stiffness * (twist + LOOP_STIFFNESS_RATIO * loop_twist * memory);
                 // The damping is taken at the end of the step, so that no stiffness makes it unstable.
                 rate = (rate + h * (drive[i] - restoring)) / (1.0 + h * damping);
                 let step = h * rate;

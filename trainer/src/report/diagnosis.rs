@@ -193,9 +193,9 @@ fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.heading("The rivals and their evidence");
     let caption = if diagnosis.findings.is_empty() {
-        "What came nearest, and was not accepted."
+        "The candidates with the highest scores; none was accepted."
     } else {
-        "Orange: accepted, with the score at that time. Grey: what was still left over and not accepted, after the findings were taken into the model."
+        "Orange: accepted, with the score at that time. Grey: not accepted, with the score beside the findings."
     };
     page.figure(&bars(&rows, "nats (natural logarithm of a likelihood ratio)"), caption);
 }
@@ -237,9 +237,7 @@ fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     if rows.is_empty() {
         return;
     }
-    page.heading("What would have been seen");
-    page.paragraph(
-        "Each of these, had its torque reached the stated root mean square, would have been found nine times in ten.",
-    );
+    page.heading("Detection limits");
+    page.paragraph("Root mean square torque at which each effect would have been found with a probability of 90 %.");
     page.table(&["effect", "torque (root mean square)"], &rows);
 }

@@ -53,7 +53,7 @@ pub(super) fn section(page: &mut Page, diagnosis: &Diagnosis, index: usize, unit
         page.paragraph("To count the instructions of the whole image: trainer verify IMPROVED.frk --target cortex-m4f");
     }
     if !found.alternatives.is_empty() {
-        page.subheading("What would tell the alternatives apart");
+        page.subheading("What would distinguish the alternatives");
         page.paragraph(&format!("{}.", capital(&separate_by(found, plan))));
     }
 }

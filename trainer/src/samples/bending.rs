@@ -19,7 +19,7 @@ impl BendingLaw {
         let forward = knots(velocity.iter().copied().filter(|v| *v > 0.0).collect());
         let backward = knots(velocity.iter().map(|v| -v).filter(|v| *v > 0.0).collect());
         if forward.len() + backward.len() < 4 {
-            let message = "the velocity hardly changes, so friction cannot be told from an offset";
+            let message = "the velocity hardly changes, so friction cannot be separated from an offset";
             let shown = velocity.first().copied().unwrap_or(0.0);
             return Err(Error::new(&codes::NO_MOTION, message).in_column("velocity").with_value(shown.to_string()));
         }

@@ -4,6 +4,8 @@
 //! derivative, so that F, F D and F D2 have the same gain at every frequency and terms that are linear in the motion
 //! match the filtered torque exactly (rule P1).
 
+use crate::numerics::products::dot;
+
 /// The kernel is cut off at this many standard deviations.
 const HALF_WIDTH_SIGMAS: f64 = 4.0;
 
@@ -116,10 +118,6 @@ impl GaussianFilter {
             Order::Second => &self.second,
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::numerics::products::{dot, norm};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Eigenvalues of the scaled Gram matrix below this share of the largest count as zero.
@@ -90,16 +91,6 @@ fn pseudo_inverse(gram: DMatrix<f64>) -> (DMatrix<f64>, usize) {
         }
     }
     (inverse, lost)
-}
-
-/// Inner product, summed in order.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// Euclidean norm.
-pub(crate) fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

@@ -29,10 +29,12 @@ pub(crate) struct Excitation {
     pub position: Vec<f64>,
 }
 
-/// Share of a limit that is used: smoothing, quantisation and the controller take the rest.
+/// Share (0..1) of each limit of position and speed that a planned motion uses. Chosen by judgement: smoothing,
+/// quantisation and the controller take the rest; a larger share is refused by [`within`], a smaller one excites less.
 const USED_LIMIT_SHARE: f64 = 0.95;
-/// Length of the moving average that makes the corners of trapezoidal moves finite in jerk, s.
-const ROUNDING_S: f64 = 0.04;
+/// Length of the moving average over a trapezoidal move, s: it makes the jerk finite. Chosen by judgement: shorter lets
+/// elastic joints ring, longer blurs reversals and stops.
+const SMOOTHING_S: f64 = 0.04;
 
 /// Every motion that fits into the envelope, `duration` s long, one position every `period` s.
 pub(crate) fn library(envelope: &Envelope, duration: f64, period: f64) -> Vec<Excitation> {
@@ -98,13 +100,15 @@ struct Move {
 }
 
 fn stop_and_go(centre: f64, half: f64, speed: f64) -> Vec<Move> {
-    // Unlike rests in an order that no rate of the motion repeats.
+    /// Rests between the moves, s: over a decade and a half, as break-away rises with the logarithm of the dwell
+    /// (Rabinowicz 1958; Dieterich 1979), in an order that no rate of the motion repeats.
     const DWELLS_S: [f64; 7] = [0.1, 1.0, 0.3, 3.0, 0.15, 0.6, 2.0];
-    const STEPS: usize = 11;
+    /// Stops a lap, one at either end. Prime to the number of rests, so that every rest is taken at every place.
+    const STOPS_PER_LAP: usize = 11;
     (0..10_000)
         .map(|i| {
-            let (lap, step) = (i / STEPS, i % STEPS);
-            let place = 2.0 * step as f64 / (STEPS - 1) as f64 - 1.0;
+            let (lap, step) = (i / STOPS_PER_LAP, i % STOPS_PER_LAP);
+            let place = 2.0 * step as f64 / (STOPS_PER_LAP - 1) as f64 - 1.0;
             let to = centre + half * if lap % 2 == 0 { place } else { -place };
             Move { to, speed, dwell: DWELLS_S[i % DWELLS_S.len()] }
         })
@@ -112,15 +116,19 @@ fn stop_and_go(centre: f64, half: f64, speed: f64) -> Vec<Move> {
 }
 
 fn small_reversals(centre: f64, half: f64, top: f64, resolution: f64) -> Vec<Move> {
-    const AT: [f64; 4] = [-0.6, 0.5, -0.2, 0.8];
-    const SIZES: usize = 8;
+    /// Centres of the reversals over half the range (-1..1), in an order without a trend over position. Chosen by
+    /// judgement: presliding is looked for at several places, as it may depend on position.
+    const REVERSAL_CENTRES: [f64; 4] = [-0.6, 0.5, -0.2, 0.8];
+    /// Amplitudes of the reversals about one centre, in geometric steps from some encoder steps to a seventh of half
+    /// the range: the presliding distance is not known within decades (Al-Bender, Lampaert and Swevers 2005).
+    const REVERSAL_AMPLITUDES: usize = 8;
     let smallest = (30.0 * resolution).clamp(1e-4 * half, 0.03 * half);
     let mut moves = Vec::new();
     for lap in 0..200 {
-        let about = centre + half * AT[lap % AT.len()];
+        let about = centre + half * REVERSAL_CENTRES[lap % REVERSAL_CENTRES.len()];
         moves.push(Move { to: about, speed: 0.5 * top, dwell: 0.05 });
-        for size in 0..SIZES {
-            let amplitude = smallest * (0.15 * half / smallest).powf(size as f64 / (SIZES - 1) as f64);
+        for size in 0..REVERSAL_AMPLITUDES {
+            let amplitude = smallest * (0.15 * half / smallest).powf(size as f64 / (REVERSAL_AMPLITUDES - 1) as f64);
             // About two reversals a second, whatever their size.
             let speed = (8.0 * amplitude).min(0.5 * top);
             moves.push(Move { to: about + amplitude, speed, dwell: 0.0 });
@@ -131,8 +139,10 @@ fn small_reversals(centre: f64, half: f64, top: f64, resolution: f64) -> Vec<Mov
 }
 
 fn plateaus(centre: f64, half: f64, top: f64) -> Vec<Move> {
-    const SHARES: [f64; 7] = [0.02, 1.0, 0.08, 0.35, 0.04, 0.7, 0.16];
-    SHARES
+    /// Speeds of the plateaus over the largest: factors of two down to a fiftieth, as a Stribeck velocity is not known
+    /// beforehand (Armstrong-Helouvry, Dupont and Canudas de Wit 1994), in an order without a trend over time.
+    const PLATEAU_SPEED_SHARES: [f64; 7] = [0.02, 1.0, 0.08, 0.35, 0.04, 0.7, 0.16];
+    PLATEAU_SPEED_SHARES
         .iter()
         .cycle()
         .take(1000)
@@ -147,7 +157,7 @@ fn plateaus(centre: f64, half: f64, top: f64) -> Vec<Move> {
 
 /// Samples moves with a trapezoidal speed, goes home in time, and rounds the corners.
 fn follow(moves: &[Move], envelope: &Envelope, clock: Clock) -> Vec<f64> {
-    let rounding = ((0.5 * ROUNDING_S / clock.period) as usize).max(1);
+    let rounding = ((0.5 * SMOOTHING_S / clock.period) as usize).max(1);
     let acceleration = 0.8 * envelope.acceleration;
     let home_speed = 0.5 * envelope.speed;
     let mut raw = vec![envelope.home; 2 * rounding];

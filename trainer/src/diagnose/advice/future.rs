@@ -21,11 +21,15 @@ pub(crate) struct Future<'a> {
     sign_velocity: f64,
 }
 
-/// Share of the load torque that its position has to explain before a payload can be planned.
-const LEAST_EXPLAINED_SHARE: f64 = 0.9;
-/// Payloads closer than this share are the same.
-const SAME_PAYLOAD_SHARE: f64 = 0.1;
-/// Longest rest that is proposed, s.
+/// Share (0..1) of the energy of the load torque that its position has to explain, above which a payload can be
+/// planned. Chosen by judgement: below it the load is no weight of a body at a place, and the planned load torque would
+/// be wrong.
+const LEAST_LOAD_ENERGY_SHARE: f64 = 0.9;
+/// Difference of two payloads, over the usual one, below which they count as one. Chosen by judgement: a smaller one
+/// plans motions that hardly differ, a larger one misses a payload that tells two effects apart.
+const PAYLOAD_TOLERANCE: f64 = 0.1;
+/// Longest rest that is proposed, s. Chosen by judgement: half an hour is what a person waits for; a joint with a
+/// longer time constant does not cool down in it.
 const LONGEST_REST_S: f64 = 1800.0;
 
 impl<'a> Future<'a> {
@@ -72,7 +76,7 @@ impl<'a> Future<'a> {
             rest += run.clone().map(|i| (load[i] - payload * typical[i]).powi(2)).sum::<f64>();
             energy += load[run.clone()].iter().map(|l| l * l).sum::<f64>();
         }
-        if energy > 0.0 && rest < (1.0 - LEAST_EXPLAINED_SHARE) * energy {
+        if energy > 0.0 && rest < (1.0 - LEAST_LOAD_ENERGY_SHARE) * energy {
             self.load = Some(weights);
             self.payload_range = (low, high);
         }
@@ -84,7 +88,7 @@ impl<'a> Future<'a> {
             return Vec::new();
         }
         let mut payloads = vec![0.0, self.payload_range.0, self.payload_range.1];
-        payloads.dedup_by(|a, b| (*a - *b).abs() < SAME_PAYLOAD_SHARE);
+        payloads.dedup_by(|a, b| (*a - *b).abs() < PAYLOAD_TOLERANCE);
         payloads
     }
 

@@ -14,6 +14,7 @@ use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::states::Prepared;
+use crate::diagnose::search::thresholds::AMBIGUITY_MARGIN_NATS;
 use crate::numerics::statistics::quantile;
 use crate::physics::{EffectId, JointState};
 use excitation::{Envelope, Excitation};
@@ -67,7 +68,8 @@ impl Limits {
     }
 }
 
-/// Quantile of recorded speed and acceleration up to which a joint may certainly be moved.
+/// Quantile of recorded speed and acceleration up to which a joint may be moved where no limit is given: it was moved
+/// so already. Chosen by judgement: the largest value itself may be noise of the derivative.
 const ENVELOPE_QUANTILE: f64 = 0.995;
 
 /// A motion to record next.
@@ -103,13 +105,12 @@ impl Plan {
     /// Whether the motion is expected to tell the effects apart.
     #[must_use]
     pub fn suffices(&self) -> bool {
-        self.expected_nats >= TOLD_APART_NATS
+        self.expected_nats >= AMBIGUITY_MARGIN_NATS
     }
 }
 
-/// Evidence in nats from which two effects are told apart.
-pub const TOLD_APART_NATS: f64 = 3.0;
-/// Excitations whose expected evidence is worked out with the rivals' shapes refined.
+/// Excitations, best first, whose expected evidence is worked out again with the shapes of the rivals refined. A limit
+/// of the computing time: fewer may miss the best one, more cost a search each.
 const REFINED_EXCITATIONS: usize = 3;
 
 /// The most telling excitation for the findings that have rivals; `None` where every name is certain or nothing in the
@@ -168,7 +169,7 @@ struct Weighed {
 /// the motion: those must not decide.
 fn separable(weighed: &[Weighed], pairs: usize) -> Vec<usize> {
     let told: Vec<usize> =
-        (0..pairs).filter(|&pair| weighed.iter().any(|weighed| weighed.nats[pair] >= TOLD_APART_NATS)).collect();
+        (0..pairs).filter(|&pair| weighed.iter().any(|weighed| weighed.nats[pair] >= AMBIGUITY_MARGIN_NATS)).collect();
     if told.is_empty() { (0..pairs).collect() } else { told }
 }
 
@@ -216,7 +217,8 @@ impl Candidate {
     }
 }
 
-/// Shortest and longest planned motion, s.
+/// Shortest and longest planned motion, s; between the two as long as the recording. Chosen by judgement: less holds
+/// too few blocks for held-out evidence, more is asked of nobody for one pair of effects.
 const DURATION_S: (f64, f64) = (20.0, 60.0);
 
 fn candidates(question: &Question, future: &Future, state: &JointState, pairs: &[Pair]) -> Vec<Candidate> {

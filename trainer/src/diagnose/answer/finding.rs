@@ -5,7 +5,7 @@ use crate::diagnose::answer::location::{Location, locate};
 use crate::diagnose::answer::nearest_named::nearest;
 use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Evidence, Finding};
 use crate::diagnose::answer::region::{Region, Side};
-use crate::diagnose::answer::stated_probability::{alternatives, probability};
+use crate::diagnose::answer::stated_probability::{WITHOUT_RIVAL, alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
 use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::base::Base;
@@ -100,7 +100,8 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
         .collect()
 }
 
-/// Probability of a fault that the signals show by themselves.
+/// Stated probability of a fault that the signals show by themselves, such as a torque beyond the drive's limit. Chosen
+/// by judgement: no frequency was measured; the checks that state it compare two recorded values and weigh no evidence.
 const MEASUREMENT_FAULT_PROBABILITY: f64 = 0.99;
 
 /// Puts a note on the measurement before all others; as a finding too, where it is one and no other finding is the same effect.
@@ -139,12 +140,9 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces) -> Findin
     Finding {
         equation: "dF = c(time)".to_string(),
         location: Location { regions: vec![region], is_named: true, when_s: vec![worst.when_s] },
-        ..unfitted(effect, LOCKED_EVENT_PROBABILITY, effect.action(), unexplained_event(worst))
+        ..unfitted(effect, WITHOUT_RIVAL, effect.action(), unexplained_event(worst))
     }
 }
-
-/// Probability of what leaves some stretch with several times of what any other is left with.
-const LOCKED_EVENT_PROBABILITY: f64 = 0.98;
 
 /// A finding without a fitted term.
 fn unfitted(effect: EffectId, probability: f64, action: Action, note: HealthNote) -> Finding {

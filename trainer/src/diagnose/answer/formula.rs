@@ -1,7 +1,7 @@
 //! A formula for an unnamed structure, where a simple one says as much as the free function does.
 
 use crate::diagnose::evidence::workbench::Workbench;
-use crate::diagnose::hypotheses::function_form::{FORMULAS, Form};
+use crate::diagnose::hypotheses::function_form::{FORMULA_FORMS, Form};
 use crate::diagnose::hypotheses::label::{Label, ridge_of};
 use crate::diagnose::hypotheses::unnamed::Generic;
 use crate::diagnose::noise::autoregression::Noise;
@@ -56,7 +56,7 @@ fn formula(
         let (gain, coefficients) = weigh(rival, &shape)?;
         Some((gain, rival, shape, coefficients))
     };
-    let best = FORMULAS.into_iter().filter_map(best_of).max_by(|a, b| a.0.total_cmp(&b.0));
+    let best = FORMULA_FORMS.into_iter().filter_map(best_of).max_by(|a, b| a.0.total_cmp(&b.0));
     best.filter(|(gain, ..)| *gain >= accepted_gain).map(|(_, rival, shape, coefficients)| {
         let functions = rival.texts(&shape);
         let terms: Vec<String> = coefficients.iter().zip(&functions).map(|(c, text)| term(*c, text)).collect();

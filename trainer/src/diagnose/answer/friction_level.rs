@@ -3,6 +3,7 @@
 
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
+use crate::diagnose::answer::stated_probability::WITHOUT_RIVAL;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
@@ -15,15 +16,13 @@ use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Dimension, EffectId};
 
-/// Share of the top speed above which a friction curve is taken for Coulomb and viscous: below, it turns over.
-const SLIDING_SHARE: f64 = 0.2;
-/// Probability of a level whose change removes error on locked rows: the change is linear in the reference and has no rival
-/// beside the effects that are left out here.
-const PROBABILITY: f64 = 0.98;
+/// Speed over the top speed above which a friction curve is Coulomb and viscous. Chosen by judgement: below it friction
+/// may still fall from break-away, which would count as Coulomb torque; higher leaves too little of the curve.
+const SLIDING_SPEED_SHARE: f64 = 0.2;
 
-/// Effects that scale Coulomb or viscous friction by a channel of their own: what of the level is theirs is a matter of the value of
-/// the channel that they count from.
-const SCALES_FRICTION: [EffectId; 7] = [
+/// Effects that scale Coulomb or viscous friction by a channel of their own: what of the level is theirs depends on the
+/// value of the channel that they count from.
+const FRICTION_SCALING_EFFECTS: [EffectId; 7] = [
     EffectId::Temperature,
     EffectId::WarmUp,
     EffectId::SlowDrift,
@@ -53,7 +52,7 @@ impl FrictionLevel {
         improved: &Refit,
         least_effect: f64,
     ) -> Self {
-        let is_scaled = |found: &Accepted| SCALES_FRICTION.contains(&found.effect());
+        let is_scaled = |found: &Accepted| FRICTION_SCALING_EFFECTS.contains(&found.effect());
         if accepted.iter().any(is_scaled) {
             return Self::Unchanged;
         }
@@ -120,7 +119,7 @@ impl Change {
             .unzip();
         Finding {
             effect,
-            probability: PROBABILITY,
+            probability: WITHOUT_RIVAL,
             alternatives: Vec::new(),
             action: effect.action(),
             equation: "tau = F_c sign(v) + F_v v, in place of the reference's".to_string(),
@@ -149,7 +148,7 @@ impl Change {
 fn sliding_friction(workbench: &Workbench) -> [f64; 2] {
     let state = &workbench.prepared.state;
     let top = state.top_speed();
-    let sliding = |velocity: f64| (SLIDING_SHARE * top..=top).contains(&velocity.abs());
+    let sliding = |velocity: f64| (SLIDING_SPEED_SHARE * top..=top).contains(&velocity.abs());
     let curve: Vec<(f64, f64)> =
         state.base_friction.iter().copied().filter(|(velocity, _)| sliding(*velocity)).collect();
     let columns = [curve.iter().map(|(v, _)| v.signum()).collect(), curve.iter().map(|(v, _)| *v).collect()];

@@ -9,8 +9,9 @@ use crate::numerics::least_squares::{dot, least_squares, orthonormal, project_ou
 use crate::physics::EffectId;
 use rayon::prelude::*;
 
-/// Least share of the energy of the structure's torque that is told.
-const LEAST_SHARE: f64 = 0.5;
+/// Share (0..1) of the energy of an unnamed structure's torque that a named effect has to explain to be mentioned: more
+/// than it leaves.
+const LEAST_EXPLAINED_SHARE: f64 = 0.5;
 
 /// The effect that explains most of the torque of a structure without a name, with the share of its energy on the open rows beside
 /// the base and the other findings. `None` below a half, and of an effect with a name.
@@ -43,5 +44,5 @@ pub(crate) fn nearest(
         Some((effect, shares.fold(0.0, f64::max)))
     };
     let shares: Vec<(EffectId, f64)> = workbench.design.groups.par_iter().filter_map(largest_share).collect();
-    shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share >= LEAST_SHARE)
+    shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share >= LEAST_EXPLAINED_SHARE)
 }

@@ -7,6 +7,7 @@ use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::proof::discarded::Discarded;
 use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::proof::rollout::Rollout;
@@ -23,7 +24,7 @@ pub enum Verdict {
     Consistent,
     /// Named effects are missing.
     MissingPhysics,
-    /// Something structured is missing that the catalogue does not hold.
+    /// A structure is missing that no effect of the catalogue explains.
     Unexplained,
     /// The measurement is at fault.
     BadData,
@@ -127,17 +128,9 @@ pub struct Diagnosis {
     pub health: Vec<HealthNote>,
     /// Findings in the order in which they were accepted.
     pub findings: Vec<Finding>,
-    /// Effects that were found beside larger ones but account for little, with their share of the removable error; they are
-    /// not in the improved model.
-    pub minor: Vec<(EffectId, f64)>,
-    /// Effects that were found but explain no more than the formulas of the reference get wrong, with the root mean square of what
-    /// they explain.
-    pub doubtful: Vec<(EffectId, f64)>,
-    /// Effects that were found but are too small to matter, with the root mean square of what they explain.
-    pub negligible: Vec<(EffectId, f64)>,
-    /// Effects that were found but withdrawn, because locked data did not confirm them.
-    pub withdrawn: Vec<EffectId>,
-    /// What would have been seen.
+    /// What was found and is no finding.
+    pub discarded: Discarded,
+    /// Torque of each effect from which it would have been found.
     pub limits: Vec<DetectionLimit>,
     /// Which base the recording was compared with.
     pub base: BaseKind,

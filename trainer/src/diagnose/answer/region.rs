@@ -26,17 +26,19 @@ pub struct Region {
     pub share_of_samples: f64,
 }
 
-/// Least surplus of the share of evidence over the share of samples at which a region is worth naming.
+/// Share of the evidence inside a region less its share of the samples (0..1), above which the region is named. Chosen
+/// by judgement: lower names regions that evenly spread evidence makes by chance, higher leaves broad ones unnamed.
 const LEAST_SURPLUS: f64 = 0.12;
 
-/// Least rise of that surplus at which two axes are named instead of one.
+/// Rise of that surplus by a second axis (0..1), above which two axes are named. Chosen by judgement: lower names a
+/// second axis that only follows the first; `two_axes_are_named_where_they_are_sharper_together` holds both sides.
 const LEAST_SECOND_AXIS_SURPLUS: f64 = 0.07;
 
-/// Bins a channel for the search of the maximal interval.
-const BINS: usize = 40;
+/// Quantile bins of an axis: the resolution of a region, 2.5 % of the samples.
+const QUANTILE_BINS: usize = 40;
 
-/// Regions of one axis from which those of two are searched.
-const FIRST_SIDES: usize = 3;
+/// Intervals of one axis, sharpest first, each of which is paired with every other axis. A limit of the computing time.
+const PAIRED_INTERVALS: usize = 3;
 
 impl Region {
     /// Its interval, and that of the second channel if there is one.
@@ -93,7 +95,7 @@ fn conjunction(evidence: &Evidence, axes: &[Axis], regions: &[Region]) -> Option
     let inside = |side: &Side, values: &[f64]| -> Vec<usize> {
         (0..values.len()).filter(|&i| (side.from..=side.to).contains(&values[i])).collect()
     };
-    let firsts = lasting().take(FIRST_SIDES).filter_map(|first| Some((&first.side, axis_of(&first.side)?)));
+    let firsts = lasting().take(PAIRED_INTERVALS).filter_map(|first| Some((&first.side, axis_of(&first.side)?)));
     let pairs = firsts.flat_map(|(first, first_axis)| {
         let inside_first = inside(first, first_axis.1);
         let others = axes.iter().filter(|(name, _)| *name != "time" && *name != first.channel);
@@ -133,7 +135,8 @@ impl Evidence<'_> {
             Some(&row) => order.partition_point(|&i| values[i] < values[row]),
             None => edge,
         };
-        let mut edges: Vec<usize> = (0..=BINS).map(|k| start_of_equals(order.len() * k / BINS)).collect();
+        let mut edges: Vec<usize> =
+            (0..=QUANTILE_BINS).map(|k| start_of_equals(order.len() * k / QUANTILE_BINS)).collect();
         edges.dedup();
         let sums: Vec<f64> =
             edges.windows(2).map(|e| order[e[0]..e[1]].iter().map(|&i| self.density[i] - mean).sum()).collect();

@@ -4,30 +4,48 @@
 use crate::diagnose::search::accepted::Accepted;
 use crate::physics::EffectId;
 
-/// Frequency of a right first name that stands alone, measured on some five hundred concealed effects of other seeds than the
-/// report's.
-const WITHOUT_RIVAL: f64 = 0.98;
-/// The same where the next name stands closer than [`WIDE_MARGIN_NATS`].
-const NEAR_MARGIN: f64 = 0.95;
-/// The same beside rivals that cannot be ruled out, of which the nearest is [`FAR_RIVAL_NATS`] away or more.
-const BESIDE_FAR_RIVALS: f64 = 0.8;
-/// The same beside one nearer rival, and beside several of which one is nearer.
-const BESIDE_A_NEAR_RIVAL: f64 = 0.75;
-const BESIDE_NEAR_RIVALS: f64 = 0.5;
-/// Margin in nats from which a name that stands alone was hardly ever wrong there.
-const WIDE_MARGIN_NATS: f64 = 6.0;
-/// Distance in nats from which a rival was seldom the truth.
-const FAR_RIVAL_NATS: f64 = 1.5;
+/// Frequencies of a right first name by its margin and its rivals, with the limits between the cases.
+struct Frequencies {
+    /// Without a rival, where the next name is [`Self::margin_nats`] away or more.
+    alone: f64,
+    /// Without a rival, where the next name is closer.
+    near_margin: f64,
+    /// Beside rivals of which the nearest is [`Self::rival_nats`] away or more.
+    far_rivals: f64,
+    /// Beside one nearer rival.
+    near_rival: f64,
+    /// Beside several of which one is nearer.
+    near_rivals: f64,
+    /// Margin in nats from which a name without a rival was hardly ever wrong.
+    margin_nats: f64,
+    /// Distance in nats from which a rival was seldom the truth.
+    rival_nats: f64,
+}
+
+/// As counted on some five hundred concealed effects of the seeds above.
+const FREQUENCIES: Frequencies = Frequencies {
+    alone: 0.98,
+    near_margin: 0.95,
+    far_rivals: 0.8,
+    near_rival: 0.75,
+    near_rivals: 0.5,
+    margin_nats: 6.0,
+    rival_nats: 1.5,
+};
+
+/// Probability of what has no rival by its nature: a wrong level of a reference, whose change is linear in it, and an event that
+/// leaves one stretch with several times the error of any other.
+pub(crate) const WITHOUT_RIVAL: f64 = FREQUENCIES.alone;
 
 /// Probability that the named effect is the true one, by its margin and its rivals.
 pub(crate) fn probability(found: &Accepted) -> f64 {
     let nearest = found.rivals.iter().map(|(_, distance)| *distance).min_by(f64::total_cmp);
     match nearest {
-        None if found.margin < WIDE_MARGIN_NATS => NEAR_MARGIN,
-        None => WITHOUT_RIVAL,
-        Some(distance) if distance >= FAR_RIVAL_NATS => BESIDE_FAR_RIVALS,
-        Some(_) if found.rivals.len() == 1 => BESIDE_A_NEAR_RIVAL,
-        Some(_) => BESIDE_NEAR_RIVALS,
+        None if found.margin < FREQUENCIES.margin_nats => FREQUENCIES.near_margin,
+        None => FREQUENCIES.alone,
+        Some(distance) if distance >= FREQUENCIES.rival_nats => FREQUENCIES.far_rivals,
+        Some(_) if found.rivals.len() == 1 => FREQUENCIES.near_rival,
+        Some(_) => FREQUENCIES.near_rivals,
     }
 }
 

@@ -4,7 +4,9 @@ use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::measurement::signals::Signals;
 use crate::physics::EffectId;
 
-/// Recorded torque over the drive's limit from which it is more than noise on top of it.
+/// Largest recorded torque over the drive's limit, above which the record is a command and not a torque. Chosen by
+/// judgement: lower takes noise on top of a limited torque for a command, higher misses a command a little beyond the
+/// limit.
 const COMMAND_LIMIT_RATIO: f64 = 1.05;
 
 /// A recorded command.

@@ -9,13 +9,21 @@ use crate::numerics::statistics::quantile;
 use crate::physics::EffectId;
 use crate::samples::spikes::{PRINTED, Spikes};
 
-/// Share of samples at one extreme torque from which it counts as clipped.
+/// Share (0..1) of the samples at one extreme torque, above which the torque is clipped. Chosen by judgement: a peak
+/// that is only passed lies in few samples; lower takes peaks for limits, higher misses a limit that is seldom reached.
 const CLIPPED_SHARE: f64 = 0.02;
-/// A torque step of this share of the usual torque is worth a note, and of this hides friction.
+/// Step of the recorded torque over its 90 % quantile, above which it is noted. Chosen by judgement: a hundredth of the
+/// torque is a tenth of a friction that is a tenth of it.
 const NOTED_STEP_SHARE: f64 = 0.01;
+/// The same above which no effect is looked for: steps of a twentieth of the torque are half of a friction that is a
+/// tenth of it. Chosen by judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
 const BLOCKING_STEP_SHARE: f64 = 0.05;
-/// Band in Hz that a coarse encoder has to leave for friction to be seen, and its step over the travel from which it is coarse.
+/// Cut-off that a coarse encoder has to leave, Hz; below it no effect is looked for. Chosen by judgement: raised from
+/// 10 over 12.5 as the suites grew; lower names effects in what the quantisation left, higher refuses recordings that
+/// show slow effects.
 const LEAST_BAND_HZ: f64 = 17.0;
+/// Step of the encoder over the travel above which it is coarse: fewer than ten thousand steps over the travel. Chosen
+/// by judgement: lower blames an encoder for a noise that it does not make.
 const COARSE_STEP_SHARE: f64 = 1e-4;
 
 /// What is wrong with a torque as it was recorded.
@@ -90,14 +98,16 @@ struct TorqueStep {
 
 /// The step in which the torque is recorded, where most of its changes are a single one.
 fn torque_step(signals: &Signals) -> Option<TorqueStep> {
-    const FEWEST_CHANGES: usize = 20;
+    /// Changes of the torque above which their median tells its step. Chosen by judgement: of fewer one step may be
+    /// most by chance.
+    const LEAST_TORQUE_CHANGES: usize = 20;
     let usual = quantile(signals.torque.iter().map(|torque| torque.abs()), 0.9);
     let changes = signals.torque.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     // An even clock may fall a little beside the recorded samples, and so between two steps.
     let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * NOTED_STEP_SHARE * usual).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
-    (steps.len() > FEWEST_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
+    (steps.len() > LEAST_TORQUE_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
 }
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.

@@ -8,7 +8,8 @@ use crate::numerics::derivatives::{first_derivative, second_derivative};
 use crate::numerics::least_squares::{least_squares, residual};
 use crate::physics::EffectId;
 
-/// Factors that a wrong unit leaves: degrees for radians, turns for radians, milli for whole, and their inverses.
+/// Factors that a wrong unit leaves: degrees for radians, turns for radians, milli for whole, and their inverses, by
+/// definition of the units.
 const UNIT_FACTORS: [(f64, &str); 6] = [
     (57.295_78, "deg taken for rad"),
     (std::f64::consts::TAU, "turns taken for rad"),
@@ -18,13 +19,18 @@ const UNIT_FACTORS: [(f64, &str); 6] = [
     (0.001, "units taken for milli-units"),
 ];
 
-/// Factor of what is given that its turned sign leaves, mass or gravity being as wrong as they usually are.
+/// Fitted factor of a given torque that a reversed sign leaves. Chosen by judgement: minus one, within a factor of two
+/// for a wrong mass; wider takes an unrelated torque for a reversed one.
 const REVERSED_FACTOR_RANGE: std::ops::Range<f64> = -2.0..-0.5;
-/// How near a factor has to be to that of a unit: a body of the wrong mass may come close to it by chance.
+/// Fitted factor over that of a confused unit. Chosen by judgement: one within a tenth, as a wrong mass may come close
+/// to a unit's factor by chance.
 const UNIT_RATIO_RANGE: std::ops::Range<f64> = 0.9..1.11;
 
-/// Correlation from which a recorded velocity goes with the derivative of the position, and its factor where both have one unit.
+/// Correlation of a recorded velocity and the derivative of the position, above which both are one motion. Chosen by
+/// judgement: below it another shaft was recorded, and the ratio of the two says nothing of units.
 const LEAST_CORRELATION: f64 = 0.9;
+/// Recorded velocity over the derivative of the position where both have one unit. Chosen by judgement: one within a
+/// quarter, for a drive that filters its velocity; the nearest confused unit is a factor of six away.
 const SAME_UNIT_RATIO_RANGE: std::ops::Range<f64> = 0.8..1.25;
 
 /// What a unit or a sign is seen behind: little of the encoder's grain.

@@ -15,7 +15,7 @@ pub enum BaseKind {
     Reference,
 }
 
-/// Coefficients of the spline base.
+/// Coefficients of the spline base: by definition of [`BaseKind::Spline`].
 const SPLINE_KNOTS: usize = 9;
 
 /// The friction columns of a base kind at one velocity.
@@ -49,8 +49,9 @@ pub(crate) fn speed_hats(share: f64, knots: usize) -> impl Iterator<Item = f64> 
     })
 }
 
-/// Width of a softer sign over that of the smoothed one.
-pub(crate) const WIDE_SIGN: f64 = 3.0;
+/// Width of a softer sign over that of the smoothed sign. Chosen by judgement: nearer to one it could not be told from
+/// the smoothed sign, a wider one would take up the Stribeck effect.
+pub(crate) const SOFT_SIGN_WIDTH_RATIO: f64 = 3.0;
 
 /// The columns of the parameters and the nuisances behind the common filter.
 pub(crate) fn filtered_columns(
@@ -98,7 +99,7 @@ pub(crate) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
     let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
     let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
     // The smoothed sign stands for a jump: its width is a nuisance too.
-    let wide_sign = state.averaged_sign(&state.velocity, WIDE_SIGN * state.sign_velocity);
+    let wide_sign = state.averaged_sign(&state.velocity, SOFT_SIGN_WIDTH_RATIO * state.sign_velocity);
     let width = state.map(|i| wide_sign[i] - state.sign[i]);
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
 }

@@ -7,12 +7,14 @@ use crate::diagnose::preparation::position_error::position_error_torque;
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, orthonormal, project_out, rows_in};
 
-/// Samples of delay up to which it is the sampling's own: the drive holds its torque over a sample while the position is read at one
-/// edge of it.
+/// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either
+/// edge of it makes up to one, and a quarter is left for the error of the estimate. Longer hides a real misalignment.
 pub(crate) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
-/// Longest delay that is looked for, in s, but for two samples.
+/// Longest delay that is looked for, s, but at least two samples. Chosen by judgement: several periods of a field bus;
+/// longer may fit one swing of a fast motion to the next.
 const LONGEST_DELAY_S: f64 = 0.03;
-/// Share of what is left without a shift below which a shift counts.
+/// Energy left with a shift over that without, below which the shift counts. Chosen by judgement: nearer to one the
+/// errors of the base shift the torque, smaller leaves a delay in a noisy recording.
 const SHIFTED_ERROR_RATIO: f64 = 0.98;
 
 /// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole

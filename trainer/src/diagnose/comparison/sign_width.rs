@@ -1,23 +1,27 @@
 //! How sharply friction turns over with the direction: the width of the smoothed sign, and what of it stays unknown.
 
-use crate::diagnose::comparison::columns::{BaseKind, WIDE_SIGN, filtered_columns, raw_columns};
+use crate::diagnose::comparison::columns::{BaseKind, SOFT_SIGN_WIDTH_RATIO, filtered_columns, raw_columns};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, fit_residual, least_squares};
 use crate::numerics::pattern_search::{Movable, climb};
 
-/// Widths of the smoothed sign that are tried, over the least.
+/// Widths of the smoothed sign that are tried, over the least: factors of two, from the nearest of which the width is
+/// fitted.
 const SIGN_WIDTH_RATIOS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
-/// The widest, over the least.
+/// Upper bound of the fitted width over the least. Chosen by judgement: twice the widest that is tried; a joint whose
+/// friction turns over more softly has no Coulomb friction.
 const WIDEST_SIGN_RATIO: f64 = 30.0;
 
-/// Share of the energy that the least width leaves, up to which a wider one is the joint's own: a looser
-/// limit would let presliding or the Stribeck effect pass for a softer sign.
+/// Energy that the base leaves with a wider sign over that with the least, below which the wider one is the joint's
+/// own. Held by `presliding_and_the_stribeck_effect_are_no_soft_sign`: higher lets either pass for a softer sign.
 const SOFT_SIGN_ENERGY_RATIO: f64 = 0.01;
-/// The same up to which the width is sought closer.
+/// The same below which the width is fitted. A limit of the computing time: ten times the ratio that decides, for what
+/// fitting gains between two widths of the grid.
 const REFINED_SIGN_ENERGY_RATIO: f64 = 0.1;
 
-/// Torque of a softer sign over what friction is at low speed up to which it stands for friction's own softness.
+/// Torque of a softer sign over the friction at low speed, up to which it is friction's own softness: one, with half of
+/// it for the error of the estimate. Chosen by judgement: lowered from 2; higher takes up effects at low speed.
 const SOFT_SIGN_TORQUE_RATIO: f64 = 1.5;
 
 /// Widens the smoothed sign where friction turns over so softly that next to nothing else is wrong with the base.
@@ -52,7 +56,7 @@ pub(crate) fn fit_sign_width(prepared: &mut Prepared, comparison: &Comparison, k
 /// something else.
 pub(crate) fn add_soft_sign(prepared: &Prepared, columns: &mut Vec<Vec<f64>>, target: &[f64]) {
     let state = &prepared.state;
-    let width = WIDE_SIGN * state.sign_velocity;
+    let width = SOFT_SIGN_WIDTH_RATIO * state.sign_velocity;
     columns.push(prepared.filtered(&state.map(|i| (state.velocity[i] / width).tanh() - state.sign[i])));
     let torque =
         least_squares(columns, target, &prepared.open_runs()).and_then(|coefficients| coefficients.last().copied());

@@ -18,9 +18,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::ops::Range;
 
-/// Seeds of what is added: one for all recordings.
-const SEED: u64 = 0x0067_7261_696e;
-const SEED_OF_INSTANTS: u64 = 0x696e_7374_616e;
+/// Seed of the added quantisation error: one for all recordings, so that every run draws the same.
+const QUANTISATION_SEED: u64 = 0x0067_7261_696e;
+/// Seed of the added sampling jitter: another, so that the one does not depend on whether the other is drawn.
+const JITTER_SEED: u64 = 0x696e_7374_616e;
 
 /// A second helping of the encoder's grain and of the torque's noise.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ impl MeasurementNoise {
         let Comparison { signals, reference } = comparison;
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
         let inertia = if body_is_recorded && reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
-        let [mut random, mut instants] = [SEED, SEED_OF_INSTANTS].map(ChaCha8Rng::seed_from_u64);
+        let [mut random, mut instants] = [QUANTISATION_SEED, JITTER_SEED].map(ChaCha8Rng::seed_from_u64);
         let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
         let late = prepared.state.velocity.iter().map(|v| prepared.sampling_jitter * v * normal(&mut instants));
         let position: Vec<f64> = steps.zip(late).map(|(q, late)| q + late).collect();

@@ -101,10 +101,10 @@ impl Bench {
             let mut free = column.clone();
             project_out(&mut free, &held, &runs);
             let share = dot(&free, &free, &runs) / dot(column, column, &runs);
-            if share > LEAST_SHARE {
+            if share > LEAST_INDEPENDENT_SHARE {
                 held.extend(orthonormal(&[free], &runs));
             }
-            share > LEAST_SHARE
+            share > LEAST_INDEPENDENT_SHARE
         });
     }
 
@@ -208,8 +208,10 @@ fn explained(normal: &DMatrix<f64>, right: &DVector<f64>) -> Option<f64> {
     solve_symmetric(normal, right).map(|solution| solution.dot(right))
 }
 
-/// Share of its energy that a candidate column keeps beside the base and the columns before, at least.
-const LEAST_SHARE: f64 = 1e-5;
+/// Share (0..1) of its energy that a regressor keeps beside the base and the regressors before it, above which it is
+/// independent of them. Chosen by judgement: far above roundoff (1e-11 is added to the unit diagonal); smaller lets
+/// roundoff decide, larger drops weak regressors.
+const LEAST_INDEPENDENT_SHARE: f64 = 1e-5;
 
 /// Whether each candidate column keeps a share of its energy that the base (and the columns before) cannot hold.
 fn independent(normal: &DMatrix<f64>, base: usize) -> bool {
@@ -225,7 +227,7 @@ fn independent(normal: &DMatrix<f64>, base: usize) -> bool {
     });
     correlation.cholesky().is_some_and(|factor| {
         let lower = factor.l();
-        (base..size).all(|i| lower[(i, i)] * lower[(i, i)] > LEAST_SHARE)
+        (base..size).all(|i| lower[(i, i)] * lower[(i, i)] > LEAST_INDEPENDENT_SHARE)
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::figures::digits;
 use crate::numerics::pattern_search::Movable;
-use crate::physics::Shape;
+use crate::physics::{SERIES_ORDERS, Shape};
 use std::f64::consts::PI;
 
 /// The function of the channel in a generic rival.
@@ -25,16 +25,17 @@ pub enum Form {
 /// A function of the channel.
 pub(crate) type Function<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
 
-/// The forms that are written as a formula.
-pub(crate) const FORMULAS: [Form; 4] = [Form::Quadratic, Form::Place, Form::Wave, Form::Step];
+/// The forms that are written as a formula, by definition all but the series.
+pub(crate) const FORMULA_FORMS: [Form; 4] = [Form::Quadratic, Form::Place, Form::Wave, Form::Step];
 
-/// Waves over the range of the channel, and steps between them.
-const MOST_WAVES: f64 = 6.0;
-const WAVE_STEP: f64 = 0.25;
-/// Orders of a series.
-const SERIES_ORDERS: [f64; 3] = [3.0, 6.0, 9.0];
-/// Places of a step over the range of the channel, and its widths as parts of that range.
-const STEPS_IN_RANGE: usize = 24;
+/// Largest number of waves over the range of the channel on the grid: as resolved as a series of order twelve.
+const LARGEST_WAVE_COUNT: f64 = 6.0;
+/// Step of the number of waves on the grid: a quarter of a period over the range, which a refinement climbs from either
+/// side.
+const WAVE_COUNT_STEP: f64 = 0.25;
+/// Centres of a step over the range of the channel on the grid: closer than the wider of [`STEP_WIDTHS`].
+const STEP_CENTRES: usize = 24;
+/// Widths of a step on the grid, as parts of the range of the channel; refined afterwards.
 const STEP_WIDTHS: [f64; 2] = [32.0, 8.0];
 
 impl Form {
@@ -51,12 +52,12 @@ impl Form {
                 widths.into_iter().flat_map(of_width).collect()
             }
             Form::Wave => {
-                let count = (MOST_WAVES / WAVE_STEP) as usize;
-                (2..=count).map(|k| vec![std::f64::consts::TAU * k as f64 * WAVE_STEP / range]).collect()
+                let count = (LARGEST_WAVE_COUNT / WAVE_COUNT_STEP) as usize;
+                (2..=count).map(|k| vec![std::f64::consts::TAU * k as f64 * WAVE_COUNT_STEP / range]).collect()
             }
             Form::Step => {
                 let at = |place| STEP_WIDTHS.map(|parts| vec![place, range / parts]);
-                places(STEPS_IN_RANGE).flat_map(at).collect()
+                places(STEP_CENTRES).flat_map(at).collect()
             }
         }
     }
@@ -71,10 +72,15 @@ impl Form {
         match self {
             Form::Free | Form::Series | Form::Quadratic => Vec::new(),
             Form::Place => place_and_width(0.5 * shape[1]),
-            Form::Step => place_and_width(0.5 * range / STEPS_IN_RANGE as f64),
+            Form::Step => place_and_width(0.5 * range / STEP_CENTRES as f64),
             Form::Wave => {
                 let one = std::f64::consts::TAU / range;
-                vec![Movable { index: 0, step: 0.5 * WAVE_STEP * one, low: 0.25 * one, high: 2.0 * MOST_WAVES * one }]
+                vec![Movable {
+                    index: 0,
+                    step: 0.5 * WAVE_COUNT_STEP * one,
+                    low: 0.25 * one,
+                    high: 2.0 * LARGEST_WAVE_COUNT * one,
+                }]
             }
         }
     }

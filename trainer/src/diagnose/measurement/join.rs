@@ -16,8 +16,9 @@ pub enum Unjoinable {
     },
 }
 
-/// Largest relative difference of two sample periods that are the same.
-const SAME_PERIOD: f64 = 1e-3;
+/// Relative difference of two sample periods up to which recordings are joined. Chosen by judgement: clocks of one
+/// drive differ by less than 100 ppm; more scales every derivative of one of them.
+const PERIOD_TOLERANCE: f64 = 1e-3;
 
 /// By how much (s) the times of a later recording move where it is put behind an earlier one: a clock that began anew goes on a period
 /// after the last row; nothing where it went on by itself, or nothing lies before it.
@@ -35,7 +36,7 @@ impl Signals {
     /// # Errors
     /// [`Unjoinable`] when the sample rates differ.
     pub fn append(&mut self, next: Signals) -> Result<(), Unjoinable> {
-        if (next.period / self.period - 1.0).abs() > SAME_PERIOD {
+        if (next.period / self.period - 1.0).abs() > PERIOD_TOLERANCE {
             return Err(Unjoinable::Period { first: self.period, next: next.period });
         }
         let count = self.time.len();

@@ -5,11 +5,12 @@ use crate::recording::{Quantity, Recording};
 use crate::samples::EvenClock;
 use std::ops::Range;
 
-/// What a joint is called in front of the quantity, a number may follow.
-const JOINT: [&str; 4] = ["other", "joint", "axis", "j"];
+/// Words for another joint in front of the quantity of a column; a number may follow.
+const JOINT_WORDS: [&str; 4] = ["other", "joint", "axis", "j"];
 
-/// The quantities that tell a motion, best first, with how often each has to be integrated.
-const MOTION: [(Quantity, usize); 3] = [(Quantity::Position, 0), (Quantity::Velocity, 1), (Quantity::Acceleration, 2)];
+/// Quantities that determine a motion, best first, with how often each has to be integrated.
+const MOTION_QUANTITIES: [(Quantity, usize); 3] =
+    [(Quantity::Position, 0), (Quantity::Velocity, 1), (Quantity::Acceleration, 2)];
 
 /// Positions of the other joints on the even clock, in rad or m, in the order in which they stand in the file. Where only a
 /// derivative is recorded, the position is its integral, of mean zero.
@@ -19,7 +20,7 @@ pub(crate) fn other_positions(recording: &Recording, even: &EvenClock) -> Vec<Ve
     let found: Vec<_> = named
         .filter_map(|channel| {
             let (joint, quantity, factor) = joint_of(&channel.column)?;
-            let (_, derivative) = *MOTION.iter().find(|(of_motion, _)| *of_motion == quantity)?;
+            let (_, derivative) = *MOTION_QUANTITIES.iter().find(|(of_motion, _)| *of_motion == quantity)?;
             (Some(joint) != own).then_some((joint, derivative, factor, even.named(&channel.name)?))
         })
         .collect();
@@ -45,14 +46,14 @@ pub(crate) fn other_positions(recording: &Recording, even: &EvenClock) -> Vec<Ve
 /// `ddq` with a number.
 fn joint_of(column: &str) -> Option<(&str, Quantity, f64)> {
     if let Some((derivatives, number)) = column.split_once('q').filter(|(_, number)| is_number(number)) {
-        let order = MOTION.iter().find(|(_, order)| derivatives == &"dd"[..*order])?;
+        let order = MOTION_QUANTITIES.iter().find(|(_, order)| derivatives == &"dd"[..*order])?;
         return Some((number, order.0, 1.0));
     }
     let (joint, rest) = column.split_once('_')?;
     let word = joint.trim_end_matches(|c: char| c.is_ascii_digit());
     let with_unit = || Quantity::of_column(rest).map(|(quantity, unit)| (quantity, unit.factor));
     let (quantity, factor) = Quantity::from_name(rest).map(|quantity| (quantity, 1.0)).or_else(with_unit)?;
-    JOINT.contains(&word).then_some((joint, quantity, factor))
+    JOINT_WORDS.contains(&word).then_some((joint, quantity, factor))
 }
 
 fn is_number(text: &str) -> bool {

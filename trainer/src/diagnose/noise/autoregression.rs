@@ -7,11 +7,13 @@ use crate::numerics::least_squares::rows_in;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Largest order of the autoregression.
+/// Largest order of the autoregression, of which Akaike's criterion chooses. Chosen by judgement: doubled from twelve
+/// when Burg's method came; lower leaves slow colour to the hypotheses, higher costs computing time.
 const LARGEST_ORDER: usize = 24;
-/// Rows for each of its coefficients at least.
+/// Rows for each coefficient at least. Chosen by judgement: it limits the order in recordings of fewer than 240 rows
+/// only; fewer rows let the autoregression take up an effect.
 const ROWS_PER_COEFFICIENT: usize = 10;
-/// Mean of the logarithm of a squared standard normal variable.
+/// Mean of the logarithm of a squared standard normal variable: -(Euler's constant + ln 2).
 const LOG_CHI_SQUARE_MEAN: f64 = -1.270_362_8;
 
 /// A fitted noise model.
@@ -171,7 +173,8 @@ fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -
     deviation
 }
 
-/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a glitch more.
+/// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a
+/// glitch more and would bend the fit. Chosen by judgement: anything between the two.
 const LARGEST_FEATURE: f64 = 20.0;
 
 /// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.

@@ -9,8 +9,9 @@ use rand_chacha::rand_core::SeedableRng;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Length of a moving block in whitened rows (about two seconds at the usual working rates): longer than the colour that whitening
-/// leaves.
+/// Length of a moving block in whitened rows (Kuensch 1989), about two seconds at the usual rates of working rows.
+/// Raised from 64: it has to be longer than the colour that whitening leaves, or slow hypotheses seem too surprising;
+/// longer leaves fewer independent blocks.
 const BLOCK_ROWS: usize = 256;
 
 /// The tails of every hypothesis' statistic where nothing is missing, fitted to the null draws.

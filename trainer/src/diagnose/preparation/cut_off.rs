@@ -6,7 +6,9 @@ use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::physics::JointState;
 
-/// Cut-off frequencies that are tried, widest first, in Hz.
+/// Cut-off frequencies that are tried, widest first, Hz. Chosen by judgement: each about three quarters of the one
+/// before, so that the grid costs at most a quarter of the band; a first one beyond 50 Hz costs rows and computing
+/// time.
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
 impl Prepared {
     /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay

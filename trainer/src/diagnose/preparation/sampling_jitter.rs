@@ -5,14 +5,19 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, quantile};
 use crate::physics::JointState;
 
-/// Sum of the squares of the weights of a fourth difference.
-const FOURTH_DIFFERENCE_GAIN: f64 = 70.0;
-/// Speeds over the top speed from which a sample is fast, and below which it is slow.
+/// Sum of the squared weights of a fourth difference: 1 + 16 + 36 + 16 + 1.
+const FOURTH_DIFFERENCE_GAIN: f64 = 1.0 + 16.0 + 36.0 + 16.0 + 1.0;
+/// Speed over the top speed above which a sample is fast. Chosen by judgement: jitter shows in proportion to the speed,
+/// and half of the top speed leaves enough samples.
 const FAST_SPEED_SHARE: f64 = 0.5;
+/// Speed over the top speed below which a sample shows the quantisation alone: jitter has a hundredth of its power
+/// there.
 const SLOW_SPEED_SHARE: f64 = 0.1;
-/// Scatter in periods up to which it may be what a joint's own motion has beyond a fourth difference.
+/// Jitter in sample periods, up to which it may be the motion's own fourth difference and counts as none. Chosen by
+/// judgement: `scattered_instants_are_told_from_the_grain_of_an_encoder` holds it from below; larger overlooks jitter.
 const LEAST_JITTER_PERIODS: f64 = 0.05;
-/// Samples of a kind at least.
+/// Samples of a kind above which their median is used: the deviation estimated from it then errs by about an eighth
+/// (1.17 over the root of the samples).
 const LEAST_SAMPLES: usize = 100;
 
 /// Standard deviation of the instants of sampling, s: what the fourth differences of the position have at high speed beyond those

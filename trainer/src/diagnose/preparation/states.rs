@@ -58,17 +58,24 @@ impl<'a> Known<'a> {
     }
 }
 
-/// Width of the smoothed sign at least, as a share of the top speed.
+/// Least width of the smoothed sign over the top speed. Chosen by judgement: an eighth of the narrowest Stribeck
+/// velocity that is looked for; a wider sign takes up break-away, a narrower one jumps between two samples.
 const SIGN_WIDTH_SHARE: f64 = 0.001;
-/// Filters before the motion over the common one, widest first: a reversal stays as sharp as the encoder's noise allows.
-const MOTION_FILTER_RATIOS: [f64; 3] = [4.0, 2.5, 1.6];
-/// The filter before the other channels over the common one.
+/// Cut-offs before the motion over the common one, widest first; the first whose noise is small is taken, so that a
+/// reversal stays as sharp as the encoder allows. Down to that of the other channels. Chosen by judgement: steps of
+/// about 1.6.
+const MOTION_FILTER_RATIOS: [f64; 3] = [4.0, 2.5, CHANNEL_FILTER_RATIO];
+/// Cut-off of the filter before the other channels over the common one: just beyond the end of the common transition
+/// (one and a half times its cut-off), so that the common filter decides the band.
 const CHANNEL_FILTER_RATIO: f64 = 1.6;
-/// Widest filter, in cycles a sample.
+/// Largest cut-off of any filter, cycles a sample: its transition, one and a half times as far, then ends at the
+/// Nyquist frequency.
 const WIDEST_CYCLES_PER_SAMPLE: f64 = 0.35;
-/// Filter of the nuisance column of the velocity over that before the motion.
+/// Cut-off of the nuisance column of the sign over that before the motion. Chosen by judgement: the change of the sign
+/// with the filter carries the bias of differentiation; nearer to one the column vanishes, smaller takes up presliding.
 const NARROW_VELOCITY_RATIO: f64 = 0.4;
-/// Filter of the nuisance column of the acceleration over the common one: narrow enough to leave what rings to the effects.
+/// The same of the acceleration over the common cut-off. Chosen by judgement: nearer to one the column vanishes,
+/// smaller takes up what rings behind an elastic gear.
 const NARROW_ACCELERATION_RATIO: f64 = 0.8;
 
 impl Prepared {
@@ -265,7 +272,10 @@ fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
 /// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand
 /// the evidence to a rival; a pause of the clock ends the line.
 fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
-    const REACH_S: f64 = 4.0;
+    /// Half length of the straight lines, s. Chosen by judgement: temperatures move over minutes and are recorded in
+    /// steps of half a kelvin; shorter hands the evidence of a coarse sensor to warm-up, longer flattens a fast motor's
+    /// winding.
+    const TEMPERATURE_REACH_S: f64 = 4.0;
     let mut smooth = Vec::with_capacity(series.len());
     for piece in time.chunk_by(|a, b| b - a < 1.5 * period) {
         let (begin, origin) = (smooth.len(), piece[0]);
@@ -277,8 +287,8 @@ fn slow(series: &[f64], time: &[f64], period: f64) -> Vec<f64> {
             sums.push(std::array::from_fn(|k| before[k] + terms[k]));
         }
         smooth.extend(piece.iter().map(|&now| {
-            let low = piece.partition_point(|t| *t < now - REACH_S);
-            let high = piece.partition_point(|t| *t <= now + REACH_S);
+            let low = piece.partition_point(|t| *t < now - TEMPERATURE_REACH_S);
+            let high = piece.partition_point(|t| *t <= now + TEMPERATURE_REACH_S);
             let [n, t, tt, y, ty]: [f64; 5] = std::array::from_fn(|k| sums[high][k] - sums[low][k]);
             let spread = tt - t * t / n;
             let slope = if spread > 1e-9 * tt { (ty - t * y / n) / spread } else { 0.0 };

@@ -6,17 +6,20 @@ use crate::numerics::statistics::quantile;
 use crate::physics::{EffectId, JointState, Twist, carried_torque, usual_link_inertia};
 use std::ops::Range;
 
-/// Share of the twist's energy that the best of the three may leave: what leaves more is no function of the torque, but a
-/// kinematic error, another convention or noise.
+/// Energy of the twist that the best of line, jump and loop leaves over the whole, above which the twist is no function
+/// of the torque but a kinematic error, another convention or noise. Half: it explains more than it leaves.
 const UNEXPLAINED_SHARE: f64 = 0.5;
-/// What a line may leave of it and be a line, whatever else would leave.
+/// Energy that a line leaves over the whole, below which the gear is elastic however much less another leaves. Chosen
+/// by judgement: smaller names a play in the noise of the encoders, larger hides a small play.
 const LINE_RESIDUAL_SHARE: f64 = 0.02;
-/// What a jump or a loop has to leave over what a line leaves.
+/// Energy that jump or loop leaves over that of the line, below which it is the better one. Chosen by judgement: nearer
+/// to one their further parameter wins by chance, smaller misses a play beside elasticity.
 const HYSTERESIS_ENERGY_RATIO: f64 = 0.6;
-/// Twist over the travel that is rounding.
+/// Twist over the travel that is rounding of printed positions: nine digits.
 const ROUNDING_SHARE: f64 = 1e-9;
-/// Torque within which a jump turns, and torques over which a loop builds up, over the largest common torque.
-const JUMP_TORQUE_SHARE: f64 = 0.03;
+/// Torque over the largest within which a jump turns over: the narrowest loop of [`LOOP_TORQUE_SHARES`].
+const JUMP_TORQUE_SHARE: f64 = LOOP_TORQUE_SHARES[0];
+/// Torques over the largest over which a loop builds up: half decades of the one parameter that is not fitted.
 const LOOP_TORQUE_SHARES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
 /// What the twist between both encoders shows.

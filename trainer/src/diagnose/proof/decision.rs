@@ -5,21 +5,31 @@ use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::search::thresholds::Settings;
 use statrs::function::erf::erfc_inv;
 
-/// Share of the level that is left to what the locked rows ask for the opposite of.
+/// Family-wise level over the usual one for an effect of which the locked rows ask for the opposite. Chosen by
+/// judgement: their product of 4e-5 was kept when `concealed-suite --controls 200` lowered the level from 0.01 (15
+/// alarms in 1000) to 0.006; larger lets effects stand that the locked rows contradict.
 const CONTRADICTED_LEVEL_RATIO: f64 = 0.007;
 
-/// Weight of the locked rows over their share of the evidence, and the largest that they get.
+/// Weight of the locked rows over their share of the evidence. Chosen by judgement: two, as of what the open rows could
+/// tell much is spent on the choice of effect and shape; `what_the_locked_rows_tell_counts_double` holds it.
 const LOCKED_WEIGHT: f64 = 2.0;
+/// Largest weight of the locked rows (0..1). Chosen by judgement: the open rows keep a tenth where nearly all evidence
+/// is locked; at one they would count for nothing.
 const LARGEST_LOCKED_WEIGHT: f64 = 0.9;
 
-/// Share of the evidence from which the locked rows can contradict the open ones.
+/// Share of the evidence (0..1) above which locked rows can contradict the open ones. Chosen by judgement: below it
+/// their sign is chance; `rows_that_hardly_show_an_effect_do_not_contradict_it` holds it.
 const CONTRADICTING_SHARE: f64 = 0.03;
 
-/// Error of the locked rows over that without a one-off event, from which it is refused.
+/// Error of the locked rows with a one-off event over that without, above which the event is refused. Chosen by
+/// judgement: they may hold the rest of the event, so that a tenth is no sign against it; larger lets an event distort
+/// the base.
 const EVENT_ERROR_RATIO: f64 = 1.1;
-/// The same of what is to be compensated, where it is certain from block to block.
+/// The same of a named effect whose loss is certain from block to block. Chosen by judgement: what is to be compensated
+/// may not cost more than the scatter of such a ratio, some per cent.
 const NAMED_ERROR_RATIO: f64 = 1.03;
-/// Error of the locked rows over that without an effect, from which nothing speaks for it.
+/// The same of a structure without a name, which is not compensated. Chosen by judgement: it may err by half where the locked rows
+/// suit its form less; larger keeps structures that only the open rows show.
 const UNNAMED_ERROR_RATIO: f64 = 1.5;
 
 /// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value

@@ -34,11 +34,13 @@ impl Refit {
     }
 }
 
-/// Sweeps over the shapes, one effect at a time with the others in the base.
+/// Sweeps over the shapes, one effect at a time with the others in the base. A limit of the computing time: the second
+/// corrects what the first did beside unrefined others.
 const SWEEPS: usize = 2;
 
-/// Root mean square of a whitened fit over that of a plain one from which what is left is the error of the model's formulas,
-/// slow and large, and not noise: then the plain fit holds.
+/// Error of a whitened fit over that of a plain one (root mean squares), above which what is left is the slow error of
+/// the model's formulas and not noise, and the plain fit holds. Chosen by judgement: white noise makes them equal;
+/// smaller gives up whitening for coloured noise, larger biases all coefficients.
 const PLAIN_FIT_ERROR_RATIO: f64 = 1.1;
 
 /// Moves the shapes of the accepted effects to their joint optimum: one effect at a time, the others in the base.

@@ -25,12 +25,14 @@ pub struct Rollout {
     pub improved_rmse: f64,
 }
 
-/// Length of one rollout, s.
+/// Length of one rollout, s: by definition of the reported figure.
 const HORIZON_S: f64 = 0.5;
-/// Steps of the integration between two working rows.
-const STEPS: usize = 4;
-/// Step of velocity, as a share of the width of the smoothed sign, over which the slope of friction is taken.
-const SLOPE_SHARE: f64 = 0.1;
+/// Linearly implicit Euler steps between two working rows. Chosen by judgement: the slope of friction is taken anew in
+/// each; fewer err where friction turns over, more cost computing time.
+const EULER_STEPS: usize = 4;
+/// Step of velocity of the difference that gives the slope of friction, over the width of the smoothed sign, within
+/// which friction is straight.
+const SLOPE_STEP_SHARE: f64 = 0.1;
 
 /// Rolls base and improved model out over the locked rows, or over all where none are locked. `None` without an inertia
 /// or a stretch of motion that is long enough.
@@ -75,11 +77,11 @@ fn squares(state: &JointState, rows: &[usize], runs: &[Range<usize>], residual: 
 /// One rollout from the recorded state at the first row, by the linearly implicit Euler method.
 fn one(state: &JointState, rows: &[usize], residual: &[f64], inertia: f64) -> f64 {
     let (mut stray, mut speed, mut sum) = (0.0, 0.0, 0.0);
-    let width = SLOPE_SHARE * state.sign_velocity;
+    let width = SLOPE_STEP_SHARE * state.sign_velocity;
     for (pair, torque) in rows.windows(2).zip(residual.windows(2)) {
-        let step = (state.time[pair[1]] - state.time[pair[0]]) / STEPS as f64;
-        for k in 0..STEPS {
-            let share = (k as f64 + 0.5) / STEPS as f64;
+        let step = (state.time[pair[1]] - state.time[pair[0]]) / EULER_STEPS as f64;
+        for k in 0..EULER_STEPS {
+            let share = (k as f64 + 0.5) / EULER_STEPS as f64;
             let between = |a: f64, b: f64| a + share * (b - a);
             let recorded = between(state.velocity[pair[0]], state.velocity[pair[1]]);
             let friction = |v: f64| state.base_friction_at(recorded + v);

@@ -7,28 +7,37 @@ use crate::diagnose::search::round::{Round, Scored};
 use crate::numerics::least_squares::{dot, orthonormal, project_out};
 use crate::physics::EffectId;
 
-/// Shares of what a free function explains at which a name is good enough: of the energy, and of the whitened energy, in which the
-/// slow errors of a formula count for less.
+/// Energy that a name explains over that of a free function which leads it, above which the name is kept. Chosen by
+/// judgement: lowered from 0.9; smaller names unknown structures, larger gives up names for the errors of their
+/// formulas.
 const NAMED_ENERGY_SHARE: f64 = 0.88;
+/// The same of the whitened energy, in which the slow errors of a formula count for less. Chosen by judgement: with the
+/// one before.
 const NAMED_WHITENED_SHARE: f64 = 0.94;
 
-/// Score in nats from which the errors of a formula show. Of what is weaker a name needs this share of a free function's score
-/// too: much of the energy that it explains may be chance.
-const STRONG_NATS: f64 = 60.0;
+/// Score of a free function above which the errors of a formula show and chance is no explanation, nats. Chosen by
+/// judgement: below it a name needs [`NAMED_SCORE_SHARE`] of the score too.
+const FORMULA_ERROR_NATS: f64 = 60.0;
+/// Score of a name over that of a weaker free function that leads it, above which the name is kept. Chosen by
+/// judgement: much of the energy that a weak function explains may be chance; smaller names unknown structures.
 const NAMED_SCORE_SHARE: f64 = 0.8;
 
-/// Shares of energy outside of a wider hypothesis at which a narrower one is of its kind, the same but for its formula, and a part
-/// of it.
+/// Energy of a name outside of a free function over its energy beside the base, below which the function is of its
+/// kind. Chosen by judgement: a series errs by as much at the edges of a channel.
 const SAME_KIND_ENERGY_SHARE: f64 = 0.1;
+/// The same below which a rival is the best hypothesis with more coefficients, and no rival. Chosen by judgement:
+/// larger hides rivals that differ, smaller lists every extension as a rival.
 const SAME_FORMULA_ENERGY_SHARE: f64 = 0.01;
+/// The same below which a hypothesis is a part of another, exact but for roundoff and filtering.
 const PART_ENERGY_SHARE: f64 = 1e-6;
 
-/// Lead in nats up to which a structure without a name does not rule a name out: it is the best of many, of which one may fit by
-/// chance what the name's formula misses.
+/// Lead up to which a structure without a name does not rule a name out, nats: it is the best of many, of which one may
+/// fit by chance what the name's formula misses. Chosen by judgement: smaller leaves unnamed what a near name explains.
 const UNKNOWN_LEAD_NATS: f64 = 12.0;
 
-/// Lead in nats up to which an effect and the one that it yields to do not rule each other out: the further shape of the one may fit
-/// what the other's formula misses, and a recorded channel what an inferred one cannot.
+/// Lead up to which an effect and the one that it yields to do not rule each other out, nats: the further shape of the
+/// one may fit what the other's formula misses. Chosen by judgement: smaller rules out the recorded channel for an
+/// inferred one.
 const YIELDING_LEAD_NATS: f64 = 8.0;
 
 impl Round<'_, '_> {
@@ -105,7 +114,7 @@ impl Round<'_, '_> {
     /// is a little wrong: what explains nearly as much, whitened or not, is good enough, unless the function leads what holds the
     /// name among those of its channel as well. Then it is no error of the formula that the name lacks.
     fn is_kept_beside(&self, name: &Scored, generic: &Scored, table: &[Scored]) -> bool {
-        let is_strong = generic.score >= STRONG_NATS;
+        let is_strong = generic.score >= FORMULA_ERROR_NATS;
         let explains_as_much = name.explained >= NAMED_ENERGY_SHARE * generic.explained
             && (is_strong || name.score >= NAMED_SCORE_SHARE * generic.score)
             || name.evidence.beyond_noise() >= NAMED_WHITENED_SHARE * generic.evidence.beyond_noise();
@@ -194,12 +203,15 @@ fn channels<'t>(best: &Scored, passing: impl Iterator<Item = &'t Scored>, reach:
 /// Whether a rival cannot be told apart from the best: by its distance in nats, or because a small lead is not certain from
 /// block to block (Hansen, Lunde and Nason 2011).
 fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
+    /// Lead up to which its scatter from block to block is asked, nats. Chosen by judgement: a larger one is certain at
+    /// once (likelihood ratio of 150; Kass and Raftery 1995 call it very strong).
     const CLOSE_LEAD_NATS: f64 = 5.0;
-    const LEAST_T: f64 = 1.65;
+    /// Mean lead over its standard error, above which it is certain: 95 % one-sided (1.645).
+    const LEAD_T_STATISTIC: f64 = 1.65;
     let distance = best.score - rival.score;
     let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
     let count = leads.len() as f64;
     let mean = leads.iter().sum::<f64>() / count;
     let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    distance < reach || distance < CLOSE_LEAD_NATS && mean < LEAST_T * (variance / count).sqrt()
+    distance < reach || distance < CLOSE_LEAD_NATS && mean < LEAD_T_STATISTIC * (variance / count).sqrt()
 }

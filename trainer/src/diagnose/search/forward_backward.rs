@@ -8,8 +8,9 @@ use crate::diagnose::search::accepted::{Accepted, others};
 use crate::diagnose::search::round::{Round, Scored, score_of};
 use crate::diagnose::search::setup::Search;
 
-/// Terms at most, repeated ones included.
-const MOST_TERMS: usize = 12;
+/// Largest number of terms, repeated ones included: three of each of the four effects that are accepted at most. A
+/// limit of the computing time.
+const LARGEST_TERM_COUNT: usize = 12;
 
 /// What the search found.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ impl<'a> Search<'a> {
         let mut is_reviewed = false;
         loop {
             let (round, table, finding) = self.next_finding(&accepted, &mut null);
-            let is_full = Self::kinds(&accepted) >= self.settings.most_findings || accepted.len() >= MOST_TERMS;
+            let is_full = Self::kinds(&accepted) >= self.settings.most_findings || accepted.len() >= LARGEST_TERM_COUNT;
             if let Some(finding) = finding.filter(|_| !is_full) {
                 accepted.push(finding);
                 continue;

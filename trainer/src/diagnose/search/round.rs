@@ -15,11 +15,14 @@ use crate::numerics::least_squares::{orthonormal, project_out};
 use crate::physics::{EffectId, Shape};
 use rayon::prelude::*;
 
-/// Places that a refinement looks at between two grid points, for each free shape parameter: the null draws stay on the grid.
+/// Shapes that a refinement distinguishes between two points of the grid, for each free shape parameter: their
+/// logarithm is taken off the surprise, as the null draws stay on the grid. Chosen by judgement: steps down to a
+/// hundredth of the grid are tried, but neighbours are one hypothesis; larger loses weak effects.
 const SHAPES_PER_GRID_STEP: f64 = 10.0;
 
-/// Criterion from which a candidate does not belong to the noise that the null draws are made of. With what is less they keep
-/// the chance directions that look best: without those, the noise of slow hypotheses would seem too small.
+/// Criterion above which a candidate does not belong to the noise that the null draws are made of, nats. Chosen by
+/// judgement: with what is less the draws keep the chance directions that look best; lower makes the noise of slow
+/// hypotheses seem too small, higher leaves effects in the noise.
 const CLEAR_CANDIDATE_NATS: f64 = 10.0;
 
 /// A hypothesis with its score in one round.
@@ -56,7 +59,8 @@ pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) 
     }
 }
 
-/// Criterion of a one-off event that counts as certain.
+/// Criterion of a one-off event above which it is weighed as its rivals are, nats. Chosen by judgement: far beyond the
+/// logarithm of the number of windows, some six nats; lower lets an event displace a lasting cause.
 const CERTAIN_EVENT_NATS: f64 = 50.0;
 
 /// Evidence of every variant of every group; `None` where a variant depends on the base.
@@ -200,6 +204,8 @@ impl<'s, 'a> Round<'s, 'a> {
 
     /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
     fn refine_leaders(&self, table: &mut [Scored], alone: &VariantEvidence, rows: f64) {
+        /// Distance to the leading name within which shapes are refined, nats. A limit of the computing time: coarser
+        /// grids lose less.
         const REFINED_WITHIN_NATS: f64 = 15.0;
         let named = table.iter().filter(|s| matches!(s.label, Label::Named(_)));
         let lead = named.map(|s| s.score).fold(f64::NEG_INFINITY, f64::max);
@@ -262,12 +268,13 @@ fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: b
     (white, bench, variants)
 }
 
-/// Nats for each row from which a candidate explains a fifth of all that the base leaves. Slow functions that take up parts of a
-/// one-off event of that size would else leave its edges to the noise.
+/// Criterion for each row above which a candidate is dominant, nats: 1/2 ln(1/(1 - 0.18)), so that it explains a fifth
+/// of what the base leaves. Slow functions that take up parts of a one-off event of that size would else leave its
+/// edges to the noise.
 const DOMINANT_NATS_PER_ROW: f64 = 0.1;
 
-/// Rows for each coefficient of a candidate that noise is judged beside: in fewer, its series take up so much of the slow noise that
-/// whatever is slow seems more than that, unless they are dominant.
+/// Rows for each coefficient of a candidate that the noise is judged beside. Chosen by judgement: in fewer a series
+/// takes up so much of the slow noise that whatever is slow seems more than noise; more leave the effect in the noise.
 const ROWS_PER_COEFFICIENT_BESIDE_NOISE: f64 = 150.0;
 
 /// Unwhitened columns of the two groups whose best variants have the largest criteria, and more than `least` nats; and of a

@@ -30,6 +30,15 @@ pub struct Settings {
     pub seed: u64,
 }
 
+/// Evidence that tells two effects apart, nats: a likelihood ratio of 20, which Kass and Raftery (1995) call strong.
+/// Larger leaves more rivals beside a name, smaller names wrongly more often.
+pub const AMBIGUITY_MARGIN_NATS: f64 = 3.0;
+
+/// Error of a model on other rows than those it was compared on, over its error on those (root mean squares), up to which it is the
+/// same error: other stretches of a recording may suit a formula less. Chosen by judgement: smaller takes the scatter between
+/// stretches for an event or an effect, larger misses an event of half the error.
+pub(crate) const OTHER_ROWS_ERROR_RATIO: f64 = 1.5;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -40,7 +49,7 @@ impl Default for Settings {
             unconfirmed_level: 2e-5,
             unconfirmed_score: 6.0,
             largest_locked_loss: 5.0,
-            ambiguity_margin: 3.0,
+            ambiguity_margin: AMBIGUITY_MARGIN_NATS,
             most_rivals: 12,
             null_draws: 200,
             most_findings: 4,
@@ -49,8 +58,8 @@ impl Default for Settings {
     }
 }
 
-/// Share of the false alarms that is left where the grain of the encoder limits the band: what it adds follows the motion, and
-/// the null draws understate it three to five times.
+/// Family-wise level over the usual one where the quantisation of the encoder limits the band: what it adds follows the
+/// motion, and the null draws understate it three to five times.
 const QUANTISED_LEVEL_RATIO: f64 = 0.25;
 
 impl Settings {

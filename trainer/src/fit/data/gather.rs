@@ -68,7 +68,7 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
     if velocity.iter().all(|v| v.to_bits() == first.to_bits()) {
         return Err(Error::new(
             &codes::NO_MOTION,
-            "the velocity is constant, so friction cannot be told from an offset",
+            "the velocity is constant, so friction cannot be separated from an offset",
         )
         .in_file(label)
         .in_column("velocity")

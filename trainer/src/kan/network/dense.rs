@@ -1,5 +1,7 @@
 //! Cholesky factor of a dense symmetric matrix and what a penalised least squares needs from it.
 
+use crate::numerics::products::interleaved_dot;
+
 /// Lower Cholesky factor, row-major.
 pub(in crate::kan) struct Cholesky {
     size: usize,
@@ -61,19 +63,10 @@ impl Cholesky {
     }
 }
 
-/// Scalar product with a fixed association, wide enough for the compiler to vectorise.
+/// Inner product with eight partial sums, wide enough for every vector unit.
 #[inline]
 pub(in crate::kan) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; 8];
-    let (a_wide, b_wide) = (a.chunks_exact(8), b.chunks_exact(8));
-    let tail: f64 = a_wide.remainder().iter().zip(b_wide.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a_wide.zip(b_wide) {
-        for lane in 0..8 {
-            lanes[lane] += x[lane] * y[lane];
-        }
-    }
-    let [a, b, c, d, e, f, g, h] = lanes;
-    ((a + b) + (c + d)) + ((e + f) + (g + h)) + tail
+    interleaved_dot::<8>(a, b)
 }
 
 #[cfg(test)]

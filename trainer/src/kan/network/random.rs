@@ -1,7 +1,8 @@
 //! Random numbers whose mapping from the generator's bits is our own, so that a seed means one result for good.
 
+use crate::numerics::random::uniform;
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 
 /// A stream of uniform and normal numbers for one (seed, stream) pair.
 #[derive(Clone, Debug)]
@@ -17,7 +18,7 @@ impl Random {
 
     /// Uniform in `[0, 1)`, 53 random bits.
     pub fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        uniform(&mut self.0)
     }
 
     /// Uniform in `[low, high)`.

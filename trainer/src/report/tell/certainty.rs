@@ -28,14 +28,15 @@ fn probability(found: &Finding) -> String {
 fn channels(found: &Finding) -> Option<String> {
     let (first, rest) = found.channels.split_first()?;
     let rest: Vec<&str> = rest.iter().map(|channel| channel.plain_name()).collect();
-    (!rest.is_empty()).then(|| format!("It may hang on {} as well as on {}.", rest.join(" or "), first.plain_name()))
+    (!rest.is_empty()).then(|| format!("It may depend on {} instead of {}.", rest.join(" or "), first.plain_name()))
 }
 
 fn nearest(found: &Finding) -> Option<String> {
     let (effect, share) = found.nearest?;
     let is_told = found.alternatives.iter().any(|(alternative, _)| *alternative == effect);
-    (!is_told)
-        .then(|| format!("Of what has a name, {} comes nearest: {} of its energy.", plain_name(effect), percent(share)))
+    (!is_told).then(|| {
+        format!("The closest named effect, {}, explains {} of its energy.", plain_name(effect), percent(share))
+    })
 }
 
 fn percent(share: f64) -> String {

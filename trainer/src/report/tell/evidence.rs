@@ -1,6 +1,7 @@
 //! What speaks for a finding, what would separate it from its rivals, and its parameters with their units.
 
-use crate::diagnose::advice::{Plan, TOLD_APART_NATS};
+use crate::diagnose::AMBIGUITY_MARGIN_NATS;
+use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::figures::{digits, pair};
@@ -74,15 +75,19 @@ pub fn planned_motion(plan: &Plan) -> String {
     let (expected, present) = (plan.expected_nats, plan.present_nats);
     if !plan.suffices() {
         return format!(
-            "no motion within the limits tells {pairs}: the best of them, {seconds:.0} s of {words}, promises \
-             {expected:.1} nats, where {TOLD_APART_NATS} are needed"
+            "no motion within the limits distinguishes {pairs}: the best of them, {seconds:.0} s of {words}, has an expected \
+             margin of {expected:.1} nats, {AMBIGUITY_MARGIN_NATS} are required"
         );
     }
-    let told = format!(
-        "{seconds:.0} s of {words}, recorded next, would tell {pairs}: expected margin {expected:.1} nats, where \
-         {TOLD_APART_NATS} suffice and this recording holds {present:.1}"
+    let sentence = format!(
+        "{seconds:.0} s of {words}, recorded next, would distinguish {pairs}: expected margin {expected:.1} nats, \
+         {AMBIGUITY_MARGIN_NATS} are required and this recording has {present:.1}"
     );
-    if plan.left_open.is_empty() { told } else { format!("{told}; it cannot tell {}", text(&plan.left_open)) }
+    if plan.left_open.is_empty() {
+        sentence
+    } else {
+        format!("{sentence}; it does not distinguish {}", text(&plan.left_open))
+    }
 }
 
 /// A parameter with its unit.

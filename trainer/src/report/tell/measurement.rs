@@ -40,12 +40,12 @@ pub fn observation(seen: &Observation, units: Units) -> String {
             format!("the torque is recorded in steps of {}, coarser than its own noise", torque(*step))
         }
         Observation::CoarsePosition { step, cut_off_hz } => format!(
-            "the position is recorded in steps of {}: its grain drowns everything above {cut_off_hz} Hz",
+            "the position is recorded in steps of {}: its quantisation noise masks everything above {cut_off_hz} Hz",
             quantity(*step, if units.rotary { "rad" } else { "m" })
         ),
         Observation::SamplingJitter { deviation_s, period_s } => format!(
-            "the position is rough in proportion to the speed, as if the instants of its samples scattered by {} ({} samples), \
-             which the clock does not show: what is derived from it is as wrong",
+            "the error of the position grows with the speed, as by a sampling jitter of {} ({} samples) that the time column does \
+             not show: its derivatives have the same error",
             quantity(*deviation_s, "s"),
             digits(deviation_s / period_s)
         ),
@@ -81,7 +81,7 @@ pub fn observation(seen: &Observation, units: Units) -> String {
             )
         }
         Observation::LockedEvent { when_s: [from, to], rms } => format!(
-            "between {} and {} s the model is wrong by {} (root mean square), which nothing in the other rows is like",
+            "between {} and {} s the model's error is {} (root mean square), unlike that of all other rows",
             digits(*from),
             digits(*to),
             torque(*rms)

@@ -19,13 +19,16 @@ use crate::report::tell::certainty::certainty;
 use evidence::{parameter, parameters, sealed_sentence};
 use measurement::observation;
 
-/// Quantile of the effect's torque that "up to" stands for.
-const UP_TO: f64 = 0.98;
-/// Share of the torque that has to point one way before a sentence says "more" or "less".
-const ONE_WAY: f64 = 0.5;
+/// Quantile of the effect's torque that a sentence states as its largest. Chosen by judgement: the largest value itself may be
+/// that of a single sample.
+const LARGEST_TORQUE_QUANTILE: f64 = 0.98;
+/// Share (0..1) of an effect's torque in one direction, above which a sentence says so. Chosen by judgement: three quarters against
+/// one quarter; lower calls a ripple a direction.
+const ONE_DIRECTION_SHARE: f64 = 0.5;
 
-/// Error of a given model over that after a refit of its parameters from which the change is told.
-const TELLING_CHANGE: f64 = 1.05;
+/// Error of a given model over that after a refit of its parameters, above which the change is stated. Chosen by judgement: a refit
+/// gains some per cent by noise.
+const LEAST_CHANGE_RATIO: f64 = 1.05;
 
 /// Everything there is to say, in the order in which it should be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -89,7 +92,7 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
     let noise = quantity(diagnosis.noise_rmse, units.actuator);
     match diagnosis.verdict {
         Verdict::Consistent => {
-            let beside = if diagnosis.doubtful.is_empty() { "" } else { " or the error of its law" };
+            let beside = if diagnosis.discarded.doubtful.is_empty() { "" } else { " or the error of its law" };
             format!(
                 "Nothing is missing that this recording could show: what the model leaves, {noise}, is noise{beside}."
             )
@@ -103,7 +106,7 @@ fn headline(diagnosis: &Diagnosis, units: Units) -> String {
             )
         }
         Verdict::Unexplained => format!(
-            "Something structured is missing that the catalogue does not hold: the model's error is {} (root mean square), and \
+            "A structure is missing that no effect of the catalogue explains: the model's error is {} (root mean square), and \
              noise alone would leave {noise}.",
             quantity(diagnosis.baseline.rmse, units.actuator)
         ),
@@ -128,7 +131,7 @@ fn given(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
         sentences.push(format!("Found in the simulation itself, and so not missing from it: {}.", names.join(", ")));
     }
     let (as_given, refitted) = (given.score.rmse, diagnosis.baseline.rmse);
-    if as_given > TELLING_CHANGE * refitted {
+    if as_given > LEAST_CHANGE_RATIO * refitted {
         let [as_given, refitted] = [as_given, refitted].map(|rmse| quantity(rmse, units.actuator));
         let changes: Vec<String> = parameters(&diagnosis.base_parameters, units).iter().filter_map(change).collect();
         let changes = if changes.is_empty() { String::new() } else { format!(": {}", changes.join(", ")) };
@@ -159,9 +162,9 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
         let name = capital(plain_name(found.effect));
         return format!("{name}{}. {}{}", figures(found, units), certainty(found), action(found));
     }
-    let telling = found.location.named();
-    let place = telling.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
-    let amount = amount(diagnosis, index, telling, units);
+    let region = found.location.named();
+    let place = region.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
+    let amount = amount(diagnosis, index, region, units);
     let name = match found.effect {
         EffectId::Unknown => format!("{} ({})", plain_name(found.effect), found.equation),
         effect => plain_name(effect).to_string(),
@@ -211,14 +214,15 @@ fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: U
     let inside: Vec<usize> = (0..effect.len()).filter(is_inside).collect();
     let mut sizes: Vec<f64> = inside.iter().map(|&i| effect[i].abs()).collect();
     sizes.sort_unstable_by(f64::total_cmp);
-    let largest = sizes.get(((sizes.len().max(1) - 1) as f64 * UP_TO).round() as usize).copied().unwrap_or(0.0);
+    let largest =
+        sizes.get(((sizes.len().max(1) - 1) as f64 * LARGEST_TORQUE_QUANTILE).round() as usize).copied().unwrap_or(0.0);
     let total: f64 = sizes.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let along: f64 = inside.iter().map(|&i| effect[i] * traces.velocity[i].signum()).sum::<f64>() / total;
     let upward: f64 = inside.iter().map(|&i| effect[i]).sum::<f64>() / total;
     let size = quantity(largest, units.actuator);
-    if along.abs() > ONE_WAY && along.abs() >= upward.abs() {
+    if along.abs() > ONE_DIRECTION_SHARE && along.abs() >= upward.abs() {
         format!("the real joint needs up to {size} {}", if along > 0.0 { "more" } else { "less" })
-    } else if upward.abs() > ONE_WAY {
+    } else if upward.abs() > ONE_DIRECTION_SHARE {
         let direction = if upward > 0.0 { "positive" } else { "negative" };
         format!("the real joint needs up to {size} more in the {direction} direction")
     } else {
@@ -228,13 +232,13 @@ fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: U
 
 /// The parameters that say most, at most two.
 fn figures(found: &Finding, units: Units) -> String {
-    let told: Vec<String> =
-        telling_parameters(found).into_iter().map(|estimate| figure(&parameter(estimate, units))).collect();
-    if told.is_empty() { String::new() } else { format!(", {}", told.join(", ")) }
+    let stated: Vec<String> =
+        main_parameters(found).into_iter().map(|estimate| figure(&parameter(estimate, units))).collect();
+    if stated.is_empty() { String::new() } else { format!(", {}", stated.join(", ")) }
 }
 
 /// Shapes say more than amplitudes, which the sentence has given already.
-fn telling_parameters(found: &Finding) -> Vec<&Estimate> {
+fn main_parameters(found: &Finding) -> Vec<&Estimate> {
     let linear = found.fitted.coefficients.len().min(found.parameters.len());
     let (amplitudes, shapes) = found.parameters.split_at(linear);
     // Which joint it is says nothing of how much.
@@ -259,7 +263,7 @@ fn action(found: &Finding) -> &'static str {
         Action::Parameter => " A parameter of the model is to be corrected.",
         Action::Measurement => " The measurement is to be repaired, not compensated.",
         Action::Maintenance if found.effect == EffectId::Unknown => " It is not compensated.",
-        Action::Maintenance => " Have the joint looked at; it is not compensated.",
+        Action::Maintenance => " The joint is to be inspected; it is not compensated.",
     }
 }
 
@@ -289,23 +293,24 @@ fn minor(diagnosis: &Diagnosis) -> Option<String> {
         let percent = if percent < 0.1 { "under 0.1".to_string() } else { format!("{percent:.1}") };
         format!("{} ({percent} % of the removable error)", plain_name(*effect))
     };
-    let names: Vec<String> = diagnosis.minor.iter().map(named).collect();
-    (!names.is_empty()).then(|| format!("Found beside it and small, and so not modelled: {}.", names.join(", ")))
+    let names: Vec<String> = diagnosis.discarded.minor.iter().map(named).collect();
+    (!names.is_empty()).then(|| format!("Minor beside it, and not modelled: {}.", names.join(", ")))
 }
 
 fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {
-    (!diagnosis.doubtful.is_empty()).then(|| {
+    (!diagnosis.discarded.doubtful.is_empty()).then(|| {
         format!(
             "No larger than the errors of the law that was learned from the simulation, and so not taken for physics: {}. \
-             A simulation of the whole recorded motion would tell.",
-            explaining(&diagnosis.doubtful, units)
+             A simulation of the whole recorded motion would decide.",
+            explaining(&diagnosis.discarded.doubtful, units)
         )
     })
 }
 
 fn negligible(diagnosis: &Diagnosis, units: Units) -> Option<String> {
-    (!diagnosis.negligible.is_empty())
-        .then(|| format!("Too small to matter, and not modelled: {}.", explaining(&diagnosis.negligible, units)))
+    (!diagnosis.discarded.negligible.is_empty()).then(|| {
+        format!("Below the least effect, and not modelled: {}.", explaining(&diagnosis.discarded.negligible, units))
+    })
 }
 
 /// Effects with the root mean square of what each explains.
@@ -317,7 +322,7 @@ fn explaining(effects: &[(EffectId, f64)], units: Units) -> String {
 }
 
 fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
-    let names: Vec<&str> = diagnosis.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
+    let names: Vec<&str> = diagnosis.discarded.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
     (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
 }
 
@@ -325,10 +330,10 @@ fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
 fn limits(diagnosis: &Diagnosis, units: Units) -> Option<String> {
     let mut limits: Vec<_> = diagnosis.limits.iter().collect();
     limits.sort_by(|a, b| a.torque_rms.total_cmp(&b.torque_rms));
-    let told: Vec<String> = limits
+    let stated: Vec<String> = limits
         .iter()
         .take(3)
         .map(|limit| format!("{} above {}", plain_name(limit.effect), quantity(limit.torque_rms, units.actuator)))
         .collect();
-    (!told.is_empty()).then(|| format!("Detection limits (root mean square): {}.", told.join(", ")))
+    (!stated.is_empty()).then(|| format!("Detection limits (root mean square): {}.", stated.join(", ")))
 }

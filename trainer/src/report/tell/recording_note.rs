@@ -77,7 +77,7 @@ fn fault(fault: &Fault, name: &str, units: Units) -> String {
                 Contradiction::Scaled(factor) => format!("is {} times the derivative of the position", digits(*factor)),
                 Contradiction::Unrelated(correlation) => {
                     format!(
-                        "has little to do with the derivative of the position (correlation {})",
+                        "hardly correlates with the derivative of the position (correlation {})",
                         digits(*correlation)
                     )
                 }
@@ -85,7 +85,7 @@ fn fault(fault: &Fault, name: &str, units: Units) -> String {
             format!("the recorded velocity {how}: it was left out and the position differentiated")
         }
         Fault::OneDirection => {
-            format!("the joint moves in one direction only: friction cannot be told from an offset of the {name}")
+            format!("the joint moves in one direction only: friction cannot be separated from an offset of the {name}")
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::proof::discarded::Discarded;
 use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::proof::refit::Refit;
 use crate::physics::Dimension;
@@ -68,10 +69,12 @@ fn diagnosis(found: Finding) -> Diagnosis {
         verdict: Verdict::MissingPhysics,
         health: Vec::new(),
         findings: vec![found],
-        minor: vec![(EffectId::Presliding, 0.042)],
-        doubtful: vec![(EffectId::TransientEvent, 0.02)],
-        negligible: vec![(EffectId::Elasticity, 0.003)],
-        withdrawn: vec![EffectId::Spring],
+        discarded: Discarded {
+            minor: vec![(EffectId::Presliding, 0.042)],
+            doubtful: vec![(EffectId::TransientEvent, 0.02)],
+            negligible: vec![(EffectId::Elasticity, 0.003)],
+            withdrawn: vec![EffectId::Spring],
+        },
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
         lock: Lock::Spread,
@@ -120,7 +123,7 @@ fn a_finding_reads_as_a_sentence() {
     );
     let doubtful = story.doubtful.unwrap();
     assert!(doubtful.contains("not taken for physics: one-off event (0.02 N m)."), "{doubtful}");
-    assert_eq!(story.negligible.unwrap(), "Too small to matter, and not modelled: elastic transmission (3 mN m).");
+    assert_eq!(story.negligible.unwrap(), "Below the least effect, and not modelled: elastic transmission (3 mN m).");
     assert!(story.withdrawn.unwrap().contains("spring"));
     assert!(story.minor.unwrap().contains("4.2 %"));
 }
@@ -170,7 +173,7 @@ fn channels_that_cannot_be_told_apart_are_said() {
     let channels = vec![Channel::Load, Channel::Position, Channel::TimeSinceReversal];
     let unknown = Finding { effect: EffectId::Unknown, channels, ..presliding("load", 1.0, 2.0) };
     let sentence = finding(&diagnosis(unknown), 0, ROTARY);
-    let expected = "It may hang on position or the time since the last reversal as well as on load.";
+    let expected = "It may depend on position or the time since the last reversal instead of load.";
     assert!(sentence.contains(expected), "{sentence}");
 }
 

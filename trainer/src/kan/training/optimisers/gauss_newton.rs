@@ -3,6 +3,7 @@
 //! The output is linear in the last layer and in the linear columns: for these a step is their exact least-squares
 //! solution, so that the joint step includes what variable projection would do for them.
 
+use crate::numerics::products::norm;
 use std::ops::Range;
 
 use crate::kan::network::dense::Cholesky;
@@ -179,8 +180,4 @@ pub(in crate::kan) fn ridge_of(normal: &NormalEquations) -> f64 {
 fn mean_diagonal(normal: &NormalEquations) -> f64 {
     let sum: f64 = (0..normal.size).map(|i| normal.matrix[i * normal.size + i]).sum();
     sum / normal.size.max(1) as f64
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|v| v * v).sum::<f64>().sqrt()
 }

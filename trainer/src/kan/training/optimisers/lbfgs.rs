@@ -1,5 +1,6 @@
 //! Limited-memory BFGS (Liu and Nocedal, 1989) with a line search that always ends.
 
+use crate::kan::network::dense::dot;
 use std::collections::VecDeque;
 
 /// Pairs of step and gradient change that are remembered.
@@ -135,10 +136,6 @@ fn search(
         length = if high.is_finite() { 0.5 * (low + high) } else { 2.0 * length };
     }
     best
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    crate::kan::network::dense::dot(a, b)
 }
 
 fn norm(a: &[f64]) -> f64 {
