@@ -28,6 +28,9 @@ class Pair:
     noise: float  # of the recorded torque, N m or N
     linear: bool = False
     columns: tuple = field(default=("qpos", "qvel", "torque"))
+    # What an actuator of the simulator can have of the truth beside, and the attributes of the joint that it replaces.
+    actuator: str = ""
+    beside_actuator: dict = field(default_factory=dict)
 
 
 def reference(pair, seed, t):
@@ -69,9 +72,14 @@ def real(pair, seed, seconds):
     return simulate(pair, bare, seed, seconds, pair.friction)
 
 
-def with_attributes(pair, attributes):
-    """The simulation with other attributes of its joint."""
-    spec = mujoco.MjSpec.from_string(pair.model)
+def best(pair):
+    """The simulation with all of the truth that the simulator can have."""
+    return with_attributes(pair, {**pair.truth, **pair.beside_actuator}, pair.actuator)
+
+
+def with_attributes(pair, attributes, actuator=""):
+    """The simulation with other attributes of its joint, and one more actuator."""
+    spec = mujoco.MjSpec.from_string(pair.model.replace("</actuator>", actuator + "</actuator>"))
     for name, value in attributes.items():
         joint = spec.joint(pair.joint)
         setattr(joint, name, value if np.isscalar(getattr(joint, name)) else np.resize([value, 0.0, 0.0], len(getattr(joint, name))))
@@ -147,18 +155,25 @@ ELBOW = Pair(
     gains=(200.0, 15.0),
     amplitudes=(0.8, 0.3, 0.08),
     noise=0.05,
+    # LuGre bristles of 0.2 rad a time step on 0.5 kg m2, half critically damped; Coulomb, static friction, Stribeck velocity.
+    actuator='<dcmotor joint="elbow" input="none" motorconst="0" resistance="1" lugre="20000 100 2 3 0.1"/>',
+    beside_actuator={"frictionloss": 0.0},
 )
 
 # Ripple every 20 mm, the pitch of a screw.
+RIPPLE, ORDER, PHASE = 4.0, 2 * math.pi * 50.0, 0.7
+
 AXIS = Pair(
     name="axis",
     model=axis_model(),
     joint="slide",
     truth={"armature": 5.0, "frictionloss": 35.0, "damping": 90.0},
-    friction=lambda q, v: AXIS_FRICTION(v) + 4.0 * math.sin(2 * math.pi * 50.0 * q + 0.7),
+    friction=lambda q, v: AXIS_FRICTION(v) + RIPPLE * math.sin(ORDER * q + PHASE),
     gains=(40000.0, 1500.0),
     amplitudes=(0.15, 0.06, 0.012),
     noise=0.5,
+    # What the joint resists the motor gives, half a period later; a gear turns a period into a radian.
+    actuator=f'<dcmotor joint="slide" input="none" motorconst="0" resistance="1" gear="{ORDER}" cogging="{RIPPLE / ORDER} 1 {PHASE + math.pi}"/>',
     linear=True,
 )
 
