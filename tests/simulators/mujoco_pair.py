@@ -10,7 +10,7 @@ from pathlib import Path
 
 import mujoco
 
-from joints import PAIRS, errors, real, simulate, with_attributes, write
+from joints import PAIRS, best, errors, real, simulate, with_attributes, write
 
 SECONDS = 60
 FRESH_SECONDS = 20
@@ -36,7 +36,8 @@ def log(pair, folder):
 
 def compare(pair, models):
     fresh = real(pair, 2, FRESH_SECONDS)
-    result = {"true_parameters": errors(fresh, simulate(pair, with_attributes(pair, pair.truth), 2, FRESH_SECONDS))}
+    references = {"true_attributes": with_attributes(pair, pair.truth), "true_model": best(pair)}
+    result = {name: errors(fresh, simulate(pair, model, 2, FRESH_SECONDS)) for name, model in references.items()}
     for path in models:
         model = mujoco.MjModel.from_xml_path(str(path))
         result[path.name] = errors(fresh, simulate(pair, model, 2, FRESH_SECONDS))

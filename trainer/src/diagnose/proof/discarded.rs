@@ -182,7 +182,7 @@ fn energy_left(workbench: &Workbench, accepted: &[Accepted]) -> Option<f64> {
 }
 
 /// Sets aside what accounts for little of the torque and of the mismatch beside a larger finding: there the
-/// error of the larger one's formula may pass for an effect. Effects that repeat count together.
+/// error of the larger one's formula may pass for an effect, which that of a parameter alone has not. Effects that repeat count together.
 pub(crate) fn set_aside_minor(
     workbench: &Workbench,
     accepted: &mut Vec<Accepted>,
@@ -201,13 +201,17 @@ pub(crate) fn set_aside_minor(
                 .zip(energy_left(workbench, &with))
                 .map(|(without, with)| (effect, (without - with) / removable))
         };
+        let is_beside_a_formula = |effect: EffectId| {
+            let mut others = accepted.iter().map(Accepted::effect).filter(|other| *other != effect);
+            others.any(|other| other.action() != Action::Parameter)
+        };
         let is_minor = |(effect, share): &(EffectId, f64)| {
             let is_little = |least: f64| *share < least && share * removable < small_energy;
             match effect {
                 // A one-off event is short: its share of all says nothing of its size.
                 EffectId::TransientEvent => share_at_the_time_of_events(workbench, &refitted) < MINOR_SHARE,
                 EffectId::Unknown => is_little(UNNAMED_MINOR_SHARE),
-                _ => is_little(MINOR_SHARE),
+                _ => is_little(MINOR_SHARE) && is_beside_a_formula(*effect),
             }
         };
         let small: Vec<_> = accepted.iter().map(Accepted::effect).filter_map(share).filter(is_minor).collect();

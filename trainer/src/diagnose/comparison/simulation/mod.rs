@@ -2,6 +2,7 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 mod curvature_prior;
+mod relaxation;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
@@ -17,6 +18,7 @@ use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState};
 use curvature_prior::CurvaturePrior;
+use relaxation::relaxation_time;
 use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
@@ -51,6 +53,10 @@ pub enum Unlearnable {
 pub struct InverseLaw {
     sign_velocity: f64,
     top_speed: f64,
+    /// Speed that the joint passes within a sample where it turns round: no row tells friction below it.
+    resolved_speed: f64,
+    /// Time by which friction turns over before the velocity, s; `None` where it does not.
+    relaxation_s: Option<f64>,
     gravity: bool,
     given: bool,
     /// Hats over speed.
@@ -97,26 +103,25 @@ fn learn_with(
     if rows < LEAST_ROWS {
         return Err(Unlearnable::Rest { rows });
     }
-    let gravity = state.rotary && state.span() > GRAVITY_TRAVEL_RAD;
-    let laws: Vec<(InverseLaw, Vec<f64>)> = KNOTS
-        .into_iter()
-        .filter_map(|knots| {
-            let law = InverseLaw {
-                sign_velocity: state.sign_velocity,
-                top_speed: state.top_speed(),
-                knots,
-                gravity,
-                given,
-                simulated: simulated.clone(),
-                coefficients: Vec::new(),
-                uncertainty: Vec::new(),
-                replay: None,
-                formula_error: 0.0,
-                rmse: 0.0,
-            };
-            law.fitted(prepared)
-        })
-        .collect();
+    let mut unfitted = InverseLaw {
+        sign_velocity: state.sign_velocity,
+        top_speed: state.top_speed(),
+        resolved_speed: state.resolved_speed(),
+        relaxation_s: None,
+        knots: KNOTS[KNOTS.len() - 1],
+        gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
+        given,
+        simulated,
+        coefficients: Vec::new(),
+        uncertainty: Vec::new(),
+        replay: None,
+        formula_error: 0.0,
+        rmse: 0.0,
+    };
+    let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
+    unfitted.relaxation_s = relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque));
+    let laws: Vec<(InverseLaw, Vec<f64>)> =
+        KNOTS.into_iter().filter_map(|knots| InverseLaw { knots, ..unfitted.clone() }.fitted(prepared)).collect();
     // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
     let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
     let runs = prepared.open_runs();
@@ -132,18 +137,25 @@ fn learn_with(
     Ok(law)
 }
 
-fn filtered_with_nuisances(prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    prepared.filtered_all(raw).into_iter().chain(nuisances(prepared)).collect()
-}
-
 impl InverseLaw {
-    /// The law with its coefficients, and what it leaves. Differentiation bias and the sampling's delay are fitted beside it and
-    /// left out.
+    /// Columns of the law behind the filter, then what is fitted beside it and left out: differentiation bias and the relaxation of
+    /// the simulator's constraints.
+    fn with_nuisances(&self, prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let relaxation = self.relaxation_column(&prepared.state).map(|column| prepared.filtered(&column));
+        prepared.filtered_all(raw).into_iter().chain(nuisances(prepared)).chain(relaxation).collect()
+    }
+
+    /// Torque, for each unit of Coulomb friction, by which the simulator turns it over before the velocity.
+    fn relaxation_column(&self, state: &JointState) -> Option<Vec<f64>> {
+        self.relaxation_s.map(|time| relaxation::column(state, self.sign_velocity, time))
+    }
+
+    /// The law with its coefficients, and what it leaves. The sampling's delay is fitted beside it and left out.
     fn fitted(mut self, prepared: &Prepared) -> Option<(Self, Vec<f64>)> {
         let state = &prepared.state;
         let raw = self.columns(state);
         let target = prepared.filtered(&prepared.torque);
-        let mut columns = filtered_with_nuisances(prepared, &raw);
+        let mut columns = self.with_nuisances(prepared, &raw);
         let roughly = least_squares(&columns, &target, &prepared.open_runs())?;
         let noise = root_mean_square(&residual(&columns, &target, &roughly));
         let bends = CurvaturePrior::of(&roughly[..self.knots]);
@@ -167,7 +179,7 @@ impl InverseLaw {
     /// covariance. `rest` is what the law leaves, `noise` its model. Empty where nothing is known of it.
     fn uncertain_directions(&self, prepared: &Prepared, rest: &[f64], noise: &Noise) -> Vec<Vec<f64>> {
         let mut runs = prepared.open_runs();
-        let columns = filtered_with_nuisances(prepared, &self.columns(&prepared.state));
+        let columns = self.with_nuisances(prepared, &self.columns(&prepared.state));
         let mut columns: Vec<Vec<f64>> = columns.iter().map(|column| noise.whitened(column, &runs)).collect();
         let mut rest = noise.whitened(rest, &runs);
         runs.push(CurvaturePrior::of(&self.coefficients[..self.knots]).put_behind(&mut columns, &mut rest, 1.0));
@@ -180,9 +192,10 @@ impl InverseLaw {
     }
 
     /// Friction columns at one velocity with its smoothed sign: odd hats over speed, dense at low speed where friction
-    /// bends, and Coulomb and viscous friction that differ between the directions.
+    /// bends and held where nothing is resolved, and Coulomb and viscous friction that differ between the directions.
     fn friction_columns(&self, velocity: f64, sign: f64) -> impl Iterator<Item = f64> {
-        let hats = speed_hats(velocity.abs() / self.top_speed.max(f64::MIN_POSITIVE), self.knots);
+        let speed = velocity.abs().max(self.resolved_speed);
+        let hats = speed_hats(speed / self.top_speed.max(f64::MIN_POSITIVE), self.knots);
         hats.map(move |hat| hat * sign).chain([sign.abs(), velocity.abs()])
     }
 

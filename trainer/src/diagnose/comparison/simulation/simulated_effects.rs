@@ -56,7 +56,9 @@ pub(crate) fn simulated_effects(
     let mut signals = simulation.clone();
     add_noise(&mut signals, ADDED_NOISE_SHARE * noise);
     let state = signals.states();
-    let jacobian = law.columns(&state).into_iter().map(|column| ("model_parameter", column)).collect();
+    // What a solver of constraints does near rest is no effect.
+    let columns = law.columns(&state).into_iter().chain(law.relaxation_column(&state));
+    let jacobian = columns.map(|column| ("model_parameter", column)).collect();
     let comparison = Comparison::with(signals, Reference { jacobian, uncertainty: Vec::new(), ..law.at(&state) });
     let found = find_effects(&comparison).into_iter().filter_map(|found| match found.label {
         Label::Named(effect) if belongs_to_the_state(effect) => {

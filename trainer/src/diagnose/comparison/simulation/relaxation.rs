@@ -1,0 +1,85 @@
+//! Coulomb friction as solvers of constraints have it: near rest it turns over before the velocity does.
+//!
+//! A constraint opposes the velocity that the joint is about to have, so that its friction has the sign of `v + t_r a`. MuJoCo's
+//! `frictionloss` asks for the acceleration `-b v` with `b = 2 / (dmax timeconst)` of `solref` and `solimp` (MuJoCo documentation,
+//! "Computation", solver parameters), which is `t_r = 1 / b`, 9.5 ms by default; constraints of velocities at the end of a step have the step.
+
+use crate::diagnose::preparation::states::Prepared;
+use crate::numerics::least_squares::{dot, least_squares, residual};
+use crate::numerics::pattern_search::{Movable, climb};
+use crate::physics::JointState;
+
+/// Relaxation times that are tried, s: from a short step of a simulation to a soft constraint; each is twice the one before.
+const TRIED_S: [f64; 8] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064];
+
+/// Least share of what a law leaves otherwise that a relaxation has to explain: most of what a solver gets wrong near rest, where
+/// elasticity and memories of another kind leave more.
+const LEAST_EXPLAINED_SHARE: f64 = 0.3;
+
+/// Torque that a relaxation time adds for each unit of Coulomb friction.
+pub(crate) fn column(state: &JointState, sign_velocity: f64, relaxation_s: f64) -> Vec<f64> {
+    let next = state.map(|i| state.velocity[i] + relaxation_s * state.acceleration[i]);
+    let [now, next] = [&state.velocity, &next].map(|velocity| state.averaged_sign(velocity, sign_velocity));
+    state.map(|i| next[i] - now[i])
+}
+
+/// Relaxation time of a simulation's friction beside filtered columns of its law, s; `None` where friction turns over with the velocity
+/// or after it.
+pub(crate) fn relaxation_time(prepared: &Prepared, columns: &[Vec<f64>], target: &[f64]) -> Option<f64> {
+    let (state, runs) = (&prepared.state, prepared.open_runs());
+    let left = |columns: &[Vec<f64>]| {
+        let coefficients = least_squares(columns, target, &runs)?;
+        let rest = residual(columns, target, &coefficients);
+        Some((dot(&rest, &rest, &runs), *coefficients.last()?))
+    };
+    let (without, _) = left(columns)?;
+    let with = |relaxation_s: f64| {
+        let added = prepared.filtered(&column(state, state.sign_velocity, relaxation_s));
+        // Friction that turns over after the velocity is memory of the joint.
+        left(&[columns, &[added]].concat()).map_or(without, |(left, torque)| if torque > 0.0 { left } else { without })
+    };
+    let tried = TRIED_S.map(|time| (time, with(time)));
+    let (nearest, _) = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let free = Movable { index: 0, step: 0.2, low: TRIED_S[0].ln(), high: TRIED_S[7].ln() };
+    let time = climb(&[nearest.ln()], &[free], |time| Some(-with(time[0].exp())))[0].exp();
+    (with(time) < (1.0 - LEAST_EXPLAINED_SHARE) * without).then_some(time)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnose::comparison::simulation::learn;
+    use crate::diagnose::measurement::signals::Signals;
+
+    /// 0.4 kg m2 with Coulomb friction of 2 N m that turns over `ahead` seconds before the velocity, logged every 4 ms.
+    fn moving(ahead: f64) -> Signals {
+        let time: Vec<f64> = (0..10_000).map(|i| 0.004 * f64::from(i)).collect();
+        let swing = |t: f64| [(0.8, 1.3), (0.3, 4.1), (0.08, 10.7)].map(|(a, w): (f64, f64)| (a, w, w * t));
+        let sum = |t: f64, f: fn((f64, f64, f64)) -> f64| -> f64 { swing(t).into_iter().map(f).sum() };
+        let velocity = |t: f64| sum(t, |(a, w, x)| a * w * x.cos());
+        let acceleration = |t: f64| sum(t, |(a, w, x)| -a * w * w * x.sin());
+        let dry = |t: f64| 2.0 * ((velocity(t) + ahead * acceleration(t)) / 0.001).tanh();
+        let torque = time.iter().map(|t| 0.4 * acceleration(*t) + dry(*t) + 0.5 * velocity(*t)).collect();
+        let position = time.iter().map(|t| sum(*t, |(a, _, x)| a * x.sin())).collect();
+        Signals::without_gap(0.004, time, position, torque)
+    }
+
+    #[test]
+    fn the_relaxation_of_a_soft_constraint_is_found_and_stays_out_of_the_law() {
+        for ahead in [0.003, 0.0095, 0.03] {
+            let law = learn(&moving(ahead), &moving(0.0), &|_| Vec::new()).unwrap();
+            let found = law.relaxation_s.unwrap();
+            assert!((found / ahead - 1.0).abs() < 0.2, "{found} for {ahead}");
+            for speed in [0.001, 0.01, 0.05, 0.2] {
+                let friction = law.friction(speed) - 0.5 * speed;
+                assert!((friction - 2.0 * (speed / law.sign_velocity).tanh()).abs() < 0.25, "{friction} at {speed}");
+            }
+        }
+    }
+
+    #[test]
+    fn friction_that_turns_over_with_the_velocity_or_after_it_has_none() {
+        for ahead in [0.0, -0.0095] {
+            assert_eq!(learn(&moving(ahead), &moving(0.0), &|_| Vec::new()).unwrap().relaxation_s, None, "{ahead}");
+        }
+    }
+}
