@@ -8,6 +8,7 @@ pub mod flashing;
 pub mod hex;
 pub mod readable;
 pub mod simulator;
+pub mod terms;
 pub mod uf2;
 
 use frikan_shared::image::{Image, image_crc32};
