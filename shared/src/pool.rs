@@ -9,6 +9,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::table::Cell;
 
+/// Cells for which the documented drives have room: what their firmware decodes images with.
+pub const DRIVE_CELLS: usize = 128;
+
 /// Room for `CELLS` cells, of which the first ones are used. A power of two is best: [`Pool::at`] is then one mask.
 ///
 /// The length comes first in memory: loads with an offset are the shorter ones.

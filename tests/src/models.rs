@@ -14,7 +14,7 @@ pub use effects::{by_velocity, every_effect, table_with_presliding, with_effects
 pub use network::{network, network_1_5_1, network_three_inputs, network_two_inputs};
 
 /// Cells of the firmware's models.
-pub const CELLS: usize = 128;
+pub const CELLS: usize = frikan_runtime::shared::pool::DRIVE_CELLS;
 
 /// A model of the firmware's size.
 pub type TestModel = Model<CELLS>;

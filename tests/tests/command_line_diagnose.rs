@@ -210,7 +210,7 @@ fn what_a_simulator_holds_too_much_of_is_said_and_its_effects_reach_the_image() 
     assert_eq!(same.status, 0, "{}", same.output);
     assert!(same.output.contains("Found in the simulation itself, and so not missing from it: presliding"));
     let shown = run(at, &["show", "same.frk"]);
-    assert!(shown.output.contains("Presliding"), "{}", shown.output);
+    assert!(shown.output.contains("effect      presliding: sum of torque_i"), "{}", shown.output);
     let stronger = diagnose(at, "real.csv --simulation stronger.csv --json -");
     let json: Value = serde_json::from_str(&stronger.output).unwrap();
     assert_eq!(json["given"]["holds"][0], "presliding");

@@ -4,6 +4,7 @@ use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_tests::concealed::{Case, Concealed, Hidden, conceal, signals};
 use frikan_trainer::compile::improved::{Origin, improve};
+use frikan_trainer::compile::profile::Profile;
 use frikan_trainer::diagnose::{BaseKind, Comparison, Lock, Options, diagnose, model};
 use frikan_trainer::plant::NoiseKind;
 
@@ -45,7 +46,7 @@ fn left(effect: &'static str, lambda: f64) -> Left {
     }
     let diagnosis = diagnose(&signals.clone().into(), &Options::default()).unwrap();
     let origin = Origin::Recording(RigidBody::default());
-    let improved = improve(&diagnosis, &signals.clone().into(), origin, Unit::NewtonMetre).unwrap();
+    let improved = improve(&diagnosis, &signals.clone().into(), origin, Unit::NewtonMetre, Profile::default()).unwrap();
     // The diagnosis puts the sampling's own delay back, and so is the image's error measured.
     let signals = signals.realigned(diagnosis.sampling_delay_s);
     let state = signals.states();

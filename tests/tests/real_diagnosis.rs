@@ -6,6 +6,7 @@ use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_tests::recordings;
 use frikan_trainer::compile::improved::{Origin, improve};
+use frikan_trainer::compile::profile::Profile;
 use frikan_trainer::diagnose::{Diagnosis, Lock, Options, Signals, diagnose};
 use frikan_trainer::fit::score::trace;
 use frikan_trainer::joint::Joint;
@@ -47,9 +48,15 @@ fn the_emps_axis_differs_between_its_directions() {
     let names = named(&diagnosis);
     let expected = [EffectId::DirectionAsymmetry, EffectId::TorqueOffset];
     assert!(!names.is_empty() && names.iter().all(|name| expected.contains(name)), "{names:?}");
-    let image = improve(&diagnosis, &signals.clone().into(), Origin::Recording(RigidBody::default()), Unit::Newton)
-        .unwrap()
-        .model;
+    let image = improve(
+        &diagnosis,
+        &signals.clone().into(),
+        Origin::Recording(RigidBody::default()),
+        Unit::Newton,
+        Profile::default(),
+    )
+    .unwrap()
+    .model;
     let error = |recording| trace(&image, recording).unwrap().filtered_score.relative_error;
     let (on_train, on_pulses) = (error(&train), error(&pulses));
     println!("{names:?}: {:.2} % train, {:.2} % pulses", 100.0 * on_train, 100.0 * on_pulses);

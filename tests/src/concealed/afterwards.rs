@@ -7,6 +7,7 @@ use super::{Case, Hidden, conceal, signals};
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
 use frikan_trainer::compile::improved::{Origin, improve};
+use frikan_trainer::compile::profile::Profile;
 use frikan_trainer::diagnose::{BaseKind, Comparison, Diagnosis, Lock, Options, Settings, Signals, diagnose, model};
 use frikan_trainer::plant::{self, NoiseKind};
 
@@ -91,8 +92,14 @@ impl Halves {
     }
 
     fn error(&self, diagnosis: &Diagnosis) -> Result<f64, String> {
-        let image = improve(diagnosis, &self.recorded, Origin::Recording(RigidBody::default()), Unit::NewtonMetre)
-            .ok_or("no valid image")?;
+        let image = improve(
+            diagnosis,
+            &self.recorded,
+            Origin::Recording(RigidBody::default()),
+            Unit::NewtonMetre,
+            Profile::default(),
+        )
+        .map_err(|why| why.to_string())?;
         let later = &self.later;
         let predicted = model::at(&image.model, &later.states(), later.rigid_body.as_deref());
         let predicted = predicted.map_err(|e| e.to_string())?.torque;

@@ -5,10 +5,12 @@ mod sealed;
 mod summary;
 mod trajectory;
 
+use crate::commands::measurement::profile;
 use crate::commands::measurement::{self, Warning, load_all, units};
 use crate::commands::output::Outputs;
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::improved::{Origin, improve};
+use crate::compile::profile::Profile;
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
@@ -62,6 +64,9 @@ pub struct Diagnose {
     /// What is locked away for the proof: `spread` (a fifth of every block), `tail:SHARE` or `none`
     #[arg(long, value_name = "BLOCKS", default_value = "spread", value_parser = parse_lock)]
     pub lock: Lock,
+    /// Drive that has to have room for the image, by its name as `verify` takes it; the smallest documented one when absent
+    #[arg(long, value_name = "NAME", value_parser = profile)]
+    pub target: Option<Profile>,
     /// Improved model to write
     #[arg(short, long, value_name = "IMPROVED.frk")]
     pub output: Option<PathBuf>,
@@ -247,8 +252,8 @@ fn improved_image(
         "A" => Unit::Ampere,
         _ => Unit::NewtonMetre,
     };
-    let improved = improve(diagnosis, comparison, origin, unit)
-        .ok_or_else(|| Error::new(&codes::BAD_IMAGE, "the findings and the law together make no valid model"))?;
+    let improved = improve(diagnosis, comparison, origin, unit, arguments.target.unwrap_or_default())
+        .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
     let name = joint.name.as_deref().unwrap_or_default();
     let provenance = fit::model::provenance(name, recordings, arguments.seed);
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;

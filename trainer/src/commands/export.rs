@@ -15,7 +15,8 @@ use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
 use crate::export::simulator::Simulator;
-use crate::export::{c, c_array, hex, readable, title, uf2};
+use crate::export::source::{c, python, rust};
+use crate::export::{c_array, hex, readable, title, uf2};
 use crate::fit::{CELLS, model};
 use crate::key;
 use crate::law::{Language, canonical, expression_of, render};
@@ -68,13 +69,13 @@ pub enum Format {
     Elf,
     /// The bytes as an array for a C compiler
     CHeader,
-    /// The law as C source that needs nothing else: FILE.c and FILE.h
+    /// Law and effects as C source that needs nothing else, the very bits of the drive: FILE.c and FILE.h
     C,
     /// Everything that the image says, readable
     Json,
-    /// The law as a Rust function
+    /// Law and effects as a Rust module for `no_std`, the very bits of the drive
     Rust,
-    /// The law as a Python function over NumPy arrays
+    /// Law and effects as a Python module that needs nothing else, in double precision
     Python,
     /// The law as a string for SymPy
     Sympy,
@@ -126,8 +127,8 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Elf => object_file(&bytes, processor(arguments.processor))?,
         Format::CHeader => c_array::c_header(&bytes, &title).into_bytes(),
         Format::Json => readable::readable(&image_bytes, &image).into_bytes(),
-        Format::Rust => law(&image, Language::Rust)?,
-        Format::Python => law(&image, Language::Python)?,
+        Format::Rust => rust::module(&title, &image)?.into_bytes(),
+        Format::Python => python::module(&title, &image)?.into_bytes(),
         Format::Sympy => law(&image, Language::SymPy)?,
         Format::Latex => law(&image, Language::Latex)?,
         Format::Text => law(&image, Language::Unicode)?,

@@ -11,6 +11,8 @@ use clap::{Args, ValueEnum};
 use super::measurement::{self, Warning, load_all};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
+use crate::commands::measurement::profile;
+use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
@@ -44,6 +46,9 @@ pub struct Fit {
     /// Instructions that one evaluation may take on a Cortex-M4F
     #[arg(long, value_name = "N")]
     pub max_instructions: Option<u32>,
+    /// Drive that has to have room for the image, by its name as `verify` takes it; the smallest documented one when absent
+    #[arg(long, value_name = "NAME", value_parser = profile)]
+    pub target: Option<Profile>,
     /// Image to write
     #[arg(short, long, value_name = "MODEL.frk")]
     pub output: PathBuf,
@@ -142,7 +147,11 @@ pub fn run(arguments: &Fit) -> Result<u8> {
             Form::Expression => Representation::Expression,
         }),
         rate_hz: arguments.rate,
-        budget: Budget { bytes: arguments.max_bytes, instructions: arguments.max_instructions },
+        budget: Budget {
+            bytes: arguments.max_bytes,
+            instructions: arguments.max_instructions,
+            target: arguments.target.unwrap_or_default(),
+        },
         training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);

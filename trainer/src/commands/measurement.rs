@@ -1,6 +1,7 @@
 //! Recordings as they are safe to use, and what was wrong with them in sentences.
 
 use crate::checks::{self, Fault, Note, Reviewed};
+use crate::compile::profile::{PROFILES, Profile};
 use crate::diagnose::checks::note::{HealthNote, Observation, RecordingNote};
 use crate::error::{Error, Result};
 use crate::joint::Joint;
@@ -128,6 +129,12 @@ pub(super) fn units(recording: &Recording) -> Units {
         _ => "N m",
     };
     Units { actuator, rotary: recording.axis == Axis::Rotary }
+}
+
+/// A documented drive by its name.
+pub(crate) fn profile(name: &str) -> std::result::Result<Profile, String> {
+    let names = || PROFILES.map(|profile| profile.name).join(", ");
+    Profile::named(name).ok_or_else(|| format!("there is no drive of this name; there are {}", names()))
 }
 
 #[cfg(test)]

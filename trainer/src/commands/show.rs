@@ -1,15 +1,17 @@
 //! `trainer show`: what an image holds, for a reader.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
 use frikan_shared::model::Law;
 
-use super::output::print;
+use super::output::Outputs;
 use crate::error::Result;
 use crate::export::dump::{Found, images, in_use};
+use crate::export::readable::readable;
+use crate::export::terms::{Term, terms};
 use crate::files::read_whole;
 use crate::fit::{CELLS, model};
 use crate::key;
@@ -30,6 +32,9 @@ pub struct Show {
     /// Say whether the image in use is this one; exit status 1 where it is not
     #[arg(long, value_name = "MODEL.frk")]
     pub compare: Option<PathBuf>,
+    /// Write everything that the image says as JSON, as `export --to json` does; `-` for standard output, in place of the text
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
     /// Ask for the tag of the key in this file, as the drive does
     #[arg(long, value_name = "KEY")]
     pub key_file: Option<PathBuf>,
@@ -67,7 +72,18 @@ pub fn run(arguments: &Show) -> Result<u8> {
         let _ = writeln!(text, "verdict     {verdict} {}", path.display());
         status = u8::from(!is_the_one);
     }
-    print(&text).map(|()| status)
+    let mut outputs = Outputs::default();
+    if let Some(path) = &arguments.json {
+        // A dump without an image in use shows the first that it holds.
+        let shown = in_use.or_else(|| found.iter().find_map(|found| found.image.as_ref().ok()));
+        outputs.add(path, shown.map_or_else(String::new, |(bytes, image)| readable(bytes, image)));
+    }
+    if arguments.json.as_deref() != Some(Path::new("-")) {
+        outputs.add(Path::new("-"), text);
+    }
+    let inputs = [Some(&arguments.model), arguments.compare.as_ref(), arguments.key_file.as_ref()];
+    outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.write().map(|()| status)
 }
 
 /// One image, or what is wrong with it; in a dump, where it lies.
@@ -86,6 +102,25 @@ fn describe_found(out: &mut String, found: &Found<'_>, is_dump: bool) -> std::fm
         Some(false) => writeln!(out, "tag         NOT authentic: the drive refuses this image"),
         None => Ok(()),
     }
+}
+
+/// A correction term: its equation, its parameters, and what it remembers.
+fn describe_term(out: &mut String, term: &Term) -> std::fmt::Result {
+    let figure = |value: f32| significant(f64::from(value), DIGITS);
+    writeln!(out, "effect      {}: {}", term.effect, term.equation)?;
+    for parameter in &term.parameters {
+        writeln!(out, "            {} {} {}", parameter.name, figure(parameter.value), parameter.unit)?;
+    }
+    if let Some(channel) = term.distance_from {
+        let distance = if channel == "position" { "the change of the position" } else { "velocity times period" };
+        writeln!(out, "            dq is {distance}")?;
+    }
+    for state in &term.state {
+        let range =
+            state.range.map_or_else(String::new, |[low, high]| format!(", {} to {}", figure(low), figure(high)));
+        writeln!(out, "            remembers the {} in {}{range}", state.name, state.unit)?;
+    }
+    Ok(())
 }
 
 fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::Result {
@@ -122,8 +157,8 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
             writeln!(out, "            {} operations", program.operations.len())?;
         }
     }
-    for effect in &model.effects {
-        writeln!(out, "effect      {effect:?}")?;
+    for term in terms(model) {
+        describe_term(out, &term)?;
     }
     let body = model.rigid_body;
     for (name, value) in [

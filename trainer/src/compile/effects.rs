@@ -5,8 +5,9 @@ use super::interval::Interval;
 use super::series::{ORDERS, Series};
 use super::tables::compile_layout;
 use crate::physics::{Action, EffectId};
-use frikan_shared::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS, MAX_HARMONICS};
-use frikan_shared::model::{Law, Model, RigidBody};
+use frikan_shared::effect::{Effect, Element, Harmonic, Kind, MAX_EFFECTS, MAX_ELEMENTS, MAX_HARMONICS};
+use frikan_shared::model::{Law, MAX_INPUTS, Model, RigidBody};
+use frikan_shared::pool::DRIVE_CELLS;
 use frikan_shared::table::{Cell, Table, Uniform, UniformShape};
 use frikan_shared::units::Quantity;
 
@@ -15,6 +16,9 @@ const POSITION_CELLS: u16 = 24;
 
 /// Distance of a presliding element over that of the one before (the equation of `physics::presliding`).
 const DISTANCE_RATIO: f64 = 4.0;
+
+/// Why a table is left out.
+const NO_CELLS: &str = "the drive has no room for the cells of its table";
 
 /// What the coefficients of the effects refer to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,8 +57,29 @@ pub struct Terms {
     pub cells: Vec<Cell>,
     /// Place of the first cell in the image's pool.
     pub first_cell: u16,
-    /// Channels that the terms read beside velocity.
+    /// Channels that the terms read beside those of the law.
     pub channels: Vec<Quantity>,
+    /// Channels of the law.
+    pub inputs: Vec<Quantity>,
+    /// What of the terms there is room for.
+    pub room: Room,
+    /// Whether a table was left out for want of cells.
+    pub lacks_cells: bool,
+}
+
+/// What there is room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Room {
+    /// Channels of the model, those of the law among them.
+    pub channels: usize,
+    /// Cells of the pool, those of the law among them.
+    pub cells: usize,
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        Self { channels: MAX_INPUTS, cells: DRIVE_CELLS }
+    }
 }
 
 impl Terms {
@@ -77,6 +102,21 @@ impl Terms {
         if self.correct_rigid_body(effect, shape, coefficients) {
             return Ok(());
         }
+        let before = self.clone();
+        self.add_term(effect, shape, coefficients, context).inspect_err(|why| {
+            *self = before;
+            self.lacks_cells |= *why == NO_CELLS;
+        })
+    }
+
+    /// Adds the term of an effect; where it has no room, part of it may stay behind.
+    fn add_term(
+        &mut self,
+        effect: EffectId,
+        shape: &[f64],
+        coefficients: &[f64],
+        context: &Context,
+    ) -> Result<(), &'static str> {
         match self.term(effect, shape, coefficients, context)? {
             // The law sees the velocity that a lag gives: it is the first.
             lag @ Effect::FrictionalLag { .. } => self.effects.insert(0, lag),
@@ -84,6 +124,15 @@ impl Terms {
                 self.ripple(kind).into_iter().for_each(|lines| lines.extend(harmonics.iter().copied()));
             }
             term => self.effects.push(term),
+        }
+        if self.effects.len() > MAX_EFFECTS {
+            return Err("the image holds as many effects as it can");
+        }
+        if self.inputs.len() + self.channels.len() > self.room.channels {
+            return Err("the image has no room for the channel that it reads");
+        }
+        if usize::from(self.first_cell) + self.cells.len() > self.room.cells {
+            return Err(NO_CELLS);
         }
         Ok(())
     }
@@ -250,7 +299,7 @@ impl Terms {
     }
 
     fn read(&mut self, quantity: Quantity) {
-        if !self.channels.contains(&quantity) {
+        if !self.inputs.contains(&quantity) && !self.channels.contains(&quantity) {
             self.channels.push(quantity);
         }
     }

@@ -13,6 +13,7 @@ pub mod improved;
 pub mod integers;
 pub mod interval;
 pub mod networks;
+pub mod profile;
 pub mod program;
 pub mod reference;
 pub mod series;

@@ -1,6 +1,5 @@
 //! An image in the forms that build tools, flash tools and simulators take. Knows images and models; knows nothing of files or commands.
 
-pub mod c;
 pub mod c_array;
 pub mod dump;
 pub mod elf;
@@ -8,6 +7,8 @@ pub mod flashing;
 pub mod hex;
 pub mod readable;
 pub mod simulator;
+pub mod source;
+pub mod terms;
 pub mod uf2;
 
 use frikan_shared::image::{Image, image_crc32};

@@ -3,6 +3,7 @@
 use frikan_shared::image::{Image, image_crc32};
 use serde_json::json;
 
+use super::terms::terms;
 use crate::fit::CELLS;
 
 /// `frikan.image/1`.
@@ -35,6 +36,7 @@ pub fn readable(bytes: &[u8], image: &Image<CELLS>) -> String {
         },
         "law": model.law,
         "effects": model.effects.as_slice(),
+        "terms": terms(model),
         "cells": cells,
     });
     format!("{object:#}\n")

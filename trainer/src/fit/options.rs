@@ -1,6 +1,7 @@
 //! What a caller may ask of a fit, and what a fit tells while it works.
 
 use super::outcome::Representation;
+use crate::compile::profile::Profile;
 use crate::kan::{Architecture, FitOptions, Smoothing, Sparsity};
 
 /// Settings of a fit.
@@ -55,8 +56,6 @@ impl Training {
     }
 }
 
-/// Cells for which the smallest drive has room.
-const DRIVE_CELLS: usize = 128;
 /// Bytes of an image beside the cells of a table, at most, and of a cell.
 const IMAGE_BYTES: usize = 96;
 const CELL_BYTES: usize = 16;
@@ -68,13 +67,15 @@ pub struct Budget {
     pub bytes: Option<usize>,
     /// Instructions of one evaluation on a Cortex-M4F.
     pub instructions: Option<u32>,
+    /// The drive that has to have room for the model.
+    pub target: Profile,
 }
 
 impl Budget {
     /// Cells that a table may have.
     pub(super) fn cells(&self) -> usize {
         let affordable = self.bytes.map_or(usize::MAX, |most| most.saturating_sub(IMAGE_BYTES) / CELL_BYTES);
-        affordable.min(DRIVE_CELLS)
+        affordable.min(self.target.cells)
     }
 }
 

@@ -14,8 +14,7 @@ use frikan_shared::integer_table::IntegerTable;
 use frikan_shared::model::{Law, MAX_INPUTS, Model};
 use frikan_shared::pool::Pool;
 
-/// Cells for which a drive has room.
-pub const CELLS: usize = 128;
+pub use frikan_shared::pool::DRIVE_CELLS as CELLS;
 
 /// The static law of an image: a row holds the inputs of the model.
 pub struct StaticLaw {

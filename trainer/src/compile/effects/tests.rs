@@ -73,3 +73,27 @@ fn the_table_over_position_is_its_series() {
     let start: f32 = terms.cells[0].floats().iter().sum();
     assert!((start - (0.5 - 0.2 + 0.1)).abs() < 1e-4, "{start}");
 }
+
+#[test]
+fn what_has_no_room_is_refused_and_leaves_nothing_behind() {
+    let context = Context { may_read_position: true, ..Context::default() };
+    let mut full = Terms::default();
+    for _ in 0..MAX_EFFECTS {
+        full.add(EffectId::ViscousNonlinearity, &[1.5], &[0.1], &context).unwrap();
+    }
+    assert!(full.add(EffectId::ViscousNonlinearity, &[1.5], &[0.1], &context).is_err());
+    assert_eq!(full.effects.len(), MAX_EFFECTS);
+
+    let inputs = vec![Quantity::Velocity, Quantity::Temperature];
+    let mut narrow = Terms { inputs, room: Room { channels: 2, cells: 128 }, ..Terms::default() };
+    narrow.add(EffectId::Temperature, &[1.0, 30.0, 0.0], &[-0.2], &context).unwrap();
+    assert!(narrow.add(EffectId::Spring, &[], &[1.0], &context).is_err());
+    assert_eq!((narrow.effects.len(), narrow.channels.len()), (1, 0));
+
+    let mut small = Terms { first_cell: 100, ..Terms::default() };
+    let position_friction = [0.0, -1.0, 1.0];
+    small.add(EffectId::PositionFriction, &position_friction, &[0.3, 0.1], &context).unwrap();
+    assert!(!small.lacks_cells);
+    assert!(small.add(EffectId::PositionFriction, &position_friction, &[0.3, 0.1], &context).is_err());
+    assert_eq!((small.effects.len(), small.cells.len(), small.lacks_cells), (1, usize::from(POSITION_CELLS), true));
+}

@@ -79,7 +79,7 @@ pub(crate) fn divide(state: &JointState, left_out: &[bool], filter: &ZeroPhase, 
                 .is_some_and(|(end, use_before)| end == part.start && use_before != purpose);
             let inner = part.start + if is_border { reach } else { 0 }..part.end;
             match purpose {
-                Use::Sealed => division.sealed.push(inner),
+                Use::Sealed => division.sealed.extend(stretches_of_motion(state, left_out, inner)),
                 Use::Open | Use::Locked => {
                     let runs = runs_of_motion(state, left_out, reach, inner.step_by(step), &mut division.rows);
                     if purpose == Use::Locked { &mut shut } else { &mut open }.runs.extend(runs);
@@ -131,6 +131,13 @@ fn split_for_lock(
             parts
         }
     }
+}
+
+/// Stretches of a part in which the joint moves: at rest friction is anything within break-away, and no model is wrong or right.
+fn stretches_of_motion(state: &JointState, left_out: &[bool], part: Range<usize>) -> Vec<Range<usize>> {
+    let rests = |sample: &usize| left_out[*sample] || state.memory.at_rest[*sample];
+    let samples: Vec<usize> = part.filter(|sample| !rests(sample)).collect();
+    samples.chunk_by(|before, after| before + 1 == *after).map(|run| run[0]..run[run.len() - 1] + 1).collect()
 }
 
 /// Adds the samples of a part that see neither standstill nor what is left out to the rows and returns their runs.

@@ -6,6 +6,7 @@ use frikan_shared::model::Law;
 use super::choose::{Entry, Judge, Trial, effective_rows};
 use super::physical::Violation;
 use crate::compile::cost::instructions;
+use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
 use crate::fit::data::gather::Material;
 use crate::fit::data::rigid;
@@ -33,11 +34,13 @@ pub(in crate::fit) struct Freedom {
 impl Budget {
     /// Whether a model keeps within it.
     pub(in crate::fit) fn allows(&self, model: &HostModel) -> bool {
-        size(model).is_ok_and(|bytes| self.covers(bytes, instructions(model)))
+        size(model).is_ok_and(|bytes| self.covers(model, bytes))
     }
 
-    fn covers(&self, bytes: usize, instructions: u32) -> bool {
-        self.bytes.is_none_or(|most| bytes <= most) && self.instructions.is_none_or(|most| instructions <= most)
+    fn covers(&self, model: &HostModel, bytes: usize) -> bool {
+        self.bytes.is_none_or(|most| bytes <= most)
+            && self.instructions.is_none_or(|most| instructions(model) <= most)
+            && model.cells.len() <= self.target.cells
     }
 }
 
@@ -71,7 +74,7 @@ pub(in crate::fit) fn judge(
             violation: violation.sentence(),
             bytes,
             instructions: instructions(model),
-            within_budget: budget.covers(bytes, instructions(model)),
+            within_budget: budget.covers(model, bytes),
             chosen: false,
         };
         if candidate.within_budget && asked.is_none_or(|asked| asked == candidate.representation) {
@@ -88,7 +91,7 @@ pub(in crate::fit) fn judge(
         Some(repetition) => Judge::Penalty { effective: effective_rows(material, repetition.new_share) },
         None => Judge::Locked,
     };
-    let Some(chosen) = judge.choose(&entries) else { return Err(beyond(&candidates, asked)) };
+    let Some(chosen) = judge.choose(&entries) else { return Err(beyond(&candidates, asked, budget.target)) };
     let form = Form::ALL[chosen];
     candidates.iter_mut().for_each(|candidate| candidate.chosen = candidate.form == form);
     let reason = reason(form, &candidates, material.repeats.as_ref(), unit);
@@ -113,11 +116,12 @@ fn costs(candidates: &[Candidate]) -> String {
     candidates.iter().map(cost).collect::<Vec<_>>().join(", ")
 }
 
-fn beyond(candidates: &[Candidate], asked: Option<Representation>) -> Error {
+fn beyond(candidates: &[Candidate], asked: Option<Representation>, target: Profile) -> Error {
     if candidates.iter().all(|candidate| asked.is_some_and(|asked| candidate.representation != asked)) {
         return no_image();
     }
-    Error::new(&codes::USAGE, format!("no form of the law keeps within the budget: {}", costs(candidates)))
+    let room = format!("{}, which has room for {} cells", target.name, target.cells);
+    Error::new(&codes::USAGE, format!("no form of the law keeps within the budget and {room}: {}", costs(candidates)))
 }
 
 /// Neither form has room.

@@ -1,11 +1,11 @@
 //! The improved model: base law as refitted, rigid body as corrected, and every finding that a drive can run.
 
-use crate::compile::effects::{Context, Terms, has_room_for_position};
-use crate::compile::formula::{Curve, Parity};
+mod friction_table;
+
+use self::friction_table::{OCTAVE_CELLS_LOG2, THINNED_SHARE, deviation, table_model};
+use crate::compile::effects::{Context, Room, Terms, has_room_for_position};
 use crate::compile::host_model::HostModel;
-use crate::compile::interval::Interval;
-use crate::compile::series::{ORDERS, Series};
-use crate::compile::tables::compile_layout;
+use crate::compile::profile::Profile;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::from_model::{
@@ -17,13 +17,13 @@ use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::refit::Refit;
+use crate::law::significant;
 use crate::numerics::statistics::quantile;
 use crate::physics::names::plain_name;
 use crate::physics::{EffectId, JointState};
 use frikan_shared::effect::Effect;
-use frikan_shared::model::{Input, Law, RigidBody};
+use frikan_shared::model::{Input, Law, MAX_INPUTS, RigidBody};
 use frikan_shared::pool::Pool;
-use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
 
 mod moved_formula;
@@ -53,18 +53,52 @@ pub struct Improved {
     pub remarks: Vec<String>,
 }
 
-/// Cells for each doubling of the speed, as a power of two.
-const OCTAVE_CELLS_LOG2: u8 = 3;
 /// Room of the output limit above the largest recorded torque.
 const OUTPUT_ROOM: f64 = 2.0;
 
-/// Writes the findings of a diagnosis into a model. `None` where law and channels together make no valid model.
-pub fn improve(diagnosis: &Diagnosis, comparison: &Comparison, origin: Origin<'_>, unit: Unit) -> Option<Improved> {
+/// Why a diagnosis gives no model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotWritten {
+    /// Law, findings and channels make no valid model.
+    #[error("the findings and the law together make no valid model")]
+    Invalid,
+    /// The law alone takes more cells than the drive has.
+    #[error("the law takes {needed} cells, and `{}` has room for {}: `--target` names a larger drive", target.name, target.cells)]
+    TooLarge {
+        /// Cells of the law.
+        needed: usize,
+        /// The drive.
+        target: Profile,
+    },
+}
+
+/// Writes the findings of a diagnosis into a model for which `target` has room: tables are thinned within their bound, and findings for which
+/// there is no room are left out and named.
+///
+/// # Errors
+/// [`NotWritten`] where the law itself has no room, or law and channels together make no valid model.
+pub fn improve(
+    diagnosis: &Diagnosis,
+    comparison: &Comparison,
+    origin: Origin<'_>,
+    unit: Unit,
+    target: Profile,
+) -> Result<Improved, NotWritten> {
     let state = comparison.prepare(Lock::Nothing).state;
     let places = if let Origin::Model(model) = origin { moving_constants(model, &state) } else { Vec::new() };
-    let writer = Writer { diagnosis, signals: &comparison.signals, origin, unit, state, places };
+    let writer = Writer { diagnosis, signals: &comparison.signals, origin, unit, state, places, target };
     let (model, remarks) = writer.model_of(&diagnosis.improved_refit)?;
-    Some(Improved { model, compared_with: writer.compared_with(), remarks })
+    Ok(Improved { model, compared_with: writer.compared_with(), remarks })
+}
+
+/// A model with a table of friction as fine as was tried.
+struct Attempt {
+    model: Box<HostModel>,
+    remarks: Vec<String>,
+    /// Cells of the law.
+    law_cells: usize,
+    /// Whether every finding with a table had room.
+    has_room: bool,
 }
 
 /// What the models of one diagnosis are written from.
@@ -76,11 +110,30 @@ struct Writer<'a> {
     state: JointState,
     /// Places of a formula's constants that move.
     places: Vec<usize>,
+    /// The drive that has to have room.
+    target: Profile,
 }
 
 impl Writer<'_> {
     /// The model after a refit, and in sentences what of its effects it holds.
-    fn model_of(&self, refit: &Refit) -> Option<(Box<HostModel>, Vec<String>)> {
+    fn model_of(&self, refit: &Refit) -> Result<(Box<HostModel>, Vec<String>), NotWritten> {
+        let (mut needed, mut without_some) = (usize::MAX, None);
+        for octave_cells_log2 in (0..=OCTAVE_CELLS_LOG2).rev() {
+            let Some(attempt) = self.attempt(refit, octave_cells_log2)? else { break };
+            needed = needed.min(attempt.law_cells);
+            if attempt.law_cells <= self.target.cells {
+                if attempt.has_room {
+                    return Ok((attempt.model, attempt.remarks));
+                }
+                without_some.get_or_insert((attempt.model, attempt.remarks));
+            }
+        }
+        without_some.ok_or(NotWritten::TooLarge { needed, target: self.target })
+    }
+
+    /// The model with a table of friction of `2^octave_cells_log2` cells for each doubling of the speed; `None` where one that is thinner than
+    /// the finest is beyond its bound, or the law is a formula or a network, which no table can thin.
+    fn attempt(&self, refit: &Refit, octave_cells_log2: u8) -> Result<Option<Attempt>, NotWritten> {
         let Self { diagnosis, origin, ref state, ref places, .. } = *self;
         let [before, friction] = [&diagnosis.baseline_refit, refit]
             .map(|refit| refitted_friction(diagnosis.base, refit, (origin, places), state));
@@ -93,7 +146,7 @@ impl Writer<'_> {
             longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
             power_limit: evaluated.iter().copied().fold(1e-6, f64::max),
             power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
-            duration: state.time.last()? - state.time.first()?,
+            duration: state.time.last().zip(state.time.first()).map_or(0.0, |(last, first)| last - first),
             may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
         };
         let rigid_body = rigid_body((diagnosis.base, refit), self.signals, origin);
@@ -102,18 +155,42 @@ impl Writer<'_> {
             terms.effects.extend(model.effects.iter().cloned());
         }
         let as_formula = match origin {
-            Origin::Model(model) => moved_law(&refit.base, (model, places), &mut terms, state)?,
+            Origin::Model(model) => {
+                moved_law(&refit.base, (model, places), &mut terms, state).ok_or(NotWritten::Invalid)?
+            }
             _ => None,
         };
+        let mut remarks = Vec::new();
+        let is_finest = octave_cells_log2 == OCTAVE_CELLS_LOG2;
         let (mut model, mut cells) = match as_formula {
+            Some(_) if !is_finest => return Ok(None),
             Some(model) => {
                 let cells = model.cells.to_vec();
                 (model, cells)
             }
-            None => table_model(&friction, origin, state, self.unit),
+            None => {
+                let (model, cells) = table_model(&friction, origin, state, (self.unit, octave_cells_log2));
+                if !is_finest {
+                    let (error, largest) = deviation(&friction, &model, &cells);
+                    if error > THINNED_SHARE * largest {
+                        return Ok(None);
+                    }
+                    let unit = self.unit.symbol();
+                    let error = significant(error, 2);
+                    remarks.push(format!(
+                        "The table of friction is thinned to {} cells, by which it is off by {error} {unit} at most.",
+                        cells.len()
+                    ));
+                }
+                (model, cells)
+            }
         };
-        terms.first_cell = cells.len() as u16;
-        let mut remarks = Vec::new();
+        let law_cells = cells.len();
+        terms.first_cell = law_cells as u16;
+        terms.inputs = model.inputs.iter().map(|input| input.quantity.clone()).collect();
+        let is_fixed = matches!(model.law, Law::Network(_));
+        terms.room =
+            Room { channels: if is_fixed { terms.inputs.len() } else { MAX_INPUTS }, cells: self.target.cells };
         if let Origin::Simulation(law) = origin {
             let written = |effect| write_term(&mut terms, &context, effect, ", as the simulation holds it");
             remarks.extend(law.effects().map(written));
@@ -121,14 +198,14 @@ impl Writer<'_> {
         remarks.extend(write_findings(refit, &mut terms, &context));
         model.rigid_body = terms.rigid_body;
         cells.extend(&terms.cells);
-        model.cells = Pool::from_slice(&cells).ok()?;
+        model.cells = Pool::from_slice(&cells).map_err(|_| NotWritten::Invalid)?;
         model.effects = terms.effects.iter().cloned().collect();
-        add_channels(&mut model, &terms.channels, state)?;
+        add_channels(&mut model, &terms.channels, state).ok_or(NotWritten::Invalid)?;
         let largest = self.signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
         let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
         model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
-        model.validate().ok()?;
-        Some((model, remarks))
+        model.validate().map_err(|_| NotWritten::Invalid)?;
+        Ok(Some(Attempt { model, remarks, law_cells, has_room: !terms.lacks_cells }))
     }
 
     /// The model that the recording was compared with; `None` where that is no valid model.
@@ -139,7 +216,7 @@ impl Writer<'_> {
             Origin::Simulation(_) => baseline.base.fill(0.0),
             Origin::Recording(_) => {}
         }
-        self.model_of(&baseline).map(|(model, _)| model)
+        self.model_of(&baseline).ok().map(|(model, _)| model)
     }
 }
 
@@ -243,35 +320,6 @@ fn moved_law(
     Some(Some(Box::new(model.clone())))
 }
 
-/// A model whose law is a table of the refitted friction, without effects, and the cells of its pool. Behind the table it reads
-/// what the effects of its origin read; their tables stay where they are.
-fn table_model(
-    friction: &Friction<'_>,
-    origin: Origin<'_>,
-    state: &JointState,
-    unit: Unit,
-) -> (Box<HostModel>, Vec<Cell>) {
-    let has_table = |effect: &Effect| matches!(effect, Effect::PositionTable { .. });
-    let (inputs, mut cells) = match origin {
-        Origin::Model(model) if model.effects.iter().any(has_table) => (&model.inputs[..], model.cells.to_vec()),
-        Origin::Model(model) => (&model.inputs[..], Vec::new()),
-        _ => (&[][..], Vec::new()),
-    };
-    let law = velocity_table(friction, 1.1 * fastest(state), state.sign_velocity, cells.len() as u16);
-    cells.extend(&law.cells);
-    let others = inputs.iter().filter(|input| input.quantity != Quantity::Velocity).cloned();
-    let model = Box::new(HostModel {
-        law: Law::from(law.table),
-        cells: Pool::default(),
-        inputs: std::iter::once(velocity_input(state)).chain(others).collect(),
-        output_unit: unit,
-        output_limit: 1.0,
-        rigid_body: RigidBody::default(),
-        effects: heapless::Vec::new(),
-    });
-    (model, cells)
-}
-
 /// Adds the channels that the terms read; a table and a formula go on reading theirs, a network reads all.
 fn add_channels(model: &mut HostModel, channels: &[Quantity], state: &JointState) -> Option<()> {
     for quantity in channels {
@@ -297,55 +345,6 @@ fn channel_input(quantity: &Quantity, state: &JointState, torque: Unit) -> Optio
     (low < high).then(|| Input { quantity: quantity.clone(), unit, low: low as f32, high: high as f32 })
 }
 
-fn velocity_input(state: &JointState) -> Input {
-    let reach = 1.1 * fastest(state) as f32;
-    let unit = if state.rotary { Unit::RadianPerSecond } else { Unit::MetrePerSecond };
-    Input { quantity: Quantity::Velocity, unit, low: -reach, high: reach }
-}
-
-fn fastest(state: &JointState) -> f64 {
-    state.velocity.iter().fold(1e-6, |most, v| most.max(v.abs()))
-}
-
 fn quantile_of_load(state: &JointState) -> f64 {
     state.load.as_ref().map_or(0.0, |load| quantile(load.iter().map(|l| l.abs()), 0.9))
-}
-
-/// Friction over velocity as a table whose cells grow with speed, the finest an eighth of the smoothed sign's width at most.
-fn velocity_table(
-    friction: &Friction<'_>,
-    reach: f64,
-    sign_velocity: f64,
-    first_cell: u16,
-) -> crate::compile::tables::CompiledTable {
-    let odd = [0.01, 0.1, 0.5, 1.0].iter().all(|share| {
-        let (up, down) = (friction(share * reach), friction(-share * reach));
-        (up + down).abs() <= 1e-9 * (up.abs() + down.abs())
-    });
-    let layout = GeometricShape {
-        first_cell,
-        offset_exponent: sign_velocity.log2().floor() as i8,
-        octave_cells_log2: OCTAVE_CELLS_LOG2,
-        symmetry: if odd { Symmetry::Odd } else { Symmetry::Sided },
-        reach: reach as f32,
-        reach_negative: reach as f32,
-    };
-    compile_layout(&Sampled(friction, odd), Table::Geometric(Geometric::new(layout)))
-}
-
-/// A curve of which only values are known; no enclosure is claimed.
-struct Sampled<'a>(&'a (dyn Fn(f64) -> f64 + Sync), bool);
-
-impl Curve for Sampled<'_> {
-    fn value(&self, x: f64) -> f64 {
-        (self.0)(x)
-    }
-
-    fn series(&self, _over: Interval) -> Series {
-        Series([Interval::ENTIRE; ORDERS])
-    }
-
-    fn parity(&self) -> Parity {
-        if self.1 { Parity::Odd } else { Parity::Neither }
-    }
 }

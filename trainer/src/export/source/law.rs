@@ -1,0 +1,153 @@
+//! The static law and the step of a model as statements.
+
+use frikan_shared::model::{Input, Law, Model};
+use frikan_shared::table::Table;
+use frikan_shared::units::Quantity;
+
+use super::effects::statements_of_effect;
+use super::language::Language;
+use super::program;
+use crate::error::{Error, Result, codes};
+use crate::fit::CELLS;
+use frikan_shared::effect::Effect;
+
+/// Names of the parameters of the law.
+pub(super) fn parameters(model: &Model<CELLS>) -> Vec<String> {
+    model.inputs.iter().map(parameter).collect()
+}
+
+/// The name of a channel as a parameter.
+fn parameter(input: &Input) -> String {
+    match &input.quantity {
+        Quantity::Other(name) => format!("channel_{}", identifier(name)),
+        quantity => quantity.name().to_owned(),
+    }
+}
+
+/// A name as every language takes it.
+pub(super) fn identifier(name: &str) -> String {
+    let mut identifier: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if identifier.starts_with(|c: char| c.is_ascii_digit()) || identifier.is_empty() {
+        identifier.insert(0, '_');
+    }
+    identifier
+}
+
+/// Statements of the static law, the last of which returns it.
+///
+/// # Errors
+/// `FRK-U005` for networks and integer tables.
+pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String>> {
+    let names = parameters(model);
+    let is_nan = |name: &String| match language {
+        Language::C => format!("{name} != {name}"),
+        Language::Rust => format!("{name}.is_nan()"),
+        Language::Python => format!("math.isnan({name})"),
+    };
+    let refusal = |reason: &str| Err(Error::new(&codes::UNSUITABLE_FORM, reason));
+    let of_table = |table: Table| {
+        let nothing = language.return_where(&is_nan(&names[0]), 0.0);
+        let others = names[1..].iter().filter_map(|name| language.ignored(name));
+        others.chain([nothing, language.last(&lookup(language, &table, &names[0]))]).collect()
+    };
+    match &model.law {
+        Law::Geometric(layout) => Ok(of_table(Table::Geometric(*layout))),
+        Law::Uniform(layout) => Ok(of_table(Table::Uniform(*layout))),
+        Law::Expression(program) => {
+            let any_nan = language.any(&names.iter().map(is_nan).collect::<Vec<_>>());
+            let mut statements = vec![language.return_where(&any_nan, 0.0)];
+            let reads = |index: usize| program.operations.iter().any(|operation| program::reads(operation, index));
+            for (index, (input, name)) in model.inputs.iter().zip(&names).enumerate().filter(|(index, _)| reads(*index))
+            {
+                statements.push(language.constant(&format!("x{index}"), &held(language, input, name)));
+            }
+            let result = program::statements(&mut statements, language, program);
+            let limit = language.number(model.output_limit);
+            statements.push(language.last(&format!("limited({result}, {limit})")));
+            Ok(statements)
+        }
+        Law::Network(_) => refusal("a network has no form in source code; it needs the library"),
+        Law::IntegerTable(_) => refusal("an integer table has no form in source code; it needs the library"),
+    }
+}
+
+/// The value of a table at `x`.
+pub(super) fn lookup(language: Language, table: &Table, x: &str) -> String {
+    let cells = language.cells();
+    match table {
+        Table::Geometric(layout) => {
+            let sides = layout.sides.map(|side| [side.origin, side.last_position, side.cells_per_turn, side.sign]);
+            let offset = language.number(layout.offset);
+            format!("geometric({cells}, {x}, {offset}, {})", language.fours_of_words(&sides))
+        }
+        Table::Uniform(layout) => {
+            let (low, scale) = (language.number(layout.low), language.number(layout.scale));
+            format!("uniform({cells}, {x}, {low}, {scale}, {})", language.words(&[layout.first_cell, layout.cells]))
+        }
+    }
+}
+
+fn held(language: Language, input: &Input, name: &str) -> String {
+    format!("held({name}, {}, {})", language.number(input.low), language.number(input.high))
+}
+
+/// Statements of the step of a model with effects, between the sample `m` and the return of the friction; `friction` is the name of the
+/// static law. They set the sums `torque` and `place`.
+pub(super) fn step(language: Language, model: &Model<CELLS>, friction: &str) -> Vec<String> {
+    let names = parameters(model);
+    let mut statements = vec![language.statement("m.dt = dt")];
+    for (input, name) in model.inputs.iter().zip(&names) {
+        let field = match input.quantity {
+            Quantity::Velocity => "velocity",
+            Quantity::Position => "position",
+            Quantity::Load => "load",
+            Quantity::Temperature => "temperature",
+            Quantity::Acceleration | Quantity::Other(_) => continue,
+        };
+        statements.push(language.statement(&format!("m.{field} = {}", held(language, input, name))));
+    }
+    if reads_position(model) {
+        statements.push(language.statement("m.angle = position"));
+        statements.push(language.statement(&format!("m.travel = travelled({}, position)", language.field("travel"))));
+    } else {
+        statements.push(language.statement("m.travel = m.velocity * dt"));
+    }
+    let mut arguments = names;
+    if let Some(Effect::FrictionalLag { time_constant }) = model.effects.first() {
+        let (motion, memory) = (language.motion(), language.field("memory[0]"));
+        let lagged = format!("lagged({motion}, {memory}, {})", language.number(*time_constant));
+        statements.push(language.constant("lagged_velocity", &lagged));
+        let velocities = arguments.iter_mut().filter(|name| *name == "velocity");
+        velocities.for_each(|name| "lagged_velocity".clone_into(name));
+    }
+    statements.push(language.statement(&format!("m.law = {friction}({})", arguments.join(", "))));
+    statements.push(language.statement("torque = m.law"));
+    for (index, effect) in model.effects.iter().enumerate() {
+        statements.extend(statements_of_effect(language, effect, index));
+    }
+    statements
+}
+
+/// The condition under which a sample is of no use.
+pub(super) fn unusable(language: Language, model: &Model<CELLS>) -> String {
+    let finite = parameters(model).into_iter().map(|name| format!("is_finite({name})"));
+    let conditions = std::iter::once("is_period(dt)".to_owned()).chain(finite);
+    language.any(&conditions.map(|condition| language.not(&condition)).collect::<Vec<_>>())
+}
+
+pub(super) fn reads_position(model: &Model<CELLS>) -> bool {
+    model.inputs.iter().any(|input| input.quantity == Quantity::Position)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers() {
+        assert_eq!(identifier("elbow-2"), "elbow_2");
+        assert_eq!(identifier("2nd joint"), "_2nd_joint");
+        assert_eq!(Language::C.number(-0.5), "(-0.5f)");
+        assert_eq!(Language::C.number(1.0e-7), "1e-7f");
+    }
+}

@@ -1,0 +1,20 @@
+//! An image as source code without dependency, state and range hold included: C and Rust with the very bits of the runtime, Python in double
+//! precision. One list of statements is written in the three languages.
+
+pub mod c;
+mod effects;
+mod language;
+mod law;
+mod library;
+mod program;
+pub mod python;
+pub mod rust;
+
+use frikan_shared::model::Model;
+
+use crate::fit::CELLS;
+
+/// Whether an effect adds to the position of the link.
+fn moves_link(model: &Model<CELLS>) -> bool {
+    model.effects.iter().any(effects::moves_link)
+}
