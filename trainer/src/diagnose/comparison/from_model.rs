@@ -234,7 +234,7 @@ fn constant(operation: &mut Operation) -> Option<&mut f32> {
 /// The constant at a place of a model's formula.
 pub(crate) fn constant_at<const CELLS: usize>(model: &Model<CELLS>, place: usize) -> Option<f64> {
     let Law::Expression(program) = &model.law else { return None };
-    let mut operation = program.operations.get(place)?.clone();
+    let mut operation = *program.operations.get(place)?;
     constant(&mut operation).map(|value| f64::from(*value))
 }
 
