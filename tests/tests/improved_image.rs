@@ -125,7 +125,8 @@ fn a_formula_whose_constants_move_far_is_written_as_what_was_refitted() {
     let reference = model::at(&model, &state, signals.rigid_body.as_deref()).unwrap();
     let comparison = Comparison::with(signals.clone(), reference);
     let diagnosis = diagnose(&comparison, &Options { base: BaseKind::Reference, ..Options::default() }).unwrap();
-    let improved = improve(&diagnosis, &comparison, Origin::Model(&model), Unit::NewtonMetre).unwrap();
+    let origin = Origin::Model(&model);
+    let improved = improve(&diagnosis, &comparison, origin, Unit::NewtonMetre, Profile::default()).unwrap();
     let torque = model::at(&improved.model, &state, signals.rigid_body.as_deref()).unwrap().torque;
     let prepared = Comparison::from(signals.clone()).prepare(Lock::Nothing);
     let residual: Vec<f64> = signals.torque.iter().zip(&torque).map(|(recorded, model)| recorded - model).collect();
