@@ -99,6 +99,8 @@ struct Attempt {
     law_cells: usize,
     /// Whether every finding with a table had room.
     has_room: bool,
+    /// Whether the table is the finest, or off by no more than its bound.
+    is_within_bound: bool,
 }
 
 /// What the models of one diagnosis are written from.
@@ -115,24 +117,25 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The model after a refit, and in sentences what of its effects it holds.
+    /// The model after a refit, and in sentences what of its effects it holds: the finest table of friction that leaves room for every
+    /// finding within its bound, else the finest within its bound, else the finest that the drive has room for.
     fn model_of(&self, refit: &Refit) -> Result<(Box<HostModel>, Vec<String>), NotWritten> {
-        let (mut needed, mut without_some) = (usize::MAX, None);
+        let (mut needed, mut fitting) = (usize::MAX, Vec::new());
         for octave_cells_log2 in (0..=OCTAVE_CELLS_LOG2).rev() {
             let Some(attempt) = self.attempt(refit, octave_cells_log2)? else { break };
             needed = needed.min(attempt.law_cells);
             if attempt.law_cells <= self.target.cells {
-                if attempt.has_room {
-                    return Ok((attempt.model, attempt.remarks));
-                }
-                without_some.get_or_insert((attempt.model, attempt.remarks));
+                fitting.push(attempt);
             }
         }
-        without_some.ok_or(NotWritten::TooLarge { needed, target: self.target })
+        let is_whole = |attempt: &Attempt| attempt.is_within_bound && attempt.has_room;
+        let best = fitting.iter().position(is_whole).or(fitting.iter().position(|attempt| attempt.is_within_bound));
+        let best = fitting.into_iter().nth(best.unwrap_or(0));
+        best.map(|attempt| (attempt.model, attempt.remarks)).ok_or(NotWritten::TooLarge { needed, target: self.target })
     }
 
-    /// The model with a table of friction of `2^octave_cells_log2` cells for each doubling of the speed; `None` where one that is thinner than
-    /// the finest is beyond its bound, or the law is a formula or a network, which no table can thin.
+    /// The model with a table of friction of `2^octave_cells_log2` cells for each doubling of the speed; `None` where the law
+    /// is a formula or a network, which no table can thin.
     fn attempt(&self, refit: &Refit, octave_cells_log2: u8) -> Result<Option<Attempt>, NotWritten> {
         let Self { diagnosis, origin, ref state, ref places, .. } = *self;
         let [before, friction] = [&diagnosis.baseline_refit, refit]
@@ -162,19 +165,15 @@ impl Writer<'_> {
         };
         let mut remarks = Vec::new();
         let is_finest = octave_cells_log2 == OCTAVE_CELLS_LOG2;
+        let mut is_within_bound = true;
         let (mut model, mut cells) = match as_formula {
             Some(_) if !is_finest => return Ok(None),
-            Some(model) => {
-                let cells = model.cells.to_vec();
-                (model, cells)
-            }
+            Some(model) => (model.clone(), model.cells.to_vec()),
             None => {
                 let (model, cells) = table_model(&friction, origin, state, (self.unit, octave_cells_log2));
                 if !is_finest {
                     let (error, largest) = deviation(&friction, &model, &cells);
-                    if error > THINNED_SHARE * largest {
-                        return Ok(None);
-                    }
+                    is_within_bound = error <= THINNED_SHARE * largest;
                     let unit = self.unit.symbol();
                     let error = significant(error, 2);
                     remarks.push(format!(
@@ -205,7 +204,7 @@ impl Writer<'_> {
         let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
         model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
         model.validate().map_err(|_| NotWritten::Invalid)?;
-        Ok(Some(Attempt { model, remarks, law_cells, has_room: !terms.lacks_cells }))
+        Ok(Some(Attempt { model, remarks, law_cells, has_room: !terms.lacks_cells, is_within_bound }))
     }
 
     /// The model that the recording was compared with; `None` where that is no valid model.
