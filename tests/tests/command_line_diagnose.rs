@@ -231,7 +231,7 @@ fn an_improved_model_is_improved_again() {
         "joint.toml --effect position_friction=1 --effect torque_offset=1 --duration 60 --seed 5 -o second.csv",
     );
     let told = |arguments: &str| -> Value {
-        let told = diagnose(at, &format!("{arguments} --joint joint.toml --json -"));
+        let told = diagnose(at, &format!("{arguments} --joint joint.toml --target host --json -"));
         assert!(told.status <= 1 && told.messages.is_empty(), "{arguments}: {}{}", told.output, told.messages);
         serde_json::from_str(&told.output).unwrap()
     };

@@ -7,7 +7,7 @@ use frikan_shared::pool::Pool;
 use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
 
-use super::{Friction, Origin};
+use super::origin::{Friction, Origin};
 use crate::compile::formula::{Curve, Parity};
 use crate::compile::host_model::{CELLS, HostModel};
 use crate::compile::interval::Interval;

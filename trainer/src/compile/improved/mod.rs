@@ -1,8 +1,13 @@
 //! The improved model: base law as refitted, rigid body as corrected, and every finding that a drive can run.
 
 mod friction_table;
+mod moved_formula;
+mod origin;
 
 use self::friction_table::{OCTAVE_CELLS_LOG2, THINNED_SHARE, deviation, table_model};
+use self::moved_formula::{MovedFormula, moved_formula};
+use self::origin::Friction;
+pub use self::origin::Origin;
 use crate::compile::effects::{Context, Room, Terms, has_room_for_position};
 use crate::compile::host_model::HostModel;
 use crate::compile::profile::Profile;
@@ -12,7 +17,6 @@ use crate::diagnose::comparison::from_model::{
     Movement, hats, is_odd, law_at, mean_measurement, movement, moving_constants,
 };
 use crate::diagnose::comparison::reference::Comparison;
-use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
@@ -25,21 +29,6 @@ use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, MAX_INPUTS, RigidBody};
 use frikan_shared::pool::Pool;
 use frikan_shared::units::{Quantity, Unit};
-
-mod moved_formula;
-
-use moved_formula::{MovedFormula, moved_formula};
-
-/// Where the base law comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum Origin<'a> {
-    /// The static model of the recording itself, with the rigid body that the joint file gives.
-    Recording(RigidBody),
-    /// The learned law of a simulation.
-    Simulation(&'a InverseLaw),
-    /// A fitted model.
-    Model(&'a HostModel),
-}
 
 /// An improved model, and in sentences what it holds and what not.
 #[derive(Clone, Debug)]
@@ -242,9 +231,6 @@ fn write_term(
         Err(why) => format!("Not in the image: {}{origin} ({why}).", plain_name(effect)),
     }
 }
-
-/// Friction over velocity.
-type Friction<'a> = Box<dyn Fn(f64) -> f64 + Sync + 'a>;
 
 /// Friction of the base over velocity after a refit; `places` are those of a formula's constants that move.
 fn refitted_friction<'a>(

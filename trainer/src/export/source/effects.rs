@@ -3,7 +3,7 @@
 use frikan_shared::effect::{Effect, Kind};
 
 use super::language::Language;
-use super::law::lookup;
+use super::lookup::lookup;
 
 /// Statements of the effect with the memory of number `index`.
 pub(super) fn statements_of_effect(language: Language, effect: &Effect, index: usize) -> Vec<String> {

@@ -6,6 +6,7 @@ use frikan_shared::units::Quantity;
 
 use super::effects::statements_of_effect;
 use super::language::Language;
+use super::lookup::lookup;
 use super::program;
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;
@@ -68,22 +69,6 @@ pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String
         }
         Law::Network(_) => refusal("a network has no form in source code; it needs the library"),
         Law::IntegerTable(_) => refusal("an integer table has no form in source code; it needs the library"),
-    }
-}
-
-/// The value of a table at `x`.
-pub(super) fn lookup(language: Language, table: &Table, x: &str) -> String {
-    let cells = language.cells();
-    match table {
-        Table::Geometric(layout) => {
-            let sides = layout.sides.map(|side| [side.origin, side.last_position, side.cells_per_turn, side.sign]);
-            let offset = language.number(layout.offset);
-            format!("geometric({cells}, {x}, {offset}, {})", language.fours_of_words(&sides))
-        }
-        Table::Uniform(layout) => {
-            let (low, scale) = (language.number(layout.low), language.number(layout.scale));
-            format!("uniform({cells}, {x}, {low}, {scale}, {})", language.words(&[layout.first_cell, layout.cells]))
-        }
     }
 }
 

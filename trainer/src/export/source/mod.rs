@@ -6,6 +6,7 @@ mod effects;
 mod language;
 mod law;
 mod library;
+mod lookup;
 mod program;
 pub mod python;
 pub mod rust;
