@@ -13,11 +13,10 @@ use frikan_runtime::supervised::{DEFAULT_GAIN, VelocitySource};
 
 use super::output::{Outputs, print};
 use super::progress::Reporter;
-use super::simulate::parse_effect;
+use super::simulate::{parse_effect, with_effects};
 use crate::emulator::Lockstep;
 use crate::error::{Error, Result, codes};
 use crate::fit::model::{self, CELLS, HostModel};
-use crate::joint;
 use crate::plant::{self, Hidden};
 use crate::report;
 use crate::rig::{Bench, Row, Scores, drive_settings, host_drive, nominal_model, run as run_bench, with_contact};
@@ -112,10 +111,7 @@ impl From<Velocity> for VelocitySource {
 /// exist or cannot be emulated. Nothing is written unless both runs ended.
 pub fn run(arguments: &Loop) -> Result<()> {
     let label = arguments.joint.display().to_string();
-    let mut joint =
-        plant::Joint::described_by(&joint::Joint::load(&arguments.joint)?).map_err(|e| e.in_file(&label))?;
-    joint.effects.extend(arguments.effects.iter().cloned());
-    let joint = with_contact(&joint);
+    let joint = with_contact(&with_effects(&arguments.joint, &arguments.effects)?);
     let (image, model) = image_of(arguments, &joint)?;
     let settings = settings_of(arguments, &joint, model.output_limit)?;
     let bench = bench_of(arguments, joint)?;

@@ -49,10 +49,8 @@ pub struct Simulate {
 /// `FRK-D015` for a joint that cannot be simulated, `FRK-U001` for an effect or a length that does not exist, and
 /// whatever reading or writing reports. Nothing is written unless the simulation succeeded.
 pub fn run(arguments: &Simulate) -> Result<()> {
-    let file = joint::Joint::load(&arguments.joint)?;
     let label = arguments.joint.display().to_string();
-    let mut joint = plant::Joint::described_by(&file).map_err(|error| error.in_file(&label))?;
-    joint.effects.extend(arguments.effects.iter().cloned());
+    let mut joint = with_effects(&arguments.joint, &arguments.effects)?;
     if let Some(kind) = arguments.noise {
         joint.noise.kind = kind;
     }
@@ -80,6 +78,14 @@ pub fn run(arguments: &Simulate) -> Result<()> {
         eprintln!("{}: {} samples, {} hidden", arguments.output.display(), recording.len(), joint.effects.len());
     }
     Ok(())
+}
+
+/// The joint that a `joint.toml` describes, with more effects hidden in it.
+pub(super) fn with_effects(path: &Path, effects: &[Hidden]) -> Result<plant::Joint> {
+    let file = joint::Joint::load(path)?;
+    let mut joint = plant::Joint::described_by(&file).map_err(|error| error.in_file(path.display().to_string()))?;
+    joint.effects.extend(effects.iter().cloned());
+    Ok(joint)
 }
 
 fn write_recording(arguments: &Simulate, recording: &SimulatedRecording) -> Result<()> {

@@ -66,11 +66,8 @@ impl Lockstep {
             .map_err(|e| Error::from_io(&in_folder(qemu::IMAGE_FILE), &e))?;
         let socket = in_folder("uart");
         let listener = UnixListener::bind(&socket).map_err(|error| Error::from_io(&socket, &error))?;
-        let mut command = qemu::command(&target, folder.path(), &elf, window)?;
+        let mut command = qemu::command(&target, folder.path(), &elf, window, counts)?;
         command.args(["-chardev", "socket,id=uart,path=uart", "-serial", "chardev:uart"]);
-        if counts {
-            command.arg("-icount").arg(format!("shift={}", target.icount_shift));
-        }
         let mut child = command.spawn().map_err(|error| Error::from_io(Path::new(&target.emulator), &error))?;
         let stream = match accept(&listener, &socket, &mut child) {
             Ok(stream) => stream,

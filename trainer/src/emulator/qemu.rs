@@ -36,13 +36,17 @@ pub(super) fn check_installed(target: &Target) -> Result<()> {
 /// Name of the file with the image, in the folder of a run.
 pub(super) const IMAGE_FILE: &str = "model.frk";
 
-/// The emulator over `elf`, with the image of the folder in its flash and no device of the host but those that are added.
-pub(super) fn command(target: &Target, folder: &Path, elf: &Path, window: Window) -> Result<Command> {
+/// The emulator over `elf`, with the image of the folder in its flash and no device of the host but those that are added; `counts`
+/// instructions where asked.
+pub(super) fn command(target: &Target, folder: &Path, elf: &Path, window: Window, counts: bool) -> Result<Command> {
     let elf = std::path::absolute(elf).map_err(|error| Error::from_io(elf, &error))?;
     let mut qemu = Command::new(&target.emulator);
     qemu.current_dir(folder).args(&target.machine).arg("-kernel").arg(elf);
     qemu.arg("-device").arg(format!("loader,file={IMAGE_FILE},addr={:#x},force-raw=on", window.start));
     qemu.args(["-display", "none", "-monitor", "none"]);
+    if counts {
+        qemu.arg("-icount").arg(format!("shift={}", target.icount_shift));
+    }
     qemu.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     Ok(qemu)
 }
@@ -60,12 +64,8 @@ pub(super) fn run(target: &Target, elf: &Path, window: Window, request: &Request
     write(IMAGE_FILE, request.image)?;
     write("request.bin", &request.to_bytes()?)?;
 
-    let mut qemu = command(target, folder.path(), elf, window)?;
-    qemu.args(["-semihosting-config", "enable=on,target=native"]);
-    qemu.args(["-serial", "none"]);
-    if request.mode == Mode::Count {
-        qemu.arg("-icount").arg(format!("shift={}", target.icount_shift));
-    }
+    let mut qemu = command(target, folder.path(), elf, window, request.mode == Mode::Count)?;
+    qemu.args(["-semihosting-config", "enable=on,target=native", "-serial", "none"]);
     let child = qemu.spawn().map_err(|error| Error::from_io(Path::new(&target.emulator), &error))?;
     let status = wait(child)?;
     if !status.success() {

@@ -25,6 +25,7 @@ pub use effects::{CATALOGUE, Entry, OUTSIDE, find};
 pub use error::PlantError;
 pub use joint::{Base, Control, Drive, Friction, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
 pub use measurement::recording::{Column, SimulatedRecording, Truth};
+pub(crate) use measurement::sensors::encoder_step;
 pub(crate) use mechanics::transmission::Load;
 pub(crate) use simulate::at_rest;
 pub use simulate::{conceal, simulate};

@@ -1,7 +1,5 @@
 //! Sample by sample: counts and reference to the drive, its torque to the joint.
 
-use std::f64::consts::TAU;
-
 use frikan_runtime::controller::Target;
 use frikan_runtime::drive::DriveInput;
 
@@ -38,7 +36,7 @@ pub fn run(bench: &Bench, drive: &mut impl DriveUnderTest) -> Result<Vec<Row>> {
     let mut moving = plant::at_rest(joint, *seed)?;
     let load = Load::of(joint, joint.gravity_torque_nm.first().copied().unwrap_or(0.0));
     let dry = joint.friction.dry_level(0.0);
-    let count = TAU / joint.drive.counts_per_turn;
+    let count = plant::encoder_step(joint);
     let mut acting = 0.0_f32;
     let mut rows = Vec::new();
     for index in 0..(duration * rate).round() as usize {

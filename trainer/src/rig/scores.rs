@@ -1,6 +1,7 @@
 //! What a run is worth.
 
 use super::drive::Answer;
+use crate::numerics::statistics::root_mean_square;
 
 /// One sample of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,27 +61,23 @@ impl Scores {
     #[must_use]
     pub fn of(rows: &[Row], nudge_end: Option<f64>) -> Self {
         let settled = rows.iter().filter(|row| row.time >= SETTLING_S);
-        let errors: Vec<f64> = settled.map(|row| f64::from(row.reference[0]) - row.position).collect();
-        let finite = errors.iter().copied().filter(|error| error.is_finite());
+        let errors = settled.map(|row| f64::from(row.reference[0]) - row.position);
+        let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
+        let torques: Vec<f64> = rows.iter().map(|row| f64::from(row.answer.torque)).collect();
         let let_go: Vec<f64> = nudge_end
             .map(|end| rows.iter().filter(|row| row.time >= end).map(|row| row.velocity.abs()).collect())
             .unwrap_or_default();
         let largest = let_go.iter().copied().fold(0.0, f64::max);
         Self {
-            rms_error: root_mean_square(finite.clone()),
-            peak_error: finite.map(f64::abs).fold(0.0, f64::max),
+            rms_error: root_mean_square(&errors),
+            peak_error: errors.iter().map(|error| error.abs()).fold(0.0, f64::max),
             hold_peak_to_peak: hold_peak_to_peak(rows),
-            torque_rms: root_mean_square(rows.iter().map(|row| f64::from(row.answer.torque))),
+            torque_rms: root_mean_square(&torques),
             final_speed: rows.last().map_or(0.0, |row| row.velocity.abs()),
             speed_gain_after_nudge: largest - let_go.first().copied().unwrap_or(0.0),
             max_speed_after_nudge: largest,
         }
     }
-}
-
-fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (count, sum) = values.fold((0usize, 0.0), |(count, sum), value| (count + 1, sum + value * value));
-    (sum / count.max(1) as f64).sqrt()
 }
 
 fn hold_peak_to_peak(rows: &[Row]) -> f64 {

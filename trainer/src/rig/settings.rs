@@ -7,7 +7,7 @@ use frikan_runtime::controller::Settings;
 use frikan_runtime::drive::DriveSettings;
 use frikan_runtime::supervised::Supervision;
 
-use crate::plant::Joint;
+use crate::plant::{Joint, encoder_step};
 
 /// Way over which the contact of a joint breaks away unless its stiffness is given, rad: harmonic drives and greased bearings take about one
 /// milliradian (Armstrong-Helouvry et al. 1994, table 2).
@@ -37,7 +37,7 @@ pub fn drive_settings(joint: &Joint, gain: f32, largest: f32) -> Option<DriveSet
         stiffness: (joint.inertia_kgm2 * omega * omega) as f32,
         damping: (2.0 * joint.control.damping_ratio * omega * joint.inertia_kgm2) as f32,
         inertia: joint.inertia_kgm2 as f32,
-        count: (TAU / joint.drive.counts_per_turn) as f32,
+        count: encoder_step(joint) as f32,
         velocity_corner: (TAU * joint.control.velocity_corner_hz) as f32,
         torque_limit: if limit > 0.0 { limit as f32 } else { f32::MAX },
     };

@@ -30,6 +30,17 @@ impl Account<'_> {
         Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&trace_bytes(self.rows))
     }
 
+    /// The smallest share of the gain that the monitor left.
+    fn lowest_gain_share(&self) -> f32 {
+        self.rows.iter().map(|row| row.answer.gain_share).fold(1.0, f32::min)
+    }
+
+    /// Samples in each status of the drive, the active one first.
+    fn statuses(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
+        let count = |index: usize| self.rows.iter().filter(|row| row.answer.status as usize == index).count();
+        STATUS.into_iter().enumerate().map(move |(index, name)| (name, count(index)))
+    }
+
     /// The result in sentences, one a line.
     pub(super) fn lines(&self) -> Vec<String> {
         let (before, after) = (&self.uncompensated, &self.compensated);
@@ -64,12 +75,11 @@ impl Account<'_> {
             );
             compared("speed at the end", "rad/s", before.final_speed, after.final_speed);
         }
-        let lowest = self.rows.iter().map(|row| row.answer.gain_share).fold(1.0, f32::min);
+        let lowest = self.lowest_gain_share();
         if lowest < 1.0 {
             lines.push(format!("the monitor lowered the gain to {} of its setting", digits(f64::from(lowest))));
         }
-        for (index, name) in STATUS.iter().enumerate().skip(1) {
-            let count = self.rows.iter().filter(|row| row.answer.status as usize == index).count();
+        for (name, count) in self.statuses().skip(1) {
             if count > 0 {
                 lines.push(format!("no compensation in {count} samples: {}", name.replace('_', " ")));
             }
@@ -83,14 +93,7 @@ impl Account<'_> {
 
     /// The result as JSON.
     pub(super) fn to_json(&self) -> Value {
-        let statuses: serde_json::Map<String, Value> = STATUS
-            .iter()
-            .enumerate()
-            .map(|(index, name)| {
-                let count = self.rows.iter().filter(|row| row.answer.status as usize == index).count();
-                ((*name).to_owned(), count.into())
-            })
-            .collect();
+        let statuses = self.statuses().map(|(name, count)| (name.to_owned(), Value::from(count)));
         json!({
             "schema": "frikan.loop/1",
             "target": self.target,
@@ -100,8 +103,8 @@ impl Account<'_> {
             "steps": self.rows.len(),
             "compensated": scores(&self.compensated),
             "uncompensated": scores(&self.uncompensated),
-            "lowest_gain_share": self.rows.iter().map(|row| row.answer.gain_share).fold(1.0, f32::min),
-            "status": statuses,
+            "lowest_gain_share": self.lowest_gain_share(),
+            "status": Value::Object(statuses.collect()),
             "instructions": self.instructions.map(|(fewest, most)| json!({"min": fewest, "max": most})),
             "trace_crc32": format!("{:08x}", self.trace_crc32()),
         })

@@ -3,19 +3,18 @@
 mod friction_table;
 mod moved_formula;
 mod origin;
+mod refitted_law;
 
 use self::friction_table::{OCTAVE_CELLS_LOG2, THINNED_SHARE, deviation, table_model};
-use self::moved_formula::{MovedFormula, moved_formula};
 use self::origin::Friction;
 pub use self::origin::Origin;
+use self::refitted_law::{Form, RefittedLaw, refitted_law};
 use crate::compile::effects::{Context, Room, Terms, has_room_for_position};
 use crate::compile::host_model::HostModel;
 use crate::compile::profile::Profile;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
-use crate::diagnose::comparison::from_model::{
-    Movement, hats, is_odd, law_at, mean_measurement, movement, moving_constants,
-};
+use crate::diagnose::comparison::from_model::moving_constants;
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::measurement::signals::Signals;
@@ -25,7 +24,6 @@ use crate::law::significant;
 use crate::numerics::statistics::quantile;
 use crate::physics::names::plain_name;
 use crate::physics::{EffectId, JointState};
-use frikan_shared::effect::Effect;
 use frikan_shared::model::{Input, Law, MAX_INPUTS, RigidBody};
 use frikan_shared::pool::Pool;
 use frikan_shared::units::{Quantity, Unit};
@@ -92,6 +90,24 @@ struct Attempt {
     is_within_bound: bool,
 }
 
+/// What an attempt is worth, the least first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    BeyondBound,
+    WithoutSomeFindings,
+    Whole,
+}
+
+impl Attempt {
+    fn rank(&self) -> Rank {
+        match (self.is_within_bound, self.has_room) {
+            (true, true) => Rank::Whole,
+            (true, false) => Rank::WithoutSomeFindings,
+            (false, _) => Rank::BeyondBound,
+        }
+    }
+}
+
 /// What the models of one diagnosis are written from.
 struct Writer<'a> {
     diagnosis: &'a Diagnosis,
@@ -109,30 +125,33 @@ impl Writer<'_> {
     /// The model after a refit, and in sentences what of its effects it holds: the finest table of friction that leaves room for every
     /// finding within its bound, else the finest within its bound, else the finest that the drive has room for.
     fn model_of(&self, refit: &Refit) -> Result<(Box<HostModel>, Vec<String>), NotWritten> {
-        let (mut needed, mut fitting) = (usize::MAX, Vec::new());
+        let Self { diagnosis, origin, ref state, ref places, target, .. } = *self;
+        let [before, law] = [&diagnosis.baseline_refit, refit]
+            .map(|refit| refitted_law(diagnosis.base, refit, (origin, places), state));
+        let context = self.context([&before.friction, &law.friction]);
+        let (mut needed, mut best) = (usize::MAX, None::<Attempt>);
         for octave_cells_log2 in (0..=OCTAVE_CELLS_LOG2).rev() {
-            let Some(attempt) = self.attempt(refit, octave_cells_log2)? else { break };
+            let Some(attempt) = self.attempt(refit, &law, &context, octave_cells_log2)? else { break };
             needed = needed.min(attempt.law_cells);
-            if attempt.law_cells <= self.target.cells {
-                fitting.push(attempt);
+            let is_better = best.as_ref().is_none_or(|best| attempt.rank() > best.rank());
+            if attempt.law_cells <= target.cells && is_better {
+                let is_whole = attempt.rank() == Rank::Whole;
+                best = Some(attempt);
+                if is_whole {
+                    break;
+                }
             }
         }
-        let is_whole = |attempt: &Attempt| attempt.is_within_bound && attempt.has_room;
-        let best = fitting.iter().position(is_whole).or(fitting.iter().position(|attempt| attempt.is_within_bound));
-        let best = fitting.into_iter().nth(best.unwrap_or(0));
-        best.map(|attempt| (attempt.model, attempt.remarks)).ok_or(NotWritten::TooLarge { needed, target: self.target })
+        best.map(|attempt| (attempt.model, attempt.remarks)).ok_or(NotWritten::TooLarge { needed, target })
     }
 
-    /// The model with a table of friction of `2^octave_cells_log2` cells for each doubling of the speed; `None` where the law
-    /// is a formula or a network, which no table can thin.
-    fn attempt(&self, refit: &Refit, octave_cells_log2: u8) -> Result<Option<Attempt>, NotWritten> {
-        let Self { diagnosis, origin, ref state, ref places, .. } = *self;
-        let [before, friction] = [&diagnosis.baseline_refit, refit]
-            .map(|refit| refitted_friction(diagnosis.base, refit, (origin, places), state));
+    /// What terms are written with, from the friction `before` the findings and with them.
+    fn context(&self, [before, with]: [&Friction<'_>; 2]) -> Context {
+        let Self { origin, ref state, .. } = *self;
         let dissipated =
             |friction: &Friction<'_>| -> Vec<f64> { state.velocity.iter().map(|v| (friction(*v) * v).abs()).collect() };
-        let [measured, evaluated] = [&before, &friction].map(dissipated);
-        let context = Context {
+        let [measured, evaluated] = [before, with].map(dissipated);
+        Context {
             smoothing_velocity: state.sign_velocity,
             load_scale: quantile_of_load(state),
             longest_dwell: state.memory.dwell.iter().copied().fold(0.0, f64::max),
@@ -140,28 +159,38 @@ impl Writer<'_> {
             power_ratio: measured.iter().sum::<f64>() / evaluated.iter().sum::<f64>().max(f64::MIN_POSITIVE),
             duration: state.time.last().zip(state.time.first()).map_or(0.0, |(last, first)| last - first),
             may_read_position: !matches!(origin, Origin::Model(model) if !has_room_for_position(model)),
-        };
+        }
+    }
+
+    /// The model with a table of friction of `2^octave_cells_log2` cells for each doubling of the speed; `None` where the law
+    /// is a formula or a network, which no table can thin.
+    fn attempt(
+        &self,
+        refit: &Refit,
+        law: &RefittedLaw<'_>,
+        context: &Context,
+        octave_cells_log2: u8,
+    ) -> Result<Option<Attempt>, NotWritten> {
+        let Self { diagnosis, origin, ref state, .. } = *self;
+        let friction = &law.friction;
         let rigid_body = rigid_body((diagnosis.base, refit), self.signals, origin);
         let mut terms = Terms { rigid_body, ..Terms::default() };
         if let Origin::Model(model) = origin {
             terms.effects.extend(model.effects.iter().cloned());
         }
-        let as_formula = match origin {
-            Origin::Model(model) => {
-                moved_law(&refit.base, (model, places), &mut terms, state).ok_or(NotWritten::Invalid)?
-            }
-            _ => None,
-        };
         let mut remarks = Vec::new();
         let is_finest = octave_cells_log2 == OCTAVE_CELLS_LOG2;
         let mut is_within_bound = true;
-        let (mut model, mut cells) = match as_formula {
-            Some(_) if !is_finest => return Ok(None),
-            Some(model) => (model.clone(), model.cells.to_vec()),
-            None => {
-                let (model, cells) = table_model(&friction, origin, state, (self.unit, octave_cells_log2));
+        let (mut model, mut cells) = match law.form.as_ref().ok_or(NotWritten::Invalid)? {
+            Form::Model(..) if !is_finest => return Ok(None),
+            Form::Model(model, beside) => {
+                terms.effects.extend(beside.clone());
+                (model.clone(), model.cells.to_vec())
+            }
+            Form::Table => {
+                let (model, cells) = table_model(friction, origin, state, (self.unit, octave_cells_log2));
                 if !is_finest {
-                    let (error, largest) = deviation(&friction, &model, &cells);
+                    let (error, largest) = deviation(friction, &model, &cells);
                     is_within_bound = error <= THINNED_SHARE * largest;
                     let unit = self.unit.symbol();
                     let error = significant(error, 2);
@@ -180,18 +209,18 @@ impl Writer<'_> {
         terms.room =
             Room { channels: if is_fixed { terms.inputs.len() } else { MAX_INPUTS }, cells: self.target.cells };
         if let Origin::Simulation(law) = origin {
-            let written = |effect| write_term(&mut terms, &context, effect, ", as the simulation holds it");
+            let written = |effect| write_term(&mut terms, context, effect, ", as the simulation holds it");
             remarks.extend(law.effects().map(written));
         }
-        remarks.extend(write_findings(refit, &mut terms, &context));
+        remarks.extend(write_findings(refit, &mut terms, context));
         model.rigid_body = terms.rigid_body;
         cells.extend(&terms.cells);
         model.cells = Pool::from_slice(&cells).map_err(|_| NotWritten::Invalid)?;
         model.effects = terms.effects.iter().cloned().collect();
         add_channels(&mut model, &terms.channels, state).ok_or(NotWritten::Invalid)?;
         let largest = self.signals.torque.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
-        let law = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
-        model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * law)).max(f64::from(model.output_limit)) as f32;
+        let sliding = state.velocity.iter().map(|v| friction(*v).abs()).fold(0.0, f64::max);
+        model.output_limit = (OUTPUT_ROOM * largest.max(2.0 * sliding)).max(f64::from(model.output_limit)) as f32;
         model.validate().map_err(|_| NotWritten::Invalid)?;
         Ok(Some(Attempt { model, remarks, law_cells, has_room: !terms.lacks_cells, is_within_bound }))
     }
@@ -232,36 +261,6 @@ fn write_term(
     }
 }
 
-/// Friction of the base over velocity after a refit; `places` are those of a formula's constants that move.
-fn refitted_friction<'a>(
-    base: BaseKind,
-    refit: &'a Refit,
-    (origin, places): (Origin<'a>, &[usize]),
-    state: &JointState,
-) -> Friction<'a> {
-    let (eps, top) = (state.sign_velocity, state.top_speed());
-    let sign = move |velocity: f64| (velocity / eps).tanh();
-    let sum = |basis: Vec<f64>| -> f64 { basis.iter().zip(&refit.base).map(|(b, c)| b * c).sum() };
-    let model = match origin {
-        Origin::Recording(_) => return Box::new(move |v| sum(friction_basis(base, v, sign(v), top))),
-        Origin::Simulation(law) => return Box::new(move |v| law.friction(v) + sum(vec![sign(v), v])),
-        Origin::Model(model) => model,
-    };
-    let mean = mean_measurement(state);
-    match movement(model) {
-        Movement::Constants => match moved_formula(model, places, &refit.base, state) {
-            Some(MovedFormula::Formula(law)) => Box::new(move |v| law_at(&law, &mean, v)),
-            Some(MovedFormula::Curve(law)) => Box::new(move |v| law.at(v)),
-            None => Box::new(move |v| law_at(model, &mean, v)),
-        },
-        Movement::Curve => {
-            let is_odd = is_odd(&model.law);
-            Box::new(move |v| law_at(model, &mean, v) + sum(hats(v, eps, top, is_odd)))
-        }
-        Movement::Beside => Box::new(move |v| law_at(model, &mean, v) + sum(vec![sign(v), v])),
-    }
-}
-
 fn rigid_body((base, refit): (BaseKind, &Refit), signals: &Signals, origin: Origin<'_>) -> RigidBody {
     match origin {
         Origin::Recording(mut given) => {
@@ -277,32 +276,6 @@ fn rigid_body((base, refit): (BaseKind, &Refit), signals: &Signals, origin: Orig
         }
         Origin::Model(model) => model.rigid_body,
     }
-}
-
-/// The law of a formula or a network with its parameters where the refit moved them, `Some(None)` where that is a table of velocity, `None`
-/// where it is no model.
-fn moved_law(
-    refitted: &[f64],
-    (model, places): (&HostModel, &[usize]),
-    terms: &mut Terms,
-    state: &JointState,
-) -> Option<Option<Box<HostModel>>> {
-    match movement(model) {
-        Movement::Curve => return Some(None),
-        Movement::Constants => {
-            return moved_formula(model, places, refitted, state).map(|moved| match moved {
-                MovedFormula::Formula(model) => Some(model),
-                MovedFormula::Curve(_) => None,
-            });
-        }
-        Movement::Beside => {}
-    }
-    terms.effects.push(Effect::Coulomb {
-        coulomb: refitted.first().copied().unwrap_or(0.0) as f32,
-        viscous: refitted.get(1).copied().unwrap_or(0.0) as f32,
-        smoothing_velocity: state.sign_velocity as f32,
-    });
-    Some(Some(Box::new(model.clone())))
 }
 
 /// Adds the channels that the terms read; a table and a formula go on reading theirs, a network reads all.
