@@ -4,7 +4,8 @@ use frikan_runtime::shared::model::Model;
 use frikan_runtime::supervised::VelocitySource;
 use frikan_trainer::plant::{Control, Drive, Friction, Joint};
 use frikan_trainer::rig::{
-    Bench, Course, Motion, Row, Scores, drive_settings, host_drive, nominal_model, run, with_contact,
+    Bench, Course, Motion, Row, Scores, adaptation_settings, drive_settings, host_drive, nominal_model, run,
+    with_contact,
 };
 
 /// Joints of three sizes. The defaults of the supervision were chosen on the first.
@@ -60,6 +61,16 @@ pub struct Compensation<'a, const CELLS: usize> {
     pub gain: f32,
     /// Velocity at which it is evaluated; the monitor watches the blended one alone.
     pub source: VelocitySource,
+    /// Whether it follows a friction that differs from the model's.
+    pub adapts: bool,
+}
+
+impl<'a, const CELLS: usize> Compensation<'a, CELLS> {
+    /// The blended compensation of a supervised drive, that does not adapt.
+    #[must_use]
+    pub fn supervised(model: &'a Model<CELLS>, gain: f32) -> Self {
+        Self { model, gain, source: VelocitySource::Blended, adapts: false }
+    }
 }
 
 /// The rows of a motion, friction `friction_scale` times that of the description, effects of `seed`.
@@ -74,10 +85,11 @@ pub fn rows<const CELLS: usize>(
     seed: u64,
     compensation: Compensation<'_, CELLS>,
 ) -> Vec<Row> {
-    let Compensation { model, gain, source } = compensation;
+    let Compensation { model, gain, source, adapts } = compensation;
     let mut settings = drive_settings(joint, gain, model.output_limit).expect("a gain");
     settings.supervision.source = source;
     settings.supervision.monitored = source == VelocitySource::Blended;
+    settings.supervision.adaptation = adapts.then(|| adaptation_settings(joint).expect("a friction"));
     let course = Course::Standard(motion);
     let bench = Bench { joint: joint.clone(), seed, friction_scale, course, duration: motion.duration(), swap: None };
     run(&bench, &mut host_drive(model.clone(), &settings)).expect("a run")
@@ -92,8 +104,7 @@ pub fn scores<const CELLS: usize>(
     model: &Model<CELLS>,
     gain: f32,
 ) -> Scores {
-    let compensation = Compensation { model, gain, source: VelocitySource::Blended };
-    Scores::of(&rows(joint, motion, scale, 1, compensation), motion.nudge_end())
+    Scores::of(&rows(joint, motion, scale, 1, Compensation::supervised(model, gain)), motion.nudge_end())
 }
 
 /// The model of the joint's own sliding friction.

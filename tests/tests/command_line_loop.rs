@@ -19,7 +19,7 @@ fn an_emulated_drive_moves_the_joint_as_the_host_does_bit_for_bit_across_image_s
     // The firmware is found from inside the checkout.
     let folder = fixtures::folder();
     let fitted = fixtures::folder().join("elbow.frk").display().to_string();
-    let line = ["--motion", "reversals", "--duration", "6", "--swap-image", fitted.as_str(), "--swap-at", "3"];
+    let line = ["--motion", "sine", "--adapt", "--duration", "6", "--swap-image", fitted.as_str(), "--swap-at", "3"];
     let on_host = json(&folder, &line);
     let on_target = json(&folder, &[&line[..], &["--target", "cortex-m4f"]].concat());
     assert_eq!(on_host["trace_crc32"], on_target["trace_crc32"], "{on_host} {on_target}");
@@ -27,8 +27,12 @@ fn an_emulated_drive_moves_the_joint_as_the_host_does_bit_for_bit_across_image_s
     assert_eq!(on_target["status"]["active"], on_target["steps"]);
     let most = on_target["instructions"]["max"].as_u64().unwrap();
     assert!((100..2000).contains(&most), "{on_target}");
-    let unswapped = json(&folder, &line[..4]);
+    let unswapped = json(&folder, &line[..5]);
     assert_ne!(unswapped["trace_crc32"], on_host["trace_crc32"]);
+    let level = unswapped["correction"]["level"].as_f64().unwrap();
+    assert!((level - 1.0).abs() < 0.05 && level != 1.0, "{unswapped}");
+    let fixed = json(&folder, &["--motion", "sine", "--duration", "6"]);
+    assert_eq!(fixed["correction"]["level"], 1.0);
 }
 
 #[test]

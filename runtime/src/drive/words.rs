@@ -4,14 +4,15 @@
 use super::sample::{DriveInput, DriveOutput};
 use crate::compensator::{Limits, Status};
 use crate::controller::{Settings, Target};
-use crate::supervised::{Supervised, Supervision, VelocitySource};
+use crate::supervised::adaptation::{AdaptationSettings, Correction};
+use crate::supervised::{Supervised, SupervisedCompensation, Supervision, VelocitySource};
 
 /// Words of a [`DriveInput`].
 pub const INPUT_WORDS: usize = 6;
 /// Words of a [`DriveOutput`].
-pub const OUTPUT_WORDS: usize = 5;
+pub const OUTPUT_WORDS: usize = 8;
 /// Words of [`DriveSettings`].
-pub const SETTINGS_WORDS: usize = 21;
+pub const SETTINGS_WORDS: usize = 27;
 
 /// All that a drive is set to, but for its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,8 @@ impl DriveInput {
 }
 
 impl DriveOutput {
-    /// Torque, velocity, compensation, its gain share, and the status: 0 active, 1 no model, 2 not finite, 3 implausible.
+    /// Torque, velocity, compensation, its gain share, the correction of the adaptation (level, viscous, offset), and the status: 0 active,
+    /// 1 no model, 2 not finite, 3 implausible.
     #[must_use]
     pub fn to_words(&self) -> [u32; OUTPUT_WORDS] {
         let status = match self.compensation.status {
@@ -57,14 +59,16 @@ impl DriveOutput {
             Supervised::Compensator(Status::NotFinite) => 2,
             Supervised::Implausible => 3,
         };
-        let [torque, velocity, compensation, share] =
-            [self.torque, self.velocity, self.compensation.torque, self.compensation.gain_share].map(f32::to_bits);
-        [torque, velocity, compensation, share, status]
+        let SupervisedCompensation { torque: compensation, gain_share, correction, .. } = self.compensation;
+        let Correction { level, viscous, offset } = correction;
+        let [torque, velocity, compensation, share, level, viscous, offset] =
+            [self.torque, self.velocity, compensation, gain_share, level, viscous, offset].map(f32::to_bits);
+        [torque, velocity, compensation, share, level, viscous, offset, status]
     }
 }
 
 impl DriveSettings {
-    /// All settings, in the order of their fields.
+    /// All settings, in the order of their fields; NaN for an adaptation that there is none of.
     #[must_use]
     pub fn to_words(&self) -> [u32; SETTINGS_WORDS] {
         let Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit } = self.controller;
@@ -74,6 +78,10 @@ impl DriveSettings {
             VelocitySource::Reference => 1,
             VelocitySource::Blended => 2,
         };
+        let adaptation = watch.adaptation.map_or([f32::NAN; 6], |adaptation| {
+            let ([low, high], [viscous, offset]) = (adaptation.level(), adaptation.bounds());
+            [low, high, viscous, offset, adaptation.memory(), adaptation.trusted_torque()]
+        });
         let numbers = [
             stiffness,
             damping,
@@ -96,12 +104,13 @@ impl DriveSettings {
             self.dt,
         ];
         let mut words = [0; SETTINGS_WORDS];
-        words.iter_mut().zip(numbers).for_each(|(word, number)| *word = number.to_bits());
+        words.iter_mut().zip(numbers.into_iter().chain(adaptation)).for_each(|(word, number)| *word = number.to_bits());
         [words[SETTINGS_WORDS - 2], words[SETTINGS_WORDS - 1]] = [source, u32::from(watch.monitored)];
         words
     }
 
-    /// The settings of [`DriveSettings::to_words`]; `None` where the limits cannot be kept or the source of the velocity is unknown.
+    /// The settings of [`DriveSettings::to_words`]; `None` where the limits or the adaptation cannot be kept or the source of the velocity is
+    /// unknown.
     #[must_use]
     pub fn from_words(words: &[u32; SETTINGS_WORDS]) -> Option<Self> {
         let [numbers @ .., source, monitored] = *words;
@@ -125,7 +134,14 @@ impl DriveSettings {
             least_friction,
             implausible_time,
             dt,
+            adaptation @ ..,
         ] = numbers.map(f32::from_bits);
+        let adaptation = match adaptation {
+            [low, ..] if low.is_nan() => None,
+            [low, high, viscous, offset, memory, trusted_torque] => {
+                Some(AdaptationSettings::new([low, high], [viscous, offset], memory, trusted_torque).ok()?)
+            }
+        };
         let source = match source {
             0 => VelocitySource::Measured,
             1 => VelocitySource::Reference,
@@ -143,6 +159,7 @@ impl DriveSettings {
             rise_time,
             least_friction,
             implausible_time,
+            adaptation,
         };
         let controller = Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit };
         let limits = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()?;
@@ -166,9 +183,11 @@ mod tests {
         };
         let limits = Limits::new(0.7, 8.0, 9.0).unwrap().with_position(0.1).unwrap();
         for source in [VelocitySource::Measured, VelocitySource::Reference, VelocitySource::Blended] {
-            let supervision = Supervision { source, ..Supervision::new(0.5, 2.0) };
-            let settings = DriveSettings { controller, limits, supervision, dt: 1e-3 };
-            assert_eq!(DriveSettings::from_words(&settings.to_words()), Some(settings));
+            for adaptation in [None, AdaptationSettings::new([0.5, 1.5], [0.1, 0.2], 3.0, 0.05).ok()] {
+                let supervision = Supervision { source, adaptation, ..Supervision::new(0.5, 2.0) };
+                let settings = DriveSettings { controller, limits, supervision, dt: 1e-3 };
+                assert_eq!(DriveSettings::from_words(&settings.to_words()), Some(settings));
+            }
         }
         let target = Some(Target { position: 1.0, velocity: -2.0, acceleration: 3.0 });
         for target in [target, None] {

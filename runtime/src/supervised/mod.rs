@@ -1,5 +1,5 @@
 //! A compensator that watches what it does: it takes the velocity of the reference and of the joint, lowers its gain where compensation feeds
-//! the joint, holds its torque at rest, and ramps down where velocity and position contradict each other.
+//! the joint, holds its torque at rest, ramps down where velocity and position contradict each other, and follows a friction that changes.
 //!
 //! Around [`Compensator`], whose step costs what it costs without supervision. Branches depend on the sample here.
 
@@ -7,13 +7,17 @@ use crate::compensator::{Compensator, Limits, Status};
 use crate::evaluate::limited;
 use crate::friction::Measurement;
 
+pub mod adaptation;
 pub mod blend;
 pub mod monitor;
+pub mod observer;
 pub mod plausibility;
 mod settings;
 
+use adaptation::{Adaptation, Correction, Torques};
 use blend::{blended, share_without_reference};
 use monitor::Monitor;
+use observer::{Observation, Observer};
 use plausibility::Plausibility;
 use settings::FASTEST;
 
@@ -48,6 +52,8 @@ pub struct SupervisedCompensation {
     pub position: f32,
     /// Share of the firmware's gain that the monitor leaves, 0 to 1.
     pub gain_share: f32,
+    /// How the friction differs from the model, as far as it was learnt.
+    pub correction: Correction,
     /// Whether it is a compensation.
     pub status: Supervised,
 }
@@ -58,7 +64,9 @@ pub struct SupervisedCompensator<const CELLS: usize> {
     compensator: Compensator<CELLS>,
     limits: Limits,
     supervision: Supervision,
+    observer: Observer,
     monitor: Monitor,
+    adaptation: Adaptation,
     plausibility: Plausibility,
     /// What was put out last, before the share of the monitor.
     held: f32,
@@ -70,8 +78,28 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
     #[must_use]
     pub fn new(mut compensator: Compensator<CELLS>, limits: Limits, supervision: Supervision) -> Self {
         compensator.set_limits(limits);
-        let (monitor, plausibility) = (Monitor::new(), Plausibility::default());
-        Self { compensator, limits, supervision, monitor, plausibility, held: 0.0, torque: 0.0 }
+        Self {
+            compensator,
+            limits,
+            supervision,
+            observer: Observer::default(),
+            monitor: Monitor::new(),
+            adaptation: Adaptation::new(),
+            plausibility: Plausibility::default(),
+            held: 0.0,
+            torque: 0.0,
+        }
+    }
+
+    /// How the friction differs from the model, as far as it was learnt; a reset of the compensator does not touch it.
+    #[must_use]
+    pub fn correction(&self) -> Correction {
+        self.adaptation.correction()
+    }
+
+    /// Forgets what was learnt, for a joint that was idle for long or has another gear or grease.
+    pub fn forget(&mut self) {
+        self.adaptation = Adaptation::new();
     }
 
     /// The compensator, for its model, its warmth and its reset.
@@ -110,14 +138,19 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
         }
         // What no joint does must not overflow what the filters remember.
         let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
-        self.monitor.observe(&self.supervision, velocity, loop_torque, answer.torque, dt);
+        let observed = self.observer.observe(&self.supervision, velocity, loop_torque, dt);
+        self.monitor.take(&self.supervision, &observed, answer.torque, dt);
         let is_plausible = self.plausibility.observe(&self.supervision, velocity, position, dt);
+        // Without a reference somebody pushes, and what the push does would pass for friction.
+        let is_sliding = observed.slides && observed.velocity.abs() > 2.0 * rest;
+        let may_learn = is_plausible && is_sliding && reference.is_some();
+        let compensated = self.adapted(&observed, answer.torque, chosen, may_learn.then_some(dt));
         let is_blended = self.supervision.source == VelocitySource::Blended;
         let wanted = match reference {
             // At rest the torque stays as it is: to switch it would move the joint.
             Some(reference) if is_blended && reference.abs() < HOLD * rest && velocity.abs() < rest => self.held,
-            None if is_blended => share_without_reference(&self.supervision, velocity) * answer.torque,
-            _ => answer.torque,
+            None if is_blended => share_without_reference(&self.supervision, velocity) * compensated,
+            _ => compensated,
         };
         self.held = wanted;
         let share = if self.supervision.monitored { self.monitor.share() } else { 1.0 };
@@ -125,7 +158,18 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
         let reach = if is_plausible { self.limits.slew() * dt } else { self.ramp(dt) };
         self.torque = self.limits.approach(self.torque, believed, reach);
         let status = if is_plausible { Supervised::Compensator(Status::Active) } else { Supervised::Implausible };
-        SupervisedCompensation { torque: self.torque, position: answer.position, gain_share: share, status }
+        let correction = self.correction();
+        SupervisedCompensation { torque: self.torque, position: answer.position, gain_share: share, correction, status }
+    }
+
+    /// The compensation at a velocity, where the model's is `torque`, with what the adaptation has learnt: from this sample too, where it is
+    /// given the period.
+    fn adapted(&mut self, observed: &Observation, torque: f32, velocity: f32, learn: Option<f32>) -> f32 {
+        let gain = self.limits.gain();
+        let Some(settings) = self.supervision.adaptation.as_ref().filter(|_| gain >= LEAST_GAIN) else { return torque };
+        let torques = Torques { friction: torque / gain, compensation: self.torque };
+        self.adaptation.take(settings, observed, torques, learn);
+        gain * self.adaptation.correction().applied(torques.friction, velocity)
     }
 
     /// Largest change of an implausible torque in `dt`: all of the torque limit in the time in which the contradiction was found.
@@ -136,10 +180,14 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
     /// No torque, at once.
     fn off(&mut self, status: Status) -> SupervisedCompensation {
         (self.torque, self.held) = (0.0, 0.0);
-        let gain_share = self.monitor.share();
-        SupervisedCompensation { torque: 0.0, position: 0.0, gain_share, status: Supervised::Compensator(status) }
+        let (gain_share, correction) = (self.monitor.share(), self.correction());
+        let status = Supervised::Compensator(status);
+        SupervisedCompensation { torque: 0.0, position: 0.0, gain_share, correction, status }
     }
 }
+
+/// Gain below which the friction of the model cannot be told from its compensation.
+const LEAST_GAIN: f32 = 0.05;
 
 /// Torque beyond any drive's, N m.
 const STRONGEST_LOOP: f32 = 1.0e9;

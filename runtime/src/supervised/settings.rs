@@ -1,5 +1,7 @@
 //! Settings of the supervision.
 
+use super::adaptation::AdaptationSettings;
+
 /// Speed beyond any joint's, rad/s.
 pub(super) const FASTEST: f32 = 1.0e6;
 
@@ -32,7 +34,7 @@ pub struct Supervision {
     pub rest_velocity: f32,
     /// Way after a reversal in which the contact is elastic, rad.
     pub presliding: f32,
-    /// Time constant of the monitor's low-pass, s.
+    /// Time constant of the observer's low-pass, s.
     pub observer_time: f32,
     /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
     pub fall_time: f32,
@@ -42,6 +44,8 @@ pub struct Supervision {
     pub least_friction: f32,
     /// How long velocity and position may contradict each other, s.
     pub implausible_time: f32,
+    /// Whether and how far the compensation follows a friction that changes; not, unless the firmware sets bounds.
+    pub adaptation: Option<AdaptationSettings>,
 }
 
 impl Supervision {
@@ -59,6 +63,7 @@ impl Supervision {
             rise_time: 0.5,
             least_friction: 0.1 * friction.abs(),
             implausible_time: 0.2,
+            adaptation: None,
         }
     }
 }

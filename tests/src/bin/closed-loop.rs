@@ -46,6 +46,11 @@ friction that dissipates. Beyond that a passivity monitor (after Hannaford & Ryu
 the joint, and lowers the gain within 20 ms of sliding where it does; it rises again over half a second. Without a position loop nothing
 else would stop a joint whose friction has fallen below the model's.
 
+**A friction that changes.** `--adapt` lets the drive learn level, a viscous part and an offset while it slides: least squares with
+exponential forgetting (Astrom & Wittenmark 1995), within bounds that the firmware sets, from the loop's torque and the filtered velocity, without an
+acceleration. A change is followed to a tenth in three times its memory (1.5 s of sliding here). It learns nothing at rest, without a
+reference, or from a sample that is refused; a push from outside under a position loop is taken for friction within the bounds.
+
 **Faults.** Torque is zero at once where a channel is missing or not finite or the image is none, and ramps down where velocity and position
 contradict each other for 0.2 s. A new image goes on from the torque of the one before, within the slew limit.
 
@@ -76,15 +81,17 @@ fn own_laws(page: &mut String) {
         eprintln!("{name}");
         let _ = write!(
             page,
-            "\n**{name}**, tracking error in mrad (range at rest where the reference stands)\n\n| motion | friction | none | Coulomb + viscous | own law |\n|---|---|---|---|---|\n"
+            "\n**{name}**, tracking error in mrad (range at rest where the reference stands)\n\n| motion | friction | none | Coulomb + viscous | own law | own law, adaptive |\n|---|---|---|---|---|---|\n"
         );
         let simple = coulomb_and_viscous(&joint);
         let own = own_model(&joint);
         for motion in Motion::ALL.into_iter().filter(|motion| *motion != Motion::Nudge) {
             for scale in SCALES {
                 let none = scores(&joint, motion, scale, &own, 0.0);
+                let adaptive = Compensation { adapts: true, ..Compensation::supervised(&own, DEFAULT_GAIN) };
+                let adaptive = Scores::of(&rows(&joint, motion, scale, 1, adaptive), None);
                 let [simple, own] = [&simple, &own].map(|model| scores(&joint, motion, scale, model, DEFAULT_GAIN));
-                let cells = [none, simple, own].map(|scores| error_cell(&scores));
+                let cells = [none, simple, own, adaptive].map(|scores| error_cell(&scores));
                 let _ = writeln!(page, "| {} | {scale} | {} |", motion.name(), cells.join(" | "));
             }
         }
@@ -103,7 +110,7 @@ fn nudges(page: &mut String) {
         let own = own_model(&joint);
         for scale in [0.5, 0.7, 0.9, 1.0, 1.2] {
             let of = |source| {
-                let compensation = Compensation { model: &own, gain: DEFAULT_GAIN, source };
+                let compensation = Compensation { source, ..Compensation::supervised(&own, DEFAULT_GAIN) };
                 Scores::of(&rows(&joint, Motion::Nudge, scale, 1, compensation), Motion::Nudge.nudge_end())
             };
             let [bare, watched] = [VelocitySource::Measured, VelocitySource::Blended].map(of);
@@ -169,7 +176,7 @@ fn concealed_rows(page: &mut String, joint: &Joint, effect: &str, seed: u64) {
         let error = |file: &str, gain| -> Option<String> {
             let image = load(&folder.join(file)).ok()?.1;
             let model: &Model<CELLS> = &image.model;
-            let compensation = Compensation { model, gain, source: VelocitySource::Blended };
+            let compensation = Compensation::supervised(model, gain);
             Some(format!("{:.3}", 1e3 * Scores::of(&rows(&joint, motion, 1.0, seed, compensation), None).rms_error))
         };
         let cells = [("static.frk", 0.0), ("static.frk", DEFAULT_GAIN), ("diagnosed.frk", DEFAULT_GAIN)]

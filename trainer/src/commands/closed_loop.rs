@@ -19,7 +19,9 @@ use crate::error::{Error, Result, codes};
 use crate::fit::model::{self, CELLS, HostModel};
 use crate::plant::{self, Hidden};
 use crate::report;
-use crate::rig::{Bench, Row, Scores, drive_settings, host_drive, nominal_model, run as run_bench, with_contact};
+use crate::rig::{
+    Bench, Row, Scores, adaptation_settings, drive_settings, host_drive, nominal_model, run as run_bench, with_contact,
+};
 use account::Account;
 
 /// Follow a motion in closed loop with a simulated joint, with and without friction compensation: what an image is worth before it meets a
@@ -53,6 +55,10 @@ pub struct Loop {
     /// Leave the gain as it is where compensation feeds the joint
     #[arg(long)]
     pub no_monitor: bool,
+    /// Let the drive learn how the friction differs from the model: level 0.5 to 1.5, and a viscous part and an offset of up to a fifth
+    /// of the Coulomb torque
+    #[arg(long)]
+    pub adapt: bool,
     /// Hide an effect in the joint at an amplitude, as `trainer simulate` does; may be given several times
     #[arg(long = "effect", value_name = "NAME=AMPLITUDE", value_parser = parse_effect)]
     pub effects: Vec<Hidden>,
@@ -189,6 +195,13 @@ fn settings_of(arguments: &Loop, joint: &plant::Joint, largest: f32) -> Result<D
     })?;
     settings.supervision.source = arguments.velocity.into();
     settings.supervision.monitored = !arguments.no_monitor;
+    if arguments.adapt {
+        let adaptation = adaptation_settings(joint).ok_or_else(|| {
+            let message = "an adaptation needs a Coulomb torque between 1e-4 and 1e6 N m";
+            Error::new(&codes::USAGE, message).with_value(joint.friction.coulomb_torque_nm.to_string())
+        })?;
+        settings.supervision.adaptation = Some(adaptation);
+    }
     Ok(settings)
 }
 

@@ -1,8 +1,8 @@
 //! From a named effect with its shape and coefficients to the term that a drive runs, or to a change of the rigid body.
 
-use super::formula::Curve;
-use super::interval::Interval;
-use super::series::{ORDERS, Series};
+mod cosine_series;
+
+use self::cosine_series::CosineSeries;
 use super::tables::compile_layout;
 use crate::physics::{Action, EffectId};
 use frikan_shared::effect::{Effect, Element, Harmonic, Kind, MAX_EFFECTS, MAX_ELEMENTS, MAX_HARMONICS};
@@ -237,12 +237,21 @@ impl Terms {
                 }
             }
             EffectId::PositionRipple => {
-                self.read(Quantity::Position);
                 let kind = if shape[1] == 1.0 { Kind::Friction } else { Kind::Torque };
-                let line = Harmonic { order: shape[0] as f32, cosine: c[0] as f32, sine: c[1] as f32 };
-                let mut harmonics = heapless::Vec::new();
-                harmonics.push(line).map_err(|_| "the ripple has too many lines")?;
-                Effect::Ripple { kind, smoothing_velocity, harmonics }
+                self.harmonic(kind, [shape[0], c[0], c[1]], smoothing_velocity)?
+            }
+            EffectId::KinematicError => {
+                // Identified is the amplitude times the inertia behind the gear, of which a motor encoder does not tell the share.
+                // The whole inertia gives a correction of the position that is never larger than the error.
+                let inertia = f64::from(self.rigid_body.inertia);
+                if inertia <= 0.0 {
+                    return Err("without the inertia of the joint its amplitude is not known");
+                }
+                self.harmonic(Kind::Position, [shape[0], c[0] / inertia, c[1] / inertia], smoothing_velocity)?
+            }
+            EffectId::Backlash => {
+                self.read(Quantity::Position);
+                Effect::Play { half_width: shape[0] as f32, torque: 0.0 }
             }
             EffectId::PositionFriction => self.position_friction(shape, c, smoothing_velocity),
             EffectId::Spring => {
@@ -253,6 +262,15 @@ impl Terms {
             EffectId::Coupling => return Err("the motion of the other joint is not a channel of the image"),
             _ => return Err("the image has no torque term for it"),
         })
+    }
+
+    /// A ripple of one line: its order, and the coefficients of cosine and sine.
+    fn harmonic(&mut self, kind: Kind, line: [f64; 3], smoothing_velocity: f32) -> Result<Effect, &'static str> {
+        self.read(Quantity::Position);
+        let [order, cosine, sine] = line.map(|value| value as f32);
+        let mut harmonics = heapless::Vec::new();
+        harmonics.push(Harmonic { order, cosine, sine }).map_err(|_| "the ripple has too many lines")?;
+        Ok(Effect::Ripple { kind, smoothing_velocity, harmonics })
     }
 
     fn load(&mut self, mean: f64, difference: f64, quadratic: f64, smoothing_velocity: f32) -> Effect {
@@ -318,25 +336,6 @@ fn elements(first: f64, torques: &[f64]) -> Result<heapless::Vec<Element, MAX_EL
         elements.push(element).map_err(|_| "presliding has more elements than an image holds")?;
     }
     if elements.is_empty() { Err("presliding without a torque is none") } else { Ok(elements) }
-}
-
-/// `sum c_j cos(j pi x)` with `x` from 0 to 1 over the travel.
-struct CosineSeries {
-    low: f64,
-    high: f64,
-    coefficients: Vec<f64>,
-}
-
-impl Curve for CosineSeries {
-    fn value(&self, x: f64) -> f64 {
-        let angle = std::f64::consts::PI * ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
-        self.coefficients.iter().zip(1..).map(|(c, j)| c * (f64::from(j) * angle).cos()).sum()
-    }
-
-    fn series(&self, _over: Interval) -> Series {
-        // No enclosure is claimed: the table of an effect is checked against the recording.
-        Series([Interval::ENTIRE; ORDERS])
-    }
 }
 
 #[cfg(test)]

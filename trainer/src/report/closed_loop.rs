@@ -4,6 +4,7 @@ use super::axis::Scale;
 use super::chart::{Chart, Ink};
 use super::page::Page;
 use crate::rig::Row;
+use frikan_runtime::supervised::adaptation::Correction;
 
 /// Width and height of a chart over time, pixels.
 const SIZE: (f64, f64) = (1060.0, 250.0);
@@ -39,6 +40,10 @@ pub fn closed_loop(motion: &str, lines: &[String], uncompensated: &[Row], compen
     page.figure(&torque, "What of it compensates friction.");
     let share = over_time(&compensation, "share of the gain", |row| f64::from(row.answer.gain_share));
     page.figure(&share, "Share of the gain that the passivity monitor leaves.");
+    if compensated.iter().any(|row| row.answer.correction != Correction::NONE) {
+        let level = over_time(&compensation, "ratio to the model", |row| f64::from(row.answer.correction.level));
+        page.figure(&level, "Level of the friction that the drive has learnt.");
+    }
     page.finish()
 }
 

@@ -4,6 +4,7 @@ use frikan_runtime::compensator::{Compensator, Limits};
 use frikan_runtime::drive::{DriveInput, DriveSettings, JointDrive, OUTPUT_WORDS};
 use frikan_runtime::shared::image::decode;
 use frikan_runtime::shared::model::Model;
+use frikan_runtime::supervised::adaptation::Correction;
 
 use crate::emulator::Lockstep;
 use crate::error::Result;
@@ -19,6 +20,8 @@ pub struct Answer {
     pub compensation: f32,
     /// Share of the gain that the monitor leaves, 0 to 1.
     pub gain_share: f32,
+    /// How the friction differs from the model, as far as the drive has learnt it.
+    pub correction: Correction,
     /// 0 active, 1 no model, 2 not finite, 3 implausible.
     pub status: u32,
 }
@@ -26,8 +29,9 @@ pub struct Answer {
 impl Answer {
     fn from_words(words: [u32; OUTPUT_WORDS]) -> Self {
         let [numbers @ .., status] = words;
-        let [torque, velocity, compensation, gain_share] = numbers.map(f32::from_bits);
-        Self { torque, velocity, compensation, gain_share, status }
+        let [torque, velocity, compensation, gain_share, level, viscous, offset] = numbers.map(f32::from_bits);
+        let correction = Correction { level, viscous, offset };
+        Self { torque, velocity, compensation, gain_share, correction, status }
     }
 }
 

@@ -17,4 +17,4 @@ pub use lockstep::{Bench, run};
 pub use motion::Motion;
 pub use nominal::nominal_model;
 pub use scores::{Row, Scores, trace_bytes};
-pub use settings::{drive_settings, with_contact};
+pub use settings::{adaptation_settings, drive_settings, with_contact};

@@ -1,5 +1,7 @@
 //! What a run is worth.
 
+use frikan_runtime::supervised::adaptation::Correction;
+
 use super::drive::Answer;
 use crate::numerics::statistics::root_mean_square;
 
@@ -25,8 +27,10 @@ pub struct Row {
 pub fn trace_bytes(rows: &[Row]) -> Vec<u8> {
     let bytes = |row: &Row| {
         let joint = [row.position, row.velocity].map(f64::to_le_bytes).concat();
-        let Answer { torque, velocity, compensation, gain_share, status } = row.answer;
-        let drive = [torque, velocity, compensation, gain_share].map(f32::to_le_bytes).concat();
+        let Answer { torque, velocity, compensation, gain_share, correction, status } = row.answer;
+        let Correction { level, viscous, offset } = correction;
+        let numbers = [torque, velocity, compensation, gain_share, level, viscous, offset];
+        let drive = numbers.map(f32::to_le_bytes).concat();
         [joint, drive, status.to_le_bytes().to_vec()].concat()
     };
     rows.iter().flat_map(bytes).collect()

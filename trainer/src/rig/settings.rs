@@ -6,12 +6,24 @@ use frikan_runtime::compensator::Limits;
 use frikan_runtime::controller::Settings;
 use frikan_runtime::drive::DriveSettings;
 use frikan_runtime::supervised::Supervision;
+use frikan_runtime::supervised::adaptation::AdaptationSettings;
 
 use crate::plant::{Joint, encoder_step};
 
 /// Way over which the contact of a joint breaks away unless its stiffness is given, rad: harmonic drives and greased bearings take about one
 /// milliradian (Armstrong-Helouvry et al. 1994, table 2).
 const BREAKAWAY_RAD: f64 = 1e-3;
+
+/// What an adaptation may make of the friction of the model: lowest and highest ratio. From a joint that is warm through to one that is cold
+/// (Bittencourt & Gunnarsson 2012, figure 4: friction falls by 40 % from 33 to 80 degC).
+const ADAPTED_LEVEL: [f32; 2] = [0.5, 1.5];
+/// Largest offset and, at 1 rad/s, largest viscous torque of an adaptation, shares of the Coulomb torque. Chosen by judgement: above the
+/// error of a gravity model, below what would move the joint.
+const ADAPTED_SHARE: f32 = 0.2;
+/// Its memory, s of sliding: a tenth of the time in which the motion `cold-start` warms up.
+const ADAPTATION_MEMORY_S: f32 = 1.5;
+/// Torque that it takes for noise, share of the Coulomb torque.
+const ADAPTATION_NOISE: f32 = 0.03;
 
 /// How long the compensation may take from nothing to its limit, s.
 const SLEW_TIME_S: f32 = 2e-3;
@@ -44,7 +56,19 @@ pub fn drive_settings(joint: &Joint, gain: f32, largest: f32) -> Option<DriveSet
     Some(DriveSettings {
         controller,
         limits: Limits::new(gain, largest, largest / SLEW_TIME_S).ok()?,
-        supervision: Supervision::new(joint.inertia_kgm2 as f32, joint.friction.coulomb_torque_nm as f32),
+        supervision: Supervision::new(joint.inertia_kgm2 as f32, coulomb_torque(joint)),
         dt: (1.0 / joint.drive.rate_hz) as f32,
     })
+}
+
+/// Bounds and memory of an adaptation to the friction of `joint`; none where its Coulomb torque is out of range.
+#[must_use]
+pub fn adaptation_settings(joint: &Joint) -> Option<AdaptationSettings> {
+    let coulomb = coulomb_torque(joint);
+    let bounds = [ADAPTED_SHARE * coulomb; 2];
+    AdaptationSettings::new(ADAPTED_LEVEL, bounds, ADAPTATION_MEMORY_S, ADAPTATION_NOISE * coulomb).ok()
+}
+
+fn coulomb_torque(joint: &Joint) -> f32 {
+    joint.friction.coulomb_torque_nm as f32
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
+use frikan_runtime::supervised::adaptation::Correction;
 use serde_json::{Value, json};
 
 use crate::figures::{digits, quantity};
@@ -28,6 +29,11 @@ impl Account<'_> {
     /// CRC-32 (ISO-HDLC) of the numbers of the trace.
     fn trace_crc32(&self) -> u32 {
         Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&trace_bytes(self.rows))
+    }
+
+    /// What the drive has learnt at the end.
+    fn last_correction(&self) -> Correction {
+        self.rows.last().map_or(Correction::NONE, |row| row.answer.correction)
     }
 
     /// The smallest share of the gain that the monitor left.
@@ -79,6 +85,14 @@ impl Account<'_> {
         if lowest < 1.0 {
             lines.push(format!("the monitor lowered the gain to {} of its setting", digits(f64::from(lowest))));
         }
+        let learnt = self.last_correction();
+        if learnt != Correction::NONE {
+            let [level, viscous, offset] =
+                [learnt.level, learnt.viscous, learnt.offset].map(|value| digits(f64::from(value)));
+            lines.push(format!(
+                "learnt at the end: {level} times the friction of the model, {viscous} N m s/rad and {offset} N m"
+            ));
+        }
         for (name, count) in self.statuses().skip(1) {
             if count > 0 {
                 lines.push(format!("no compensation in {count} samples: {}", name.replace('_', " ")));
@@ -104,11 +118,16 @@ impl Account<'_> {
             "compensated": scores(&self.compensated),
             "uncompensated": scores(&self.uncompensated),
             "lowest_gain_share": self.lowest_gain_share(),
+            "correction": correction(self.last_correction()),
             "status": Value::Object(statuses.collect()),
             "instructions": self.instructions.map(|(fewest, most)| json!({"min": fewest, "max": most})),
             "trace_crc32": format!("{:08x}", self.trace_crc32()),
         })
     }
+}
+
+fn correction(learnt: Correction) -> Value {
+    json!({ "level": learnt.level, "viscous_Nms_rad": learnt.viscous, "offset_Nm": learnt.offset })
 }
 
 fn scores(scores: &Scores) -> Value {
@@ -126,7 +145,8 @@ fn scores(scores: &Scores) -> Value {
 pub(super) fn trace(rows: &[Row]) -> String {
     let mut text = String::from(
         "time_s,position_rad,velocity_rad_s,temperature_C,reference_position_rad,reference_velocity_rad_s,torque_Nm,\
-         filtered_velocity_rad_s,compensation_torque_Nm,gain_share,status\n",
+         filtered_velocity_rad_s,compensation_torque_Nm,gain_share,friction_level,viscous_correction_Nms_rad,\
+         offset_correction_Nm,status\n",
     );
     for row in rows {
         let [position, velocity] =
@@ -134,7 +154,7 @@ pub(super) fn trace(rows: &[Row]) -> String {
         let answer = &row.answer;
         let _ = writeln!(
             text,
-            "{},{},{},{},{position},{velocity},{},{},{},{},{}",
+            "{},{},{},{},{position},{velocity},{},{},{},{},{},{},{},{}",
             row.time,
             row.position,
             row.velocity,
@@ -143,6 +163,9 @@ pub(super) fn trace(rows: &[Row]) -> String {
             answer.velocity,
             answer.compensation,
             answer.gain_share,
+            answer.correction.level,
+            answer.correction.viscous,
+            answer.correction.offset,
             answer.status,
         );
     }

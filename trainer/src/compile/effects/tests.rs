@@ -50,6 +50,22 @@ fn lines_of_one_ripple_share_a_term_and_a_lag_comes_first() {
 }
 
 #[test]
+fn a_kinematic_error_and_a_play_correct_the_position() {
+    let mut terms = Terms::default();
+    assert!(terms.add(EffectId::KinematicError, &[60.0], &[0.5, -0.25], &Context::default()).is_err());
+    assert!(terms.effects.is_empty() && terms.channels.is_empty());
+    terms.rigid_body.inertia = 2.0;
+    terms.add(EffectId::KinematicError, &[60.0], &[0.5, -0.25], &Context::default()).unwrap();
+    let Effect::Ripple { kind: Kind::Position, harmonics, .. } = &terms.effects[0] else {
+        panic!("{:?}", terms.effects)
+    };
+    assert_eq!(harmonics[..], [Harmonic { order: 60.0, cosine: 0.25, sine: -0.125 }]);
+    terms.add(EffectId::Backlash, &[1.0e-3, 0.4, 0.0], &[0.4], &Context::default()).unwrap();
+    assert_eq!(terms.effects[1], Effect::Play { half_width: 1.0e-3, torque: 0.0 });
+    assert_eq!(terms.channels, [Quantity::Position]);
+}
+
+#[test]
 fn a_scale_corrects_every_rigid_body_parameter() {
     let mut terms = Terms::default();
     terms.rigid_body.inertia = 2.0;

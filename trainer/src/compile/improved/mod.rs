@@ -256,8 +256,18 @@ fn write_term(
     origin: &str,
 ) -> String {
     match terms.add(effect, shape, coefficients, context) {
-        Ok(()) => format!("In the image: {}{origin}.", plain_name(effect)),
+        Ok(()) => format!("In the image: {}{origin}{}.", plain_name(effect), of_position(effect)),
         Err(why) => format!("Not in the image: {}{origin} ({why}).", plain_name(effect)),
+    }
+}
+
+/// What is said of a term that puts out a position in place of a torque.
+fn of_position(effect: EffectId) -> &'static str {
+    match effect {
+        EffectId::KinematicError | EffectId::Backlash => {
+            " (a correction of the position, which the firmware has to allow)"
+        }
+        _ => "",
     }
 }
 
