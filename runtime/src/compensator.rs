@@ -181,6 +181,12 @@ impl<const CELLS: usize> Compensator<CELLS> {
         self.model = model;
     }
 
+    /// The limits in force.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.running.limits
+    }
+
     /// What a step would say of the model: active, or why there is none.
     #[must_use]
     pub fn status(&self) -> Status {

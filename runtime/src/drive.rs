@@ -5,7 +5,7 @@ use crate::compensator::Compensator;
 use crate::controller::Controller;
 use crate::evaluate::limited;
 use crate::friction::Measurement;
-use crate::supervised::{Sample, SupervisedCompensator};
+use crate::supervised::{Sample, Supervisor};
 
 mod sample;
 mod words;
@@ -17,7 +17,8 @@ pub use words::{DriveSettings, INPUT_WORDS, OUTPUT_WORDS, SETTINGS_WORDS};
 #[derive(Clone, Debug)]
 pub struct JointDrive<const CELLS: usize> {
     controller: Controller,
-    compensator: SupervisedCompensator<CELLS>,
+    compensator: Compensator<CELLS>,
+    supervisor: Supervisor,
     /// What the loop put out in the two samples before, without compensation and gravity, N m: it acts a sample later.
     loop_torque: [f32; 2],
     /// Sample period, s.
@@ -27,13 +28,19 @@ pub struct JointDrive<const CELLS: usize> {
 impl<const CELLS: usize> JointDrive<CELLS> {
     /// At rest, set to `settings`; their limits are in force for the compensator.
     #[must_use]
-    pub fn new(settings: &DriveSettings, compensator: Compensator<CELLS>) -> Self {
-        let compensator = SupervisedCompensator::new(compensator, settings.limits, settings.supervision);
-        Self { controller: Controller::new(settings.controller), compensator, loop_torque: [0.0; 2], dt: settings.dt }
+    pub fn new(settings: &DriveSettings, mut compensator: Compensator<CELLS>) -> Self {
+        compensator.set_limits(settings.limits);
+        Self {
+            controller: Controller::new(settings.controller),
+            compensator,
+            supervisor: Supervisor::new(settings.supervision),
+            loop_torque: [0.0; 2],
+            dt: settings.dt,
+        }
     }
 
-    /// The compensator.
-    pub fn compensator(&mut self) -> &mut SupervisedCompensator<CELLS> {
+    /// The compensator, for its model, its warmth and its reset.
+    pub fn compensator(&mut self) -> &mut Compensator<CELLS> {
         &mut self.compensator
     }
 
@@ -54,7 +61,8 @@ impl<const CELLS: usize> JointDrive<CELLS> {
             ..Measurement::MISSING
         };
         let reference_velocity = input.target.map(|target| target.velocity);
-        let compensation = self.compensator.step(&Sample { measurement, reference_velocity, loop_torque: before }, dt);
+        let sample_of_joint = Sample { measurement, reference_velocity, loop_torque: before };
+        let compensation = self.supervisor.step(&mut self.compensator, &sample_of_joint, dt);
         let torque = loop_torque + input.gravity + compensation.torque;
         let torque = limited(torque, self.controller.settings().torque_limit);
         DriveOutput { torque, velocity: sample.velocity, compensation }

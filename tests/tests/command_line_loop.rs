@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use frikan_tests::command::run;
-use frikan_tests::fixtures;
+use frikan_tests::{fixtures, models};
 use serde_json::Value;
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
@@ -76,5 +76,21 @@ fn what_cannot_be_run_is_refused_by_name_and_nothing_is_written() {
         let run = run(folder.path(), &line);
         assert!(run.status == status && run.messages.contains(words), "{arguments:?}: {} {}", run.status, run.messages);
         assert!(!folder.path().join("trace.csv").exists());
+    }
+}
+
+/// Position loop, table with one presliding element, monitor and plausibility; the first sample works out what the sample period gives.
+#[test]
+fn a_sample_of_the_whole_drive_stays_within_its_budget_on_cortex_m4f() {
+    // The firmware is found from inside the checkout.
+    let folder = tempfile::tempdir_in(fixtures::folder().parent().unwrap().join("target")).unwrap();
+    let mut models = models::with_every_effect().into_iter();
+    let (_, model) = models.find(|(name, _)| name == "table of 1 inputs with one element").unwrap();
+    std::fs::write(folder.path().join("model.frk"), models::image(&model)).unwrap();
+    for (more, budget) in [(&[][..], 720), (&["--adapt"], 860)] {
+        let line = ["--image", "model.frk", "--motion", "sine", "--duration", "4", "--target", "cortex-m4f"];
+        let run = json(folder.path(), &[&line[..], more].concat());
+        let most = run["instructions"]["max"].as_u64().unwrap();
+        assert!(most <= budget, "{more:?}: {}", run["instructions"]);
     }
 }

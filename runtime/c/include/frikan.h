@@ -25,6 +25,9 @@
 // Channels without a standard quantity.
 #define FRIKAN_OTHER_CHANNELS 4
 
+// Words of a supervisor's memory.
+#define FRIKAN_SUPERVISOR_WORDS 40
+
 // Whether a torque is a compensation, and why not.
 enum FrikanStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -59,6 +62,10 @@ enum FrikanStatus
   FRIKAN_STATUS_INVALID_MODEL = 12,
   // A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
   FRIKAN_STATUS_BAD_LIMITS = 13,
+  // Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+  FRIKAN_STATUS_IMPLAUSIBLE = 14,
+  // A setting of the supervision is out of range: nothing was changed.
+  FRIKAN_STATUS_BAD_SUPERVISION = 15,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -123,6 +130,81 @@ typedef struct {
   // Number for the slot's header.
   uint32_t sequence;
 } FrikanSlotWrite;
+
+// How far the compensation may follow a friction that changes.
+typedef struct {
+  // Lowest ratio of the friction to that of the model, 0 to 1.
+  float lowest_level;
+  // Highest ratio, 1 to 4.
+  float highest_level;
+  // Largest viscous part that is added or taken away, N m s/rad; 0 for none.
+  float viscous;
+  // Largest offset, N m; 0 for none.
+  float offset;
+  // Time constant of forgetting, s of sliding; 0 for no adaptation at all.
+  float memory;
+  // A residual of this size, N m, counts as much as a value at its bound: what is smaller is noise.
+  float trusted_torque;
+} FrikanAdaptation;
+
+// Settings of the supervision, from frikan_supervision. All are finite, none is negative, and all but the inertia are above 0.
+typedef struct {
+  // Inertia of the joint, kg m^2.
+  float inertia;
+  // Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+  float rest_velocity;
+  // Way after a reversal in which the contact is elastic, rad.
+  float presliding;
+  // Time constant of the low-pass behind which the net friction is observed, s.
+  float observer_time;
+  // Time in which the gain falls from full to none where all friction is over-compensated once more, s.
+  float fall_time;
+  // Time in which it rises again where nothing is compensated, s.
+  float rise_time;
+  // Friction below which no ratios are taken, N m.
+  float least_friction;
+  // How long velocity and position may contradict each other, s.
+  float implausible_time;
+  // Whether and how far the compensation follows a friction that changes.
+  FrikanAdaptation adaptation;
+} FrikanSupervision;
+
+// What watches a compensator. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory gives no torque
+// until it is started.
+typedef struct {
+  // Whether there is a supervisor in the memory.
+  uint32_t started;
+  // Its memory.
+  uint64_t storage[FRIKAN_SUPERVISOR_WORDS];
+} FrikanSupervisor;
+
+// The answer to a sample.
+typedef struct {
+  // Torque to add, in the unit of the model's output.
+  float torque;
+  // What the model says of the link's position against the motor's, rad, within the limit.
+  float position;
+  // Share of the gain that the monitor leaves, 0 to 1.
+  float gain_share;
+  // Ratio of the friction to that of the model, as far as it was learnt.
+  float level;
+  // Viscous part beside it, N m s/rad.
+  float viscous;
+  // Offset beside it, N m.
+  float offset;
+  // Whether it is a compensation.
+  FrikanStatus status;
+} FrikanSupervised;
+
+// One sample.
+typedef struct {
+  // The joint, velocity as measured; the position has to be filled, and without jumps.
+  FrikanMeasurement measurement;
+  // Velocity of the reference, rad/s; NaN while no position or velocity loop is closed, as in hand guiding.
+  float reference_velocity;
+  // Torque that acted on the joint since the sample before, N m, without compensation and without the torque for gravity.
+  float loop_torque;
+} FrikanSample;
 
 #ifdef __cplusplus
 extern "C" {
@@ -201,6 +283,31 @@ bool frikan_slot_header(uint32_t sequence,
                         const uint8_t *image,
                         size_t bytes,
                         uint8_t *header);
+
+// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, without adaptation.
+FrikanSupervision frikan_supervision(float inertia,
+                                     float friction);
+
+// Starts a supervisor. BadSupervision leaves the memory as it was.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_supervise(FrikanSupervisor *supervisor, const FrikanSupervision *settings);
+
+// The compensation under supervision after a sample period of `dt` seconds, in place of frikan_step. Call it at a fixed rate.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanSupervised frikan_supervised_step(FrikanSupervisor *supervisor,
+                                        FrikanCompensator *compensator,
+                                        const FrikanSample *sample,
+                                        float dt);
+
+// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease.
+//
+// # Safety
+// The pointer is null or good.
+void frikan_forget(FrikanSupervisor *supervisor);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,5 +1,4 @@
-//! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call, and a
-//! compensator is read only behind the mark that `start` leaves.
+//! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call.
 
 use core::mem::MaybeUninit;
 use core::slice;
@@ -10,6 +9,7 @@ use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
 use frikan_runtime::shared::model::MAX_INPUTS;
 use frikan_runtime::slots::{SLOT_HEADER_BYTES, Which, next_write, slot_header};
 
+use crate::memory::{self, Memory, content};
 use crate::types::{
     FRIKAN_CELLS, FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_SLOT_HEADER_BYTES, FRIKAN_STORAGE_WORDS,
     FrikanCompensation, FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus,
@@ -33,38 +33,25 @@ const _: () = {
     assert!(MAX_INPUTS == FRIKAN_OTHER_CHANNELS);
 };
 
-/// Value of `started` behind which the memory holds a compensator.
-const STARTED: u32 = u32::from_le_bytes(*b"FRKC");
+// SAFETY: both fields lie in the memory; size and alignment are asserted above.
+unsafe impl Memory for FrikanCompensator {
+    type Content = Inner;
+    const MARK: u32 = u32::from_le_bytes(*b"FRKC");
+
+    fn parts(memory: *mut Self) -> (*mut u32, *mut Inner) {
+        // SAFETY: places of fields, nothing is read.
+        unsafe { (&raw mut (*memory).started, (&raw mut (*memory).storage).cast()) }
+    }
+}
 
 /// Puts a compensator into its memory and says whether it has a model.
 ///
 /// # Safety
 /// `memory` is null or may be written to.
 unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanStatus {
-    // SAFETY: the caller's word.
-    let Some(memory) = (unsafe { memory.cast::<MaybeUninit<FrikanCompensator>>().as_mut() }) else {
-        return FrikanStatus::NotStarted;
-    };
     let status = compensator.status().into();
-    let memory = memory.as_mut_ptr();
-    // SAFETY: both fields lie in the memory; the storage is large enough and aligned, as asserted above. A compensator that was there
-    // before needs no drop.
-    unsafe {
-        (&raw mut (*memory).storage).cast::<Inner>().write(compensator);
-        (&raw mut (*memory).started).write(STARTED);
-    }
-    status
-}
-
-/// The compensator in its memory, where it was started.
-///
-/// # Safety
-/// `memory` is null or points to initialised memory that nobody else uses during the call.
-unsafe fn inner<'a>(memory: *mut FrikanCompensator) -> Option<&'a mut Inner> {
     // SAFETY: the caller's word.
-    let memory = unsafe { memory.as_mut() }?;
-    // SAFETY: only `start` leaves this mark, and after it nobody but the compensator writes to the storage.
-    (memory.started == STARTED).then(|| unsafe { &mut *memory.storage.as_mut_ptr().cast::<Inner>() })
+    if unsafe { memory::start(memory, compensator) } { status } else { FrikanStatus::NotStarted }
 }
 
 /// Bytes of C; none for a null pointer.
@@ -164,12 +151,10 @@ pub unsafe extern "C" fn frikan_step(
     dt: f32,
 ) -> FrikanCompensation {
     // SAFETY: the caller's word.
-    let (Some(compensator), Some(measurement)) = (unsafe { (inner(compensator), measurement.as_ref()) }) else {
+    let (Some(compensator), Some(measurement)) = (unsafe { (content(compensator), measurement.as_ref()) }) else {
         return FrikanCompensation { torque: 0.0, position: 0.0, status: FrikanStatus::NotStarted };
     };
-    let FrikanMeasurement { velocity, position, acceleration, load, temperature, other } = *measurement;
-    let measurement = Measurement { velocity, position, acceleration, load, temperature, other };
-    let answer = compensator.step(&measurement, dt);
+    let answer = compensator.step(&Measurement::from(measurement), dt);
     FrikanCompensation { torque: answer.torque, position: answer.position, status: answer.status.into() }
 }
 
@@ -183,7 +168,7 @@ pub unsafe extern "C" fn frikan_set_limits(
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    match unsafe { (inner(compensator), limits_at(limits)) } {
+    match unsafe { (content(compensator), limits_at(limits)) } {
         (None, _) => FrikanStatus::NotStarted,
         (_, None) => FrikanStatus::BadLimits,
         (Some(compensator), Some(limits)) => {
@@ -207,7 +192,7 @@ pub extern "C" fn frikan_no_measurement() -> FrikanMeasurement {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn frikan_reset(compensator: *mut FrikanCompensator) {
     // SAFETY: the caller's word.
-    if let Some(compensator) = unsafe { inner(compensator) } {
+    if let Some(compensator) = unsafe { content(compensator) } {
         compensator.reset();
     }
 }

@@ -1,4 +1,5 @@
-//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs` and `ffi.rs`, the only file with `unsafe`.
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs` and `supervised.rs`; these two
+//! and `memory.rs` are the only files with `unsafe`.
 //!
 //! The static library for a target:
 //!
@@ -14,6 +15,10 @@ extern crate std;
 
 #[allow(unsafe_code)]
 pub mod ffi;
+#[allow(unsafe_code)]
+mod memory;
+#[allow(unsafe_code)]
+pub mod supervised;
 pub mod types;
 
 /// No panic can be reached, and linking with `--gc-sections` leaves nothing of this handler.

@@ -1,6 +1,7 @@
 //! What C hands over and gets back.
 
 use frikan_runtime::compensator::Status;
+use frikan_runtime::friction::Measurement;
 use frikan_runtime::shared::image::ImageError;
 
 /// Cells of tables for which a compensator has room; an image with more is refused.
@@ -50,6 +51,10 @@ pub enum FrikanStatus {
     InvalidModel = 12,
     /// A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
     BadLimits = 13,
+    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+    Implausible = 14,
+    /// A setting of the supervision is out of range: nothing was changed.
+    BadSupervision = 15,
 }
 
 impl From<ImageError> for FrikanStatus {
@@ -110,6 +115,13 @@ pub struct FrikanMeasurement {
     pub temperature: f32,
     /// Channels without a standard quantity, in the order of the model's inputs.
     pub other: [f32; FRIKAN_OTHER_CHANNELS],
+}
+
+impl From<&FrikanMeasurement> for Measurement {
+    fn from(measurement: &FrikanMeasurement) -> Self {
+        let FrikanMeasurement { velocity, position, acceleration, load, temperature, other } = *measurement;
+        Self { velocity, position, acceleration, load, temperature, other }
+    }
 }
 
 /// The answer to one sample.

@@ -8,6 +8,10 @@ use frikan::ffi::{
     FrikanCompensator, frikan_next_write, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_slot_header,
     frikan_start, frikan_start_from_slots, frikan_step,
 };
+use frikan::supervised::{
+    FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_forget, frikan_supervise,
+    frikan_supervised_step, frikan_supervision,
+};
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
 use frikan_runtime::shared::authentication::Key;
 
@@ -18,6 +22,11 @@ const MOVING: FrikanMeasurement =
 
 /// As the static data of a firmware.
 fn zeroed() -> Box<FrikanCompensator> {
+    // SAFETY: words, of which every pattern is one.
+    unsafe { Box::new(MaybeUninit::zeroed().assume_init()) }
+}
+
+fn zeroed_supervisor() -> Box<FrikanSupervisor> {
     // SAFETY: words, of which every pattern is one.
     unsafe { Box::new(MaybeUninit::zeroed().assume_init()) }
 }
@@ -55,6 +64,43 @@ fn a_compensator_is_off_until_it_has_an_image() {
         frikan_reset(&mut *elbow);
         let answer = frikan_step(&mut *elbow, &FrikanMeasurement { velocity: f32::NAN, ..MOVING }, 1.0e-3);
         assert_eq!((answer.torque, answer.status), (0.0, FrikanStatus::NotFinite));
+    }
+}
+
+#[test]
+fn a_supervisor_watches_over_a_compensator() {
+    let (mut elbow, mut watch) = (zeroed(), zeroed_supervisor());
+    let sample = FrikanSample { measurement: MOVING, reference_velocity: 0.5, loop_torque: 40.0 };
+    // SAFETY: references, and null where it is said.
+    unsafe {
+        let step = |watch: &mut FrikanSupervisor, elbow: &mut FrikanCompensator| {
+            frikan_supervised_step(watch, elbow, &sample, 1.0e-3)
+        };
+        assert_eq!(step(&mut watch, &mut elbow).status, FrikanStatus::NotStarted);
+        assert_eq!(start(&mut elbow, IMAGE, None), FrikanStatus::Active);
+        let settings = frikan_supervision(0.5, 20.0);
+        for bad in [
+            FrikanSupervision { inertia: -1.0, ..settings },
+            FrikanSupervision { fall_time: 0.0, ..settings },
+            FrikanSupervision { rest_velocity: f32::NAN, ..settings },
+            FrikanSupervision { adaptation: FrikanAdaptation { memory: 1.0, ..settings.adaptation }, ..settings },
+        ] {
+            assert_eq!(frikan_supervise(&mut *watch, &bad), FrikanStatus::BadSupervision);
+        }
+        assert_eq!(frikan_supervise(&mut *watch, null()), FrikanStatus::BadSupervision);
+        assert_eq!(frikan_supervise(null_mut(), &settings), FrikanStatus::NotStarted);
+        assert_eq!(frikan_supervise(&mut *watch, &settings), FrikanStatus::Active);
+        let answer = step(&mut watch, &mut elbow);
+        assert!(answer.torque > 10.0 && answer.gain_share == 1.0 && answer.level == 1.0, "{answer:?}");
+        assert_eq!(answer.status, FrikanStatus::Active);
+        // The position stands still while the velocity does not.
+        let later: Vec<_> = (0..1000).map(|_| step(&mut watch, &mut elbow)).collect();
+        assert_eq!(later.last().unwrap().status, FrikanStatus::Implausible);
+        assert_eq!(later.last().unwrap().torque, 0.0);
+        frikan_forget(&mut *watch);
+        frikan_forget(null_mut());
+        assert_eq!(frikan_supervised_step(&mut *watch, &mut *elbow, null(), 1.0e-3).status, FrikanStatus::NotStarted);
+        assert_eq!(frikan_supervised_step(&mut *watch, null_mut(), &sample, 1.0e-3).status, FrikanStatus::NotStarted);
     }
 }
 

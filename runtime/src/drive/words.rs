@@ -163,7 +163,7 @@ impl DriveSettings {
         };
         let controller = Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit };
         let limits = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()?;
-        Some(Self { controller, limits, supervision, dt })
+        supervision.is_within_range().then_some(Self { controller, limits, supervision, dt })
     }
 }
 

@@ -4,9 +4,8 @@
 //! prior of constant weight: what the motion does not excite goes back to the model. The number of operations does not depend on the
 //! data, the state is bounded because every regressor is, and the firmware bounds the solution.
 
-use frikan_shared::elementary::lag_share;
-
 use super::observer::Observation;
+use super::pace::Pace;
 use crate::evaluate::within;
 
 /// Largest bound of the level.
@@ -170,24 +169,27 @@ impl Adaptation {
         self.correction
     }
 
-    /// Takes a sample; learns from it where it is given its period `dt`, s. The filters always follow.
+    /// Takes a sample; the filters always follow, and from one of sliding the friction is learnt.
     pub(super) fn take(
         &mut self,
         settings: &AdaptationSettings,
         observed: &Observation,
         torques: Torques,
-        dt: Option<f32>,
+        pace: &Pace,
+        is_sliding: bool,
     ) {
-        self.friction += observed.smoothing * (within(torques.friction, LARGEST) - self.friction);
-        self.compensation += observed.smoothing * (within(torques.compensation, LARGEST) - self.compensation);
-        let Some(dt) = dt else { return };
+        self.friction += pace.observer * (within(torques.friction, LARGEST) - self.friction);
+        self.compensation += pace.observer * (within(torques.compensation, LARGEST) - self.compensation);
+        if !is_sliding {
+            return;
+        }
         let regressors = [settings.reach() * self.friction, settings.viscous * observed.velocity, settings.offset]
             .map(|regressor| within(regressor, LARGEST));
         let [a, b, c] = regressors;
         // What no correction within the bounds explains is a knock or a push.
         let explainable = a.abs() + b.abs() + c.abs();
         let left = within(observed.net_friction + self.compensation - self.friction, explainable);
-        let share = lag_share(dt / settings.memory);
+        let share = pace.memory;
         for (mean, product) in self.products.iter_mut().zip([a * a, a * b, a * c, b * b, b * c, c * c]) {
             *mean += share * (product - *mean);
         }

@@ -3,7 +3,7 @@
 //!
 //! Around [`Compensator`], whose step costs what it costs without supervision. Branches depend on the sample here.
 
-use crate::compensator::{Compensator, Limits, Status};
+use crate::compensator::{Compensator, Status};
 use crate::evaluate::limited;
 use crate::friction::Measurement;
 
@@ -11,6 +11,7 @@ pub mod adaptation;
 pub mod blend;
 pub mod monitor;
 pub mod observer;
+pub mod pace;
 pub mod plausibility;
 mod settings;
 
@@ -18,6 +19,7 @@ use adaptation::{Adaptation, Correction, Torques};
 use blend::{blended, share_without_reference};
 use monitor::Monitor;
 use observer::{Observation, Observer};
+use pace::Pace;
 use plausibility::Plausibility;
 use settings::FASTEST;
 
@@ -58,12 +60,12 @@ pub struct SupervisedCompensation {
     pub status: Supervised,
 }
 
-/// A compensator under supervision.
+/// Supervision of one joint's compensator, which it drives: the compensator has the model, the limits and the warmth, the supervisor what it
+/// has observed.
 #[derive(Clone, Debug)]
-pub struct SupervisedCompensator<const CELLS: usize> {
-    compensator: Compensator<CELLS>,
-    limits: Limits,
-    supervision: Supervision,
+pub struct Supervisor {
+    settings: Supervision,
+    pace: Pace,
     observer: Observer,
     monitor: Monitor,
     adaptation: Adaptation,
@@ -73,15 +75,13 @@ pub struct SupervisedCompensator<const CELLS: usize> {
     torque: f32,
 }
 
-impl<const CELLS: usize> SupervisedCompensator<CELLS> {
-    /// Supervises `compensator` within `limits`.
+impl Supervisor {
+    /// Nothing observed yet.
     #[must_use]
-    pub fn new(mut compensator: Compensator<CELLS>, limits: Limits, supervision: Supervision) -> Self {
-        compensator.set_limits(limits);
+    pub fn new(settings: Supervision) -> Self {
         Self {
-            compensator,
-            limits,
-            supervision,
+            settings,
+            pace: Pace::NONE,
             observer: Observer::default(),
             monitor: Monitor::new(),
             adaptation: Adaptation::new(),
@@ -102,20 +102,14 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
         self.adaptation = Adaptation::new();
     }
 
-    /// The compensator, for its model, its warmth and its reset.
-    pub fn compensator(&mut self) -> &mut Compensator<CELLS> {
-        &mut self.compensator
-    }
-
-    /// Changes the limits between two steps; the slew limit holds across the change.
-    pub fn set_limits(&mut self, limits: Limits) {
-        self.limits = limits;
-        self.compensator.set_limits(limits);
-    }
-
-    /// The compensation after a sample period of `dt` seconds.
+    /// The compensation by `compensator`, within its limits, after a sample period of `dt` seconds.
     #[must_use]
-    pub fn step(&mut self, sample: &Sample, dt: f32) -> SupervisedCompensation {
+    pub fn step<const CELLS: usize>(
+        &mut self,
+        compensator: &mut Compensator<CELLS>,
+        sample: &Sample,
+        dt: f32,
+    ) -> SupervisedCompensation {
         let Measurement { velocity, position, .. } = sample.measurement;
         let reference = sample.reference_velocity;
         let is_finite = velocity.is_finite()
@@ -126,55 +120,57 @@ impl<const CELLS: usize> SupervisedCompensator<CELLS> {
         if !is_finite {
             return self.off(Status::NotFinite);
         }
-        let rest = self.supervision.rest_velocity;
-        let chosen = match (self.supervision.source, reference) {
+        let limits = *compensator.limits();
+        let rest = self.settings.rest_velocity;
+        let chosen = match (self.settings.source, reference) {
             (VelocitySource::Measured, _) | (VelocitySource::Blended, None) => velocity,
             (VelocitySource::Reference, reference) => reference.unwrap_or(0.0),
-            (VelocitySource::Blended, Some(reference)) => blended(&self.supervision, velocity, reference),
+            (VelocitySource::Blended, Some(reference)) => blended(&self.settings, velocity, reference),
         };
-        let answer = self.compensator.step(&Measurement { velocity: chosen, ..sample.measurement }, dt);
+        let answer = compensator.step(&Measurement { velocity: chosen, ..sample.measurement }, dt);
         if answer.status != Status::Active {
             return self.off(answer.status);
         }
         // What no joint does must not overflow what the filters remember.
         let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
-        let observed = self.observer.observe(&self.supervision, velocity, loop_torque, dt);
-        self.monitor.take(&self.supervision, &observed, answer.torque, dt);
-        let is_plausible = self.plausibility.observe(&self.supervision, velocity, position, dt);
+        if dt != self.pace.dt {
+            self.pace = Pace::at(&self.settings, dt);
+        }
+        let observed = self.observer.observe(&self.settings, &self.pace, velocity, loop_torque);
+        self.monitor.take(&self.settings, &self.pace, &observed, answer.torque);
+        let is_plausible = self.plausibility.observe(&self.settings, &self.pace, velocity, position);
         // Without a reference somebody pushes, and what the push does would pass for friction.
         let is_sliding = observed.slides && observed.velocity.abs() > 2.0 * rest;
         let may_learn = is_plausible && is_sliding && reference.is_some();
-        let compensated = self.adapted(&observed, answer.torque, chosen, may_learn.then_some(dt));
-        let is_blended = self.supervision.source == VelocitySource::Blended;
+        let compensated = self.adapted(&observed, (answer.torque, limits.gain()), chosen, may_learn);
+        let is_blended = self.settings.source == VelocitySource::Blended;
         let wanted = match reference {
             // At rest the torque stays as it is: to switch it would move the joint.
             Some(reference) if is_blended && reference.abs() < HOLD * rest && velocity.abs() < rest => self.held,
-            None if is_blended => share_without_reference(&self.supervision, velocity) * compensated,
+            None if is_blended => share_without_reference(&self.settings, velocity) * compensated,
             _ => compensated,
         };
         self.held = wanted;
-        let share = if self.supervision.monitored { self.monitor.share() } else { 1.0 };
+        let share = if self.settings.monitored { self.monitor.share() } else { 1.0 };
         let believed = if is_plausible { share * wanted } else { 0.0 };
-        let reach = if is_plausible { self.limits.slew() * dt } else { self.ramp(dt) };
-        self.torque = self.limits.approach(self.torque, believed, reach);
+        let reach = if is_plausible { limits.slew() * dt } else { self.ramp(limits.torque(), dt) };
+        self.torque = limits.approach(self.torque, believed, reach);
         let status = if is_plausible { Supervised::Compensator(Status::Active) } else { Supervised::Implausible };
         let correction = self.correction();
         SupervisedCompensation { torque: self.torque, position: answer.position, gain_share: share, correction, status }
     }
 
-    /// The compensation at a velocity, where the model's is `torque`, with what the adaptation has learnt: from this sample too, where it is
-    /// given the period.
-    fn adapted(&mut self, observed: &Observation, torque: f32, velocity: f32, learn: Option<f32>) -> f32 {
-        let gain = self.limits.gain();
-        let Some(settings) = self.supervision.adaptation.as_ref().filter(|_| gain >= LEAST_GAIN) else { return torque };
+    /// The compensation at a velocity, where the model's is `torque` at a gain, with what the adaptation has learnt.
+    fn adapted(&mut self, observed: &Observation, (torque, gain): (f32, f32), velocity: f32, may_learn: bool) -> f32 {
+        let Some(settings) = self.settings.adaptation.as_ref().filter(|_| gain >= LEAST_GAIN) else { return torque };
         let torques = Torques { friction: torque / gain, compensation: self.torque };
-        self.adaptation.take(settings, observed, torques, learn);
+        self.adaptation.take(settings, observed, torques, &self.pace, may_learn);
         gain * self.adaptation.correction().applied(torques.friction, velocity)
     }
 
-    /// Largest change of an implausible torque in `dt`: all of the torque limit in the time in which the contradiction was found.
-    fn ramp(&self, dt: f32) -> f32 {
-        self.limits.torque() * dt / self.supervision.implausible_time
+    /// Largest change of an implausible torque in `dt`: all of its limit in the time in which the contradiction was found.
+    fn ramp(&self, limit: f32, dt: f32) -> f32 {
+        limit * dt / self.settings.implausible_time
     }
 
     /// No torque, at once.

@@ -4,7 +4,9 @@
 //! friction of [`super::observer`].
 
 use super::observer::Observation;
+use super::pace::Pace;
 use super::settings::Supervision;
+use crate::evaluate::within;
 
 /// What the monitor remembers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,11 +31,10 @@ impl Monitor {
     /// Takes a sample with the friction of the model at its velocity, N m. The share falls while the net friction is negative, by the
     /// ratio of the two in `fall_time`, and rises by the same rule in `rise_time` while it is positive; it stays as it is unless
     /// the joint slides.
-    pub fn take(&mut self, supervision: &Supervision, observed: &Observation, friction: f32, dt: f32) {
+    pub fn take(&mut self, supervision: &Supervision, pace: &Pace, observed: &Observation, friction: f32) {
         let net = if observed.velocity < 0.0 { -observed.net_friction } else { observed.net_friction };
         let ratio = net / larger(friction.abs(), supervision.least_friction);
-        let time = if ratio < 0.0 { supervision.fall_time } else { supervision.rise_time };
-        let share = self.share + within_1(ratio) * (dt / time);
+        let share = self.share + within(ratio, 1.0) * if ratio < 0.0 { pace.fall } else { pace.rise };
         let share = if share > 0.0 { share } else { 0.0 };
         let share = if share < 1.0 { share } else { 1.0 };
         self.share = if observed.slides { share } else { self.share };
@@ -48,10 +49,4 @@ impl Default for Monitor {
 
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
-}
-
-/// `x` held to -1 to 1.
-fn within_1(x: f32) -> f32 {
-    let below = if x > 1.0 { 1.0 } else { x };
-    if below < -1.0 { -1.0 } else { below }
 }

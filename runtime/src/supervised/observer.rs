@@ -3,8 +3,7 @@
 //! `loop torque - J dv/dt`, where the loop torque is all that acts on the joint but friction, compensation and outside forces, both sides
 //! of the difference behind the same low-pass (Hsu, Bodson, Sastry & Paden 1987). It is friction less compensation.
 
-use frikan_shared::elementary::lag_share;
-
+use super::pace::Pace;
 use super::settings::Supervision;
 
 /// The filters of the observer.
@@ -25,26 +24,21 @@ pub struct Observation {
     pub net_friction: f32,
     /// Velocity behind the low-pass, rad/s.
     pub velocity: f32,
-    /// Share by which the low-pass moves in this sample, 0 to 1.
-    pub smoothing: f32,
     /// Whether the joint slides: it moves, and has left the way behind over which a contact gives back what it had stored.
     pub slides: bool,
 }
 
 impl Observer {
     /// Takes the measured velocity and the loop torque that acted until now, both finite.
-    pub fn observe(&mut self, supervision: &Supervision, velocity: f32, loop_torque: f32, dt: f32) -> Observation {
-        let smoothing = lag_share(dt / supervision.observer_time);
-        // The low-pass of the differences of the velocity, whatever the sample period.
-        let acceleration = smoothing * (velocity - self.velocity) / dt;
-        self.velocity += smoothing * (velocity - self.velocity);
-        self.torque += smoothing * (loop_torque - self.torque);
+    pub fn observe(&mut self, supervision: &Supervision, pace: &Pace, velocity: f32, loop_torque: f32) -> Observation {
+        let above = velocity - self.velocity;
+        self.velocity += pace.observer * above;
+        self.torque += pace.observer * (loop_torque - self.torque);
         let goes_on = velocity * self.velocity > 0.0 && self.velocity.abs() > supervision.rest_velocity;
-        self.way = if goes_on { self.way + velocity.abs() * dt } else { 0.0 };
+        self.way = if goes_on { self.way + velocity.abs() * pace.dt } else { 0.0 };
         Observation {
-            net_friction: self.torque - supervision.inertia * acceleration,
+            net_friction: self.torque - pace.inertia * above,
             velocity: self.velocity,
-            smoothing,
             slides: self.way > supervision.presliding,
         }
     }

@@ -1,7 +1,6 @@
 //! Whether velocity and position tell of the same motion.
 
-use frikan_shared::elementary::lag_share;
-
+use super::pace::Pace;
 use super::settings::{FASTEST, Supervision};
 use crate::evaluate::limited;
 
@@ -25,16 +24,15 @@ impl Plausibility {
     /// Observes a sample, all finite, and says whether it is to be believed: not after velocity and position have contradicted each
     /// other for `implausible_time`. One that stands still while the other moves contradicts it, and so does a wrong sign.
     #[must_use]
-    pub fn observe(&mut self, supervision: &Supervision, velocity: f32, position: f32, dt: f32) -> bool {
+    pub fn observe(&mut self, supervision: &Supervision, pace: &Pace, velocity: f32, position: f32) -> bool {
         let time = supervision.implausible_time;
-        let of_position = limited((position - self.before.unwrap_or(position)) / dt, FASTEST);
+        let of_position = limited((position - self.before.unwrap_or(position)) * pace.rate, FASTEST);
         self.before = Some(position);
-        let smoothing = lag_share(4.0 * dt / time);
         let faster = if of_position.abs() > velocity.abs() { of_position } else { velocity };
-        self.difference += smoothing * (velocity - of_position - self.difference);
-        self.speed += smoothing * (faster.abs() - self.speed);
+        self.difference += pace.plausibility * (velocity - of_position - self.difference);
+        self.speed += pace.plausibility * (faster.abs() - self.speed);
         let tolerated = supervision.rest_velocity + TOLERATED_SHARE * self.speed;
-        let longer = self.contradicted + dt;
+        let longer = self.contradicted + pace.dt;
         let longer = if longer < time { longer } else { time };
         self.contradicted = if self.difference.abs() > tolerated { longer } else { 0.0 };
         self.contradicted < time

@@ -66,4 +66,20 @@ impl Supervision {
             adaptation: None,
         }
     }
+
+    /// Whether all settings are finite, the inertia not negative and the others above 0.
+    #[must_use]
+    pub fn is_within_range(&self) -> bool {
+        let above_0 = [
+            self.rest_velocity,
+            self.presliding,
+            self.observer_time,
+            self.fall_time,
+            self.rise_time,
+            self.least_friction,
+            self.implausible_time,
+        ];
+        let is_above_0 = |setting: &f32| *setting > 0.0 && setting.is_finite();
+        self.inertia >= 0.0 && self.inertia.is_finite() && above_0.iter().all(is_above_0)
+    }
 }

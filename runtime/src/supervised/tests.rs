@@ -1,4 +1,5 @@
 use super::*;
+use crate::compensator::Limits;
 use crate::test_models::{coulomb_model, image_of};
 use proptest::prelude::*;
 use std::vec::Vec;
@@ -8,11 +9,27 @@ const INERTIA: f32 = 0.5;
 /// Friction of the model, N m.
 const COULOMB: f32 = 2.0;
 
-fn supervised(source: VelocitySource, monitored: bool) -> SupervisedCompensator<16> {
+/// A compensator with its supervisor.
+pub(super) struct Joint16 {
+    pub(super) compensator: Compensator<16>,
+    pub(super) supervisor: Supervisor,
+}
+
+impl Joint16 {
+    pub(super) fn new(compensator: Compensator<16>, settings: Supervision) -> Self {
+        Self { compensator, supervisor: Supervisor::new(settings) }
+    }
+
+    pub(super) fn step(&mut self, sample: &Sample, dt: f32) -> SupervisedCompensation {
+        self.supervisor.step(&mut self.compensator, sample, dt)
+    }
+}
+
+fn supervised(source: VelocitySource, monitored: bool) -> Joint16 {
     let limits = Limits::new(DEFAULT_GAIN, 10.0, 1.0e4).unwrap();
     let compensator = Compensator::new(&image_of(coulomb_model(COULOMB, &[])), limits);
     let supervision = Supervision { source, monitored, ..Supervision::new(INERTIA, COULOMB) };
-    SupervisedCompensator::new(compensator, limits, supervision)
+    Joint16::new(compensator, supervision)
 }
 
 fn sample(velocity: f32, position: f32, reference_velocity: Option<f32>) -> Sample {
@@ -64,7 +81,7 @@ fn a_velocity_that_stands_still_or_a_position_that_does_ramps_the_torque_down() 
             let answer = compensator.step(&sample(0.5, position, None), DT);
             assert_eq!(answer.status, Supervised::Compensator(Status::Active));
         }
-        let (mut before, mut torques) = (compensator.torque, Vec::new());
+        let (mut before, mut torques) = (compensator.supervisor.torque, Vec::new());
         assert!(before > 1.8);
         for _ in 0..1000 {
             position += travelled * DT;
@@ -94,7 +111,7 @@ fn at_rest_the_torque_is_held_and_no_noise_switches_it() {
         position += reference * DT;
         let _ = compensator.step(&sample(reference, position, Some(reference)), DT);
     }
-    let held = compensator.torque;
+    let held = compensator.supervisor.torque;
     assert!(held > 0.0);
     for step in 0..1000 {
         let noise = if step % 2 == 0 { 0.015 } else { -0.015 };
@@ -124,8 +141,8 @@ fn a_lower_limit_is_reached_within_the_slew() {
     for step in 0..100 {
         let _ = compensator.step(&sample(0.5, 0.5 * DT * step as f32, None), DT);
     }
-    compensator.set_limits(Limits::new(DEFAULT_GAIN, 0.5, 200.0).unwrap());
-    let mut before = compensator.torque;
+    compensator.compensator.set_limits(Limits::new(DEFAULT_GAIN, 0.5, 200.0).unwrap());
+    let mut before = compensator.supervisor.torque;
     for step in 100..150 {
         let torque = compensator.step(&sample(0.5, 0.5 * DT * step as f32, None), DT).torque;
         assert!((torque - before).abs() <= 1.001 * 200.0 * DT, "{before} to {torque}");

@@ -56,7 +56,7 @@ impl<const CELLS: usize> DriveUnderTest for JointDrive<CELLS> {
     }
 
     fn replace_image(&mut self, image: &[u8]) -> Result<()> {
-        self.compensator().compensator().replace_model(decode(image).map(|image| image.model));
+        self.compensator().replace_model(decode(image).map(|image| image.model));
         Ok(())
     }
 }

@@ -1,5 +1,7 @@
+use super::super::tests::Joint16;
 use super::super::*;
 use super::*;
+use crate::compensator::Limits;
 use crate::test_models::{coulomb_model, image_of};
 use proptest::prelude::*;
 
@@ -17,10 +19,10 @@ fn settings() -> AdaptationSettings {
     AdaptationSettings::new([0.5, 1.3], [0.5, 0.4], MEMORY, 0.05).unwrap()
 }
 
-fn supervised(adaptation: Option<AdaptationSettings>) -> SupervisedCompensator<16> {
+fn supervised(adaptation: Option<AdaptationSettings>) -> Joint16 {
     let limits = Limits::new(1.0, 10.0, 1.0e4).unwrap();
     let compensator = Compensator::new(&image_of(coulomb_model(COULOMB, &[])), limits);
-    SupervisedCompensator::new(compensator, limits, Supervision { adaptation, ..Supervision::new(INERTIA, COULOMB) })
+    Joint16::new(compensator, Supervision { adaptation, ..Supervision::new(INERTIA, COULOMB) })
 }
 
 /// A joint that follows its reference exactly, and the loop that makes it.
@@ -31,7 +33,7 @@ struct Driven {
 
 impl Driven {
     /// Moves for so many seconds with this friction.
-    fn run(&mut self, compensator: &mut SupervisedCompensator<16>, seconds: f32, friction: Correction) {
+    fn run(&mut self, compensator: &mut Joint16, seconds: f32, friction: Correction) {
         for _ in 0..(seconds / DT) as usize {
             self.time += DT;
             let (sine, cosine) = (FREQUENCY * self.time).sin_cos();
@@ -59,17 +61,25 @@ fn a_friction_that_falls_is_followed_in_three_memories_and_back() {
     let mut compensator = supervised(Some(settings()));
     let mut joint = Driven { time: 0.0, compensation: 0.0 };
     joint.run(&mut compensator, 3.0 * MEMORY, Correction::NONE);
-    assert!(is_close(compensator.correction(), Correction::NONE), "{:?}", compensator.correction());
+    assert!(
+        is_close(compensator.supervisor.correction(), Correction::NONE),
+        "{:?}",
+        compensator.supervisor.correction()
+    );
     // A joint that warms up by 40 %, of which a part is viscous, beside an offset.
     let warm = Correction { level: 0.6, viscous: -0.2, offset: 0.1 };
     for friction in [warm, Correction::NONE, warm] {
         joint.run(&mut compensator, 3.0 * MEMORY, friction);
-        assert!(is_close(compensator.correction(), friction), "{:?} for {friction:?}", compensator.correction());
+        assert!(
+            is_close(compensator.supervisor.correction(), friction),
+            "{:?} for {friction:?}",
+            compensator.supervisor.correction()
+        );
     }
-    compensator.compensator().reset();
-    assert!(is_close(compensator.correction(), warm));
-    compensator.forget();
-    assert_eq!(compensator.correction(), Correction::NONE);
+    compensator.compensator.reset();
+    assert!(is_close(compensator.supervisor.correction(), warm));
+    compensator.supervisor.forget();
+    assert_eq!(compensator.supervisor.correction(), Correction::NONE);
 }
 
 #[test]
@@ -80,7 +90,7 @@ fn what_lies_beyond_the_bounds_is_not_followed() {
         [Correction { level: 0.1, viscous: -3.0, offset: 5.0 }, Correction { level: 9.0, viscous: 30.0, offset: -50.0 }]
     {
         joint.run(&mut compensator, 3.0 * MEMORY, friction);
-        let found = compensator.correction();
+        let found = compensator.supervisor.correction();
         assert!(
             (0.5..=1.3).contains(&found.level) && found.viscous.abs() <= 0.5 && found.offset.abs() <= 0.4,
             "{found:?}"
@@ -105,16 +115,16 @@ fn nothing_is_learnt_at_rest_without_a_reference_or_from_faults() {
         let sample =
             Sample { measurement: measured(velocity, position), reference_velocity: reference, loop_torque: 1.0 };
         let _ = compensator.step(&sample, DT);
-        assert_eq!(compensator.correction(), Correction::NONE, "step {step}");
+        assert_eq!(compensator.supervisor.correction(), Correction::NONE, "step {step}");
     }
     // A velocity that stands still where the joint does not is believed for the time of plausibility, and no longer.
     let mut learnt = [Correction::NONE; 2];
     for step in 0..3000 {
         let sample = Sample { measurement: measured(0.5, position), reference_velocity: Some(0.5), loop_torque: 1.0 };
         let _ = compensator.step(&sample, DT);
-        learnt[usize::from(step >= 1000)] = compensator.correction();
+        learnt[usize::from(step >= 1000)] = compensator.supervisor.correction();
         if step == 1000 {
-            learnt[0] = compensator.correction();
+            learnt[0] = compensator.supervisor.correction();
         }
     }
     assert_eq!(learnt[0], learnt[1]);
@@ -157,7 +167,7 @@ proptest! {
             let measurement = Measurement { velocity, position, ..Measurement::ZERO };
             let sample = Sample { measurement, reference_velocity: Some(reference), loop_torque };
             let answer = compensator.step(&sample, DT);
-            let found = compensator.correction();
+            let found = compensator.supervisor.correction();
             prop_assert!(answer.torque.is_finite() && answer.torque.abs() <= 10.0);
             prop_assert!((0.5..=1.3).contains(&found.level) && found.viscous.abs() <= 0.5 && found.offset.abs() <= 0.4);
         }

@@ -55,7 +55,7 @@ fn serve(uart: &mut Uart) {
             NEW_IMAGE => {
                 let [start, length, ..] = words;
                 let model = decode(image(start, length)).map(|image| image.model);
-                drive.compensator().compensator().replace_model(model);
+                drive.compensator().replace_model(model);
                 uart.send(&[command]);
             }
             WRITE => {

@@ -1,0 +1,236 @@
+//! Supervision as C calls it: a supervisor beside a compensator that was started, with memory of its own.
+
+use frikan_runtime::supervised::adaptation::{AdaptationSettings, Correction};
+use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
+
+use crate::ffi::FrikanCompensator;
+use crate::memory::{self, Memory, content};
+use crate::types::{FrikanMeasurement, FrikanStatus};
+
+/// Words of a supervisor's memory.
+pub const FRIKAN_SUPERVISOR_WORDS: usize = 40;
+
+/// What watches a compensator. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory gives no torque
+/// until it is started.
+#[repr(C)]
+pub struct FrikanSupervisor {
+    /// Whether there is a supervisor in the memory.
+    started: u32,
+    /// Its memory.
+    storage: [u64; FRIKAN_SUPERVISOR_WORDS],
+}
+
+const _: () =
+    assert!(size_of::<Supervisor>() <= 8 * FRIKAN_SUPERVISOR_WORDS && align_of::<Supervisor>() <= align_of::<u64>());
+
+// SAFETY: both fields lie in the memory; size and alignment are asserted above.
+unsafe impl Memory for FrikanSupervisor {
+    type Content = Supervisor;
+    const MARK: u32 = u32::from_le_bytes(*b"FRKS");
+
+    fn parts(memory: *mut Self) -> (*mut u32, *mut Supervisor) {
+        // SAFETY: places of fields, nothing is read.
+        unsafe { (&raw mut (*memory).started, (&raw mut (*memory).storage).cast()) }
+    }
+}
+
+/// How far the compensation may follow a friction that changes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FrikanAdaptation {
+    /// Lowest ratio of the friction to that of the model, 0 to 1.
+    pub lowest_level: f32,
+    /// Highest ratio, 1 to 4.
+    pub highest_level: f32,
+    /// Largest viscous part that is added or taken away, N m s/rad; 0 for none.
+    pub viscous: f32,
+    /// Largest offset, N m; 0 for none.
+    pub offset: f32,
+    /// Time constant of forgetting, s of sliding; 0 for no adaptation at all.
+    pub memory: f32,
+    /// A residual of this size, N m, counts as much as a value at its bound: what is smaller is noise.
+    pub trusted_torque: f32,
+}
+
+/// Settings of the supervision, from frikan_supervision. All are finite, none is negative, and all but the inertia are above 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrikanSupervision {
+    /// Inertia of the joint, kg m^2.
+    pub inertia: f32,
+    /// Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+    pub rest_velocity: f32,
+    /// Way after a reversal in which the contact is elastic, rad.
+    pub presliding: f32,
+    /// Time constant of the low-pass behind which the net friction is observed, s.
+    pub observer_time: f32,
+    /// Time in which the gain falls from full to none where all friction is over-compensated once more, s.
+    pub fall_time: f32,
+    /// Time in which it rises again where nothing is compensated, s.
+    pub rise_time: f32,
+    /// Friction below which no ratios are taken, N m.
+    pub least_friction: f32,
+    /// How long velocity and position may contradict each other, s.
+    pub implausible_time: f32,
+    /// Whether and how far the compensation follows a friction that changes.
+    pub adaptation: FrikanAdaptation,
+}
+
+/// One sample.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrikanSample {
+    /// The joint, velocity as measured; the position has to be filled, and without jumps.
+    pub measurement: FrikanMeasurement,
+    /// Velocity of the reference, rad/s; NaN while no position or velocity loop is closed, as in hand guiding.
+    pub reference_velocity: f32,
+    /// Torque that acted on the joint since the sample before, N m, without compensation and without the torque for gravity.
+    pub loop_torque: f32,
+}
+
+/// The answer to a sample.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrikanSupervised {
+    /// Torque to add, in the unit of the model's output.
+    pub torque: f32,
+    /// What the model says of the link's position against the motor's, rad, within the limit.
+    pub position: f32,
+    /// Share of the gain that the monitor leaves, 0 to 1.
+    pub gain_share: f32,
+    /// Ratio of the friction to that of the model, as far as it was learnt.
+    pub level: f32,
+    /// Viscous part beside it, N m s/rad.
+    pub viscous: f32,
+    /// Offset beside it, N m.
+    pub offset: f32,
+    /// Whether it is a compensation.
+    pub status: FrikanStatus,
+}
+
+impl FrikanSupervised {
+    const NOT_STARTED: Self = Self {
+        torque: 0.0,
+        position: 0.0,
+        gain_share: 0.0,
+        level: 1.0,
+        viscous: 0.0,
+        offset: 0.0,
+        status: FrikanStatus::NotStarted,
+    };
+}
+
+/// The supervision of a settings struct of C; none where a setting is out of range.
+fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
+    let FrikanAdaptation { lowest_level, highest_level, viscous, offset, memory, trusted_torque } = settings.adaptation;
+    let adaptation = if memory == 0.0 {
+        None
+    } else {
+        Some(AdaptationSettings::new([lowest_level, highest_level], [viscous, offset], memory, trusted_torque).ok()?)
+    };
+    let supervision = Supervision {
+        inertia: settings.inertia,
+        rest_velocity: settings.rest_velocity,
+        presliding: settings.presliding,
+        observer_time: settings.observer_time,
+        fall_time: settings.fall_time,
+        rise_time: settings.rise_time,
+        least_friction: settings.least_friction,
+        implausible_time: settings.implausible_time,
+        adaptation,
+        ..Supervision::new(settings.inertia, settings.least_friction)
+    };
+    supervision.is_within_range().then_some(supervision)
+}
+
+/// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, without adaptation.
+#[unsafe(no_mangle)]
+pub extern "C" fn frikan_supervision(inertia: f32, friction: f32) -> FrikanSupervision {
+    let Supervision {
+        rest_velocity,
+        presliding,
+        observer_time,
+        fall_time,
+        rise_time,
+        least_friction,
+        implausible_time,
+        ..
+    } = Supervision::new(inertia, friction);
+    FrikanSupervision {
+        inertia,
+        rest_velocity,
+        presliding,
+        observer_time,
+        fall_time,
+        rise_time,
+        least_friction,
+        implausible_time,
+        adaptation: FrikanAdaptation::default(),
+    }
+}
+
+/// Starts a supervisor. BadSupervision leaves the memory as it was.
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_supervise(
+    supervisor: *mut FrikanSupervisor,
+    settings: *const FrikanSupervision,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let Some(settings) = (unsafe { settings.as_ref() }).and_then(supervision) else {
+        return FrikanStatus::BadSupervision;
+    };
+    // SAFETY: the caller's word.
+    if unsafe { memory::start(supervisor, Supervisor::new(settings)) } {
+        FrikanStatus::Active
+    } else {
+        FrikanStatus::NotStarted
+    }
+}
+
+/// The compensation under supervision after a sample period of `dt` seconds, in place of frikan_step. Call it at a fixed rate.
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_supervised_step(
+    supervisor: *mut FrikanSupervisor,
+    compensator: *mut FrikanCompensator,
+    sample: *const FrikanSample,
+    dt: f32,
+) -> FrikanSupervised {
+    // SAFETY: the caller's word.
+    let (Some(supervisor), Some(compensator), Some(sample)) =
+        (unsafe { (content(supervisor), content(compensator), sample.as_ref()) })
+    else {
+        return FrikanSupervised::NOT_STARTED;
+    };
+    let reference = sample.reference_velocity;
+    let sample = Sample {
+        measurement: (&sample.measurement).into(),
+        reference_velocity: (!reference.is_nan()).then_some(reference),
+        loop_torque: sample.loop_torque,
+    };
+    let answer = supervisor.step(compensator, &sample, dt);
+    let Correction { level, viscous, offset } = answer.correction;
+    let status = match answer.status {
+        Supervised::Compensator(status) => status.into(),
+        Supervised::Implausible => FrikanStatus::Implausible,
+    };
+    let (torque, position, gain_share) = (answer.torque, answer.position, answer.gain_share);
+    FrikanSupervised { torque, position, gain_share, level, viscous, offset, status }
+}
+
+/// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_forget(supervisor: *mut FrikanSupervisor) {
+    // SAFETY: the caller's word.
+    if let Some(supervisor) = unsafe { content(supervisor) } {
+        supervisor.forget();
+    }
+}
