@@ -1,6 +1,7 @@
 //! Supervision as C calls it: a supervisor beside a compensator that was started, with memory of its own.
 
-use frikan_runtime::supervised::adaptation::{AdaptationSettings, Correction};
+use frikan_runtime::supervised::adaptation::Correction;
+use frikan_runtime::supervised::adaptation_settings::AdaptationSettings;
 use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
 
 use crate::ffi::FrikanCompensator;

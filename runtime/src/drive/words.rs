@@ -4,7 +4,8 @@
 use super::sample::{DriveInput, DriveOutput};
 use crate::compensator::{Limits, Status};
 use crate::controller::{Settings, Target};
-use crate::supervised::adaptation::{AdaptationSettings, Correction};
+use crate::supervised::adaptation::Correction;
+use crate::supervised::adaptation_settings::AdaptationSettings;
 use crate::supervised::{Supervised, SupervisedCompensation, Supervision, VelocitySource};
 
 /// Words of a [`DriveInput`].

@@ -8,6 +8,7 @@ use crate::evaluate::limited;
 use crate::friction::Measurement;
 
 pub mod adaptation;
+pub mod adaptation_settings;
 pub mod blend;
 pub mod monitor;
 pub mod observer;

@@ -1,6 +1,6 @@
 //! Settings of the supervision.
 
-use super::adaptation::AdaptationSettings;
+use super::adaptation_settings::AdaptationSettings;
 
 /// Speed beyond any joint's, rad/s.
 pub(super) const FASTEST: f32 = 1.0e6;

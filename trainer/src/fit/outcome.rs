@@ -4,6 +4,7 @@ use crate::kan::{GraphSummary, Removed, Step};
 use crate::parameter::Parameter;
 use crate::recording::Axis;
 use crate::samples::relevance::Relevance;
+use frikan_runtime::supervised::DEFAULT_GAIN;
 
 /// Points of a drawn curve.
 pub(super) const CURVE_POINTS: usize = 241;
@@ -116,6 +117,27 @@ pub struct Outcome {
     pub band: Vec<[f64; 3]>,
     /// The image, as it is written to the file.
     pub image: Vec<u8>,
+}
+
+impl Outcome {
+    /// Share of the friction that may be missing by the 95 % band, averaged over the velocities with the friction itself as the weight; 0
+    /// to 1.
+    #[must_use]
+    pub fn uncertain_share(&self) -> f64 {
+        uncertain_share(&self.band)
+    }
+
+    /// Gain for a supervised compensator: the drive's default, or less where the friction may lie further below the law.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        f64::from(DEFAULT_GAIN).min(1.0 - self.uncertain_share())
+    }
+}
+
+fn uncertain_share(band: &[[f64; 3]]) -> f64 {
+    let friction: f64 = band.iter().map(|[_, low, high]| 0.5 * (low + high).abs()).sum();
+    let half: f64 = band.iter().map(|[_, low, high]| (0.5 * (low + high).abs()).min(0.5 * (high - low))).sum();
+    if friction > 0.0 { half / friction } else { 1.0 }
 }
 
 /// Whether a fit may be relied upon; anything but `Sound` ends with exit status 4.
@@ -291,4 +313,17 @@ pub struct Trace {
     pub split: SplitScore,
     /// After a low-pass, at 100 samples a second: what is left of noise beyond the motion's band does not count.
     pub filtered_score: Score,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::uncertain_share;
+
+    #[test]
+    fn what_may_be_missing_is_weighted_by_the_friction() {
+        assert!((uncertain_share(&[[-1.0, -2.2, -1.8], [0.0, -0.2, 0.2], [1.0, 1.8, 2.2]]) - 0.1).abs() < 1e-12);
+        assert_eq!(uncertain_share(&[[1.0, -1.0, 1.0]]), 1.0);
+        assert_eq!(uncertain_share(&[[1.0, -1.0, 2.0]]), 1.0);
+        assert_eq!(uncertain_share(&[]), 1.0);
+    }
 }

@@ -6,7 +6,7 @@ use frikan_runtime::compensator::Limits;
 use frikan_runtime::controller::Settings;
 use frikan_runtime::drive::DriveSettings;
 use frikan_runtime::supervised::Supervision;
-use frikan_runtime::supervised::adaptation::AdaptationSettings;
+use frikan_runtime::supervised::adaptation_settings::AdaptationSettings;
 
 use crate::plant::{Joint, encoder_step};
 

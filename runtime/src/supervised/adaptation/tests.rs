@@ -1,3 +1,4 @@
+use super::super::adaptation_settings::AdaptationError;
 use super::super::tests::Joint16;
 use super::super::*;
 use super::*;

@@ -56,6 +56,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
         "front": outcome.law.front.iter().map(|law| json!({
             "expression": law.expression, "nodes": law.nodes, "rmse": law.rmse, "held_out_rmse": law.held_out_rmse,
         })).collect::<Vec<_>>(),
+        "gain": {"recommended": outcome.gain(), "uncertain_share": outcome.uncertain_share()},
         "band": {"level": 0.95, "over": "velocity", "points": outcome.band},
         "train": with_split(score(outcome.train_score), &outcome.train_split),
         "train_recordings": train,

@@ -73,6 +73,12 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
             writeln!(out, "      {violation}")?;
         }
     }
+    writeln!(
+        out,
+        "\ngain        {:.2} for a supervised drive: by its 95 % band the friction may be {:.1} % lower",
+        outcome.gain(),
+        100.0 * outcome.uncertain_share()
+    )?;
     writeln!(out, "\nscores of the image on the recorded rows        n        R2        rmse   error   at 100 Hz")?;
     outcome.train.iter().try_for_each(|trace| write_score(out, "train", trace, unit))?;
     outcome.tests.iter().try_for_each(|trace| write_score(out, "test", trace, unit))?;
