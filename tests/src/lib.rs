@@ -11,6 +11,7 @@ pub mod laws;
 pub mod models;
 pub mod paper;
 pub mod published;
+pub mod sealed_coverage;
 pub mod second_opinion;
 pub mod training_cost;
 pub mod vectors;

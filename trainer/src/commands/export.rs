@@ -1,5 +1,6 @@
 //! `trainer export`: an image in the form that a tool chain takes.
 
+mod fmu;
 mod model_file;
 
 use std::path::{Path, PathBuf};
@@ -85,7 +86,8 @@ pub enum Format {
     Text,
     /// MuJoCo 4.0: joint attributes and, with `--into` where law or effects ask for it, a passive motor with LuGre friction and cogging
     Mujoco,
-    /// Any MuJoCo: `armature`, `frictionloss`, `damping` of a joint; without `--into` a default class to include
+    /// MuJoCo: `armature`, `frictionloss`, `damping` of a joint (three numbers of `damping` need 4.0); without `--into` a default class to
+    /// include
     MjcfPatch,
     /// URDF: the `dynamics` of a joint
     Urdf,
@@ -97,6 +99,8 @@ pub enum Format {
     Isaac,
     /// Drake: rotor inertia, and the law as a system, as Python
     Drake,
+    /// FMI 3.0: law and effects as a co-simulation unit, with C sources and, where a C compiler is found, the library of this platform
+    Fmu,
 }
 
 /// A processor of `elf`.
@@ -139,6 +143,11 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Usd => for_simulator(Simulator::Usd)?,
         Format::Isaac => for_simulator(Simulator::Isaac)?,
         Format::Drake => for_simulator(Simulator::Drake)?,
+        Format::Fmu => {
+            let (file, told) = fmu::file(&image_bytes, &image, &title)?;
+            eprint!("{told}");
+            file
+        }
         Format::C => {
             let (name, header) = c_names(&arguments.output)?;
             let evaluator = c::evaluator(&name, &title, &image)?;

@@ -20,6 +20,9 @@ pub struct Simulate {
     /// Seed of motions, noise and shapes of effects: one seed, one recording
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Seed of motions and noise, for another recording of the joint that `--seed` describes
+    #[arg(long, value_name = "SEED")]
+    pub motion_seed: Option<u64>,
     /// Hide an effect at an amplitude (1 is a plausible strength); may be given several times
     #[arg(long = "effect", value_name = "NAME=AMPLITUDE", value_parser = parse_effect)]
     pub effects: Vec<Hidden>,
@@ -61,7 +64,9 @@ pub fn run(arguments: &Simulate) -> Result<()> {
         }
         joint.campaign = joint.campaign.with_duration(duration);
     }
-    let recording = plant::simulate(&joint, arguments.seed).map_err(|error| Error::from(error).in_file(&label))?;
+    let motion_seed = arguments.motion_seed.unwrap_or(arguments.seed);
+    let recording = plant::simulate_again(&joint, arguments.seed, motion_seed)
+        .map_err(|error| Error::from(error).in_file(&label))?;
     write_recording(arguments, &recording)?;
     if let Some(path) = &arguments.truth {
         write_whole(path, recording.truth_to_csv().as_bytes())?;

@@ -4,6 +4,7 @@ pub mod c_array;
 pub mod dump;
 pub mod elf;
 pub mod flashing;
+pub mod fmu;
 pub mod hex;
 pub mod readable;
 pub mod simulator;

@@ -28,7 +28,7 @@ pub use measurement::recording::{Column, SimulatedRecording, Truth};
 pub(crate) use measurement::sensors::encoder_step;
 pub(crate) use mechanics::transmission::Load;
 pub(crate) use simulate::at_rest;
-pub use simulate::{conceal, simulate};
+pub use simulate::{conceal, simulate, simulate_again};
 pub use trajectory::campaign::{Campaign, Trajectory};
 pub use trajectory::motion::Motion;
 pub use trajectory::reference::Reference;

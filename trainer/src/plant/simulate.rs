@@ -15,9 +15,17 @@ use crate::plant::trajectory::reference::Reference;
 /// # Errors
 /// [`PlantError`] for a value out of range, an unknown effect, or an unstable motion.
 pub fn simulate(joint: &Joint, seed: u64) -> Result<SimulatedRecording, PlantError> {
-    let (mut moving, references) = with_references(joint, seed)?;
-    let history = integrate(&mut moving, &references)?;
-    Ok(record(joint, history, &moving.hidden.faults, moving.hidden.parameters, seed))
+    simulate_again(joint, seed, seed)
+}
+
+/// Another recording of the joint that [`simulate`] has for `seed`: the same hidden effects under motions and noise of `motion_seed`.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_again(joint: &Joint, seed: u64, motion_seed: u64) -> Result<SimulatedRecording, PlantError> {
+    let mut moving = at_rest(joint, seed)?;
+    let history = integrate(&mut moving, &references(joint, motion_seed))?;
+    Ok(record(joint, history, &moving.hidden.faults, moving.hidden.parameters, motion_seed))
 }
 
 /// Simulates with one more effect hidden at `amplitude`; motions, noise and the shape of the effect depend on the seed
@@ -36,18 +44,10 @@ pub fn conceal(joint: &Joint, name: &str, amplitude: f64, seed: u64) -> Result<S
 /// # Errors
 /// As [`simulate`], but for an unstable motion.
 pub(crate) fn at_rest(joint: &Joint, seed: u64) -> Result<MovingJoint<'_>, PlantError> {
-    with_references(joint, seed).map(|(moving, _)| moving)
-}
-
-/// A reference, and its gravity torque, N m.
-type Trajectory = (Reference, f64);
-
-/// The joint at rest, and the references that it is to follow: effects are drawn for their range.
-fn with_references(joint: &Joint, seed: u64) -> Result<(MovingJoint<'_>, Vec<Trajectory>), PlantError> {
     validate(joint)?;
-    let references = references(joint, seed);
-    let hidden = Concealed::draw(joint, &references, seed)?;
-    Ok((MovingJoint::new(joint, hidden, seed), references))
+    // Effects are drawn for the range of the motions of their own seed.
+    let hidden = Concealed::draw(joint, &references(joint, seed), seed)?;
+    Ok(MovingJoint::new(joint, hidden, seed))
 }
 
 fn validate(joint: &Joint) -> Result<(), PlantError> {

@@ -16,6 +16,11 @@ use frikan_shared::model::Model;
 use crate::fit::CELLS;
 
 /// Whether an effect adds to the position of the link.
-fn moves_link(model: &Model<CELLS>) -> bool {
+pub(super) fn moves_link(model: &Model<CELLS>) -> bool {
     model.effects.iter().any(effects::moves_link)
+}
+
+/// Names of the channels of a model, as every language takes them.
+pub(super) fn parameters(model: &Model<CELLS>) -> Vec<String> {
+    law::parameters(model)
 }

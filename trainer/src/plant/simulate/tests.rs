@@ -55,6 +55,20 @@ fn one_seed_one_recording() {
 }
 
 #[test]
+fn another_recording_of_a_joint_hides_the_same_effect_under_another_motion() {
+    let joint = Joint { campaign: Campaign::default().with_duration(12.0), ..Joint::default() };
+    let effects = vec![Hidden { name: "position_ripple".to_owned(), amplitude: 1.0 }];
+    let joint = Joint { effects, ..joint };
+    let [first, again] = [8, 9].map(|motion_seed| simulate_again(&joint, 8, motion_seed).unwrap());
+    assert_eq!(first, simulate(&joint, 8).unwrap());
+    assert_eq!(first.truth.parameters, again.truth.parameters);
+    let other = simulate(&joint, 9).unwrap();
+    assert_eq!(again.column("reference_position_rad"), other.column("reference_position_rad"));
+    assert_eq!(again.truth.noise_torque.len(), other.truth.noise_torque.len());
+    assert_ne!(again.truth.parameters, other.truth.parameters);
+}
+
+#[test]
 fn a_clean_joint_obeys_the_nominal_law() {
     let joint = quiet();
     let recording = simulate(&joint, 4).unwrap();
