@@ -65,7 +65,8 @@ pub fn case(folder: &Path, effect: &str, seed: u64) -> Option<Case> {
     );
     let told: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("told.json")).ok()?).ok()?;
     let sealed = &told["sealed"];
-    if status == 0 || sealed.is_null() {
+    // A model that is worse on its sealed rows is not written.
+    if status == 0 || sealed.is_null() || !folder.join("improved.frk").exists() {
         return None;
     }
     let when_s: Vec<[f64; 2]> = serde_json::from_value(sealed["when_s"].clone()).ok()?;
