@@ -1,6 +1,7 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
 mod compare;
+mod put_right;
 mod sealed;
 mod summary;
 mod trajectory;
@@ -163,6 +164,9 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         } else {
             outputs.add(path, improved.image.clone());
         }
+    }
+    if arguments.simulation.is_some() && diagnosis.verdict == Verdict::MissingPhysics && !is_worse {
+        remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {
         let page = DiagnosisPage {
