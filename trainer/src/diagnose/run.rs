@@ -21,9 +21,9 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
-    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
+    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unnamed, withdraw_unproven,
 };
-use crate::diagnose::proof::locked_rows::{prove, rest};
+use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
 use crate::diagnose::proof::rollout::roll_out;
 use crate::diagnose::realign::{Realignment, Trial, is_better, joined, next_delay_s};
@@ -151,27 +151,30 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
     polish(workbench, &mut accepted, &noise);
     // In this order: what is set aside later is weighed beside what stays.
-    let discarded = Discarded {
+    let mut discarded = Discarded {
         withdrawn: withdraw_unproven(workbench, &settings, &mut accepted),
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
     };
+    discarded.withdrawn.extend(withdraw_unnamed(workbench, &baseline, &mut accepted));
     if !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
     }
     let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
+    let proof = prove(workbench, &baseline, &improved);
+    let shows_gain = proof.as_ref().is_none_or(Proof::shows_gain);
     let findings: Vec<Finding> = if blocked {
         health.iter().filter(|note| note.blocking).map(measurement_finding).collect()
     } else {
         let found = accepted.iter().enumerate();
-        found.map(|(index, effect)| finding(workbench, effect, &accepted, index, &improved)).collect()
+        let told = |(index, effect)| finding(workbench, effect, &accepted, index, &improved);
+        found.map(told).map(|finding| if shows_gain { finding } else { finding.without_shown_gain() }).collect()
     };
     let verdict = Verdict::of(&findings, blocked);
     let mut traces = Traces::of(workbench, &baseline, &improved);
     // A fault of the measurement adds no torque.
     traces.effects.resize(findings.len(), vec![0.0; traces.time.len()]);
-    let proof = prove(workbench, &baseline, &improved);
     let mut diagnosis = Diagnosis {
         verdict,
         health,

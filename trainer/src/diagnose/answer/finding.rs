@@ -5,7 +5,7 @@ use crate::diagnose::answer::location::{Location, locate};
 use crate::diagnose::answer::nearest_named::nearest;
 use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Evidence, Finding};
 use crate::diagnose::answer::region::{Region, Side};
-use crate::diagnose::answer::stated_probability::{WITHOUT_RIVAL, alternatives, probability};
+use crate::diagnose::answer::stated_probability::{WITHOUT_RIVAL, WITHOUT_SHOWN_GAIN, alternatives, probability};
 use crate::diagnose::answer::traces::{Traces, WorstLocked};
 use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::base::Base;
@@ -98,6 +98,18 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
             Estimate::of(name, symbol, dimension(name), refit.base[i], refit.base_deviation[i])
         })
         .collect()
+}
+
+impl Finding {
+    /// The finding where held-out rows do not show by their interval that the error falls with it: less certain, but for an event, which lies
+    /// in rows that no others can speak for.
+    #[must_use]
+    pub(crate) fn without_shown_gain(mut self) -> Self {
+        if self.effect != EffectId::TransientEvent {
+            self.probability = self.probability.min(WITHOUT_SHOWN_GAIN);
+        }
+        self
+    }
 }
 
 /// Stated probability of a fault that the signals show by themselves, such as a torque beyond the drive's limit. Chosen

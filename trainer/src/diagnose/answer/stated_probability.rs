@@ -37,6 +37,10 @@ const FREQUENCIES: Frequencies = Frequencies {
 /// leaves one stretch with several times the error of any other.
 pub(crate) const WITHOUT_RIVAL: f64 = FREQUENCIES.alone;
 
+/// Most that is stated of a name of which held-out rows do not show by their interval that the error falls with it: as of one with a rival
+/// far behind.
+pub(crate) const WITHOUT_SHOWN_GAIN: f64 = FREQUENCIES.far_rivals;
+
 /// Probability that the named effect is the true one, by its margin and its rivals.
 pub(crate) fn probability(found: &Accepted) -> f64 {
     let nearest = found.rivals.iter().map(|(_, distance)| *distance).min_by(f64::total_cmp);

@@ -28,6 +28,14 @@ pub struct Proof {
     pub rows: usize,
 }
 
+impl Proof {
+    /// Whether the locked rows show by the interval of their ratio that the error fell.
+    #[must_use]
+    pub(crate) fn shows_gain(&self) -> bool {
+        self.ratio_ci95[1] < 1.0
+    }
+}
+
 /// Opens the locked blocks. `baseline` is the refit without effects. `None` where nothing was locked.
 pub(crate) fn prove(workbench: &Workbench, baseline: &Refit, improved: &Refit) -> Option<Proof> {
     let blocks: Vec<&Vec<Range<usize>>> =
