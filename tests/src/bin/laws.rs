@@ -83,7 +83,7 @@ fn clean(page: &mut String) -> std::fmt::Result {
             missed / spread,
             law.node_count()
         )?;
-        writeln!(formulas, "    joint {}   {}", j + 1, render(law, Language::Unicode, "", &["v"]))?;
+        writeln!(formulas, "    joint {}   {}", j + 1, render(law, Language::Unicode, &["v"]))?;
     }
     writeln!(page, "\n{formulas}")
 }

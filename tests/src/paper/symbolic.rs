@@ -56,7 +56,7 @@ pub fn symbolic(joint: usize, share: f64, seed: u64) -> Symbolic {
     Symbolic {
         graphs: [before, after, labelled],
         network: pruned.network,
-        formula: render(expression, Language::Unicode, "", &["v"]),
+        formula: render(expression, Language::Unicode, &["v"]),
         nodes: expression.node_count(),
         r2: r2(&test.clean, &predicted),
         found,

@@ -174,7 +174,7 @@ fn law(image: &Image<CELLS>, language: Language) -> Result<Vec<u8>> {
         .ok_or_else(|| Error::new(&codes::USAGE, "the program holds operations that no formula has"))?;
     let names: Vec<String> = image.model.inputs.iter().map(|input| identifier(input.quantity.name())).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let text = render(&canonical(&expression), language, "friction", &names);
+    let text = render(&canonical(&expression), language, &names);
     Ok(format!("{}\n", text.trim_end()).into_bytes())
 }
 

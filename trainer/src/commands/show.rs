@@ -152,7 +152,7 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         )?,
         Law::Expression(program) => {
             let names: Vec<&str> = model.inputs.iter().map(|input| input.quantity.name()).collect();
-            let expression = expression_of(program).map(|e| render(&canonical(&e), Language::Unicode, "", &names));
+            let expression = expression_of(program).map(|e| render(&canonical(&e), Language::Unicode, &names));
             writeln!(out, "law         {}", expression.as_deref().unwrap_or("a program that no formula says"))?;
             writeln!(out, "            {} operations", program.operations.len())?;
         }

@@ -143,7 +143,7 @@ pub(in crate::fit) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInpu
     let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
     LawSummary {
         expression: text(expression, inputs),
-        latex: render(expression, Language::Latex, "friction", &symbols),
+        latex: render(expression, Language::Latex, &symbols),
         nodes: expression.node_count(),
         rmse: fit.rmse,
         front: front.collect(),
@@ -153,7 +153,7 @@ pub(in crate::fit) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInpu
 
 fn text(expression: &Expr, inputs: &[ChosenInput]) -> String {
     let symbols: Vec<&str> = inputs.iter().map(|input| symbol(&input.name)).collect();
-    render(expression, Language::Unicode, "friction", &symbols)
+    render(expression, Language::Unicode, &symbols)
 }
 
 fn refused(error: &LawError) -> Error {

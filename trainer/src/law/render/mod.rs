@@ -1,8 +1,8 @@
-//! A law as text: for the terminal, for papers, and as source code that evaluates to it. Knows no data and no fit.
+//! A law as text: for the terminal, for papers, and for SymPy. Knows no data and no fit.
 
-mod code;
 mod latex;
 mod number;
+mod sympy;
 mod text;
 
 pub use latex::latex;
@@ -17,40 +17,19 @@ pub enum Language {
     Unicode,
     /// Mathematics in LaTeX, six significant digits.
     Latex,
-    /// A C function of doubles, `<math.h>` included.
-    C,
-    /// A Rust function of `f64`.
-    Rust,
-    /// A Python function over NumPy arrays.
-    Python,
     /// A string for `sympy.sympify`.
     SymPy,
 }
 
-/// Renders a bound expression. `inputs[i]` names channel `i` (a symbol for the first two languages and SymPy, else an
-/// identifier); code comes as a function `name` of all inputs in their order.
+/// Renders a bound expression; `inputs[i]` is the symbol of channel `i`.
 ///
 /// # Panics
 /// When an input index is out of range.
-pub fn render(expression: &Expr, language: Language, name: &str, inputs: &[&str]) -> String {
+pub fn render(expression: &Expr, language: Language, inputs: &[&str]) -> String {
     match language {
         Language::Unicode => text::infix(expression, inputs, &text::Unicode),
         Language::Latex => latex(expression, inputs),
-        Language::SymPy => text::infix(expression, inputs, &code::SymPy),
-        Language::C => {
-            let arguments: Vec<String> = inputs.iter().map(|i| format!("double {i}")).collect();
-            let body = text::infix(expression, inputs, &code::C);
-            format!("#include <math.h>\n\ndouble {name}({})\n{{\n    return {body};\n}}\n", arguments.join(", "))
-        }
-        Language::Rust => {
-            let arguments: Vec<String> = inputs.iter().map(|i| format!("{i}: f64")).collect();
-            let body = text::infix(expression, inputs, &code::Rust);
-            format!("pub fn {name}({}) -> f64 {{\n    {body}\n}}\n", arguments.join(", "))
-        }
-        Language::Python => {
-            let body = text::infix(expression, inputs, &code::Python);
-            format!("import numpy as np\n\n\ndef {name}({}):\n    return {body}\n", inputs.join(", "))
-        }
+        Language::SymPy => text::infix(expression, inputs, &sympy::SymPy),
     }
 }
 

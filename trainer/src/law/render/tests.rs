@@ -11,26 +11,20 @@ fn reference() -> Expr {
 #[test]
 fn the_reference_law_reads_as_it_is_written() {
     let law = reference();
-    let of = |language, input| render(&law, language, "friction", &[input]);
-    assert_eq!(of(Language::Unicode, "v"), "(22 + 8·exp(−|v|/0.1))·tanh(50·v) + 0.03·v");
-    assert_eq!(of(Language::SymPy, "v"), "(22.0 + 8.0*exp(-Abs(v)/0.1))*tanh(50.0*v) + 0.03*v");
+    let of = |language| render(&law, language, &["v"]);
+    assert_eq!(of(Language::Unicode), "(22 + 8·exp(−|v|/0.1))·tanh(50·v) + 0.03·v");
+    assert_eq!(of(Language::SymPy), "(22.0 + 8.0*exp(-Abs(v)/0.1))*tanh(50.0*v) + 0.03*v");
     assert_eq!(
-        of(Language::Latex, "v"),
+        of(Language::Latex),
         "\\left(22 + 8 \\, \\exp\\left(-\\frac{\\left|v\\right|}{0.1}\\right)\\right) \\, \\tanh\\left(50 \\, v\\right) + 0.03 \\, v"
     );
-    assert_eq!(
-        of(Language::C, "velocity"),
-        "#include <math.h>\n\ndouble friction(double velocity)\n{\n    return (22.0 + 8.0 * exp(-fabs(velocity)/0.1)) * tanh(50.0 * velocity) + 0.03 * velocity;\n}\n"
-    );
-    assert!(of(Language::Python, "velocity").contains("np.exp(-np.abs(velocity)/0.1)"));
-    assert!(of(Language::Rust, "velocity").starts_with("pub fn friction(velocity: f64) -> f64 {"));
 }
 
 #[test]
 fn brackets_keep_the_value() {
     let v = || Expr::Input(0);
     let e = v() - (v() - (Expr::Const(2.0) + v())) / (v() * (Expr::Const(3.0) / v()));
-    assert_eq!(render(&e, Language::SymPy, "f", &["v"]), "v - (v - (2.0 + v))/(v*(3.0/v))");
+    assert_eq!(render(&e, Language::SymPy, &["v"]), "v - (v - (2.0 + v))/(v*(3.0/v))");
 }
 
 #[test]

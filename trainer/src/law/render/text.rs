@@ -1,9 +1,9 @@
-//! Infix notation with as few brackets as precedence allows; a notation says how each language spells the leaves and functions.
+//! Infix notation with as few brackets as precedence allows; a notation says how leaves and functions are spelt.
 
 use super::number::significant;
 use crate::law::model::expression::{Expr, Unary};
 
-/// How a language spells things.
+/// How leaves and functions are spelt.
 pub(super) trait Notation {
     /// A number.
     fn number(&self, x: f64) -> String;
