@@ -1,5 +1,5 @@
-//! A compensator that watches what it does: it takes the velocity of the reference and of the joint, lowers its gain where compensation feeds
-//! the joint, holds its torque at rest, ramps down where velocity and position contradict each other, and follows a friction that changes.
+//! Supervision of a compensator: it takes the velocity of the reference and of the joint, lowers the gain where compensation feeds the joint,
+//! holds the torque at rest, ramps it down where velocity and position contradict each other, and follows a friction that changes.
 //!
 //! Around [`Compensator`], whose step costs what it costs without supervision. Branches depend on the sample here.
 
