@@ -8,6 +8,9 @@ use frikan_shared::units::Unit;
 use crate::fit::CELLS;
 use crate::markup::escape;
 
+/// Name of the unit, and so of its library.
+pub const IDENTIFIER: &str = "joint_friction";
+
 /// How the sources are compiled (FMI 3.0.2, section 2.5.1).
 pub(super) const BUILD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  \
      <BuildConfiguration modelIdentifier=\"joint_friction\">\n    <SourceFileSet language=\"C99\">\n      \
@@ -32,7 +35,7 @@ pub(super) struct Description<'a> {
 impl Description<'_> {
     pub(super) fn xml(&self) -> String {
         let Self { title, token, model, names, moves_link } = self;
-        let (title, identifier) = (escape(title), super::IDENTIFIER);
+        let (title, identifier) = (escape(title), IDENTIFIER);
         let is_linear = model.inputs.iter().any(|input| matches!(input.unit, Unit::MetrePerSecond | Unit::Metre));
         let position_unit = if is_linear { Unit::Metre } else { Unit::Radian };
         let mut units = vec![model.output_unit, position_unit];

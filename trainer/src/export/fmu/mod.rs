@@ -10,13 +10,11 @@ use zip::ZipWriter;
 use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 
+pub use self::description::IDENTIFIER;
 use self::description::{BUILD, Description};
 use super::source::{c, moves_link, parameters};
 use crate::error::Result;
 use crate::fit::CELLS;
-
-/// Name of the unit, and so of its library.
-pub const IDENTIFIER: &str = "joint_friction";
 
 /// The functions of FMI around `begin` and `advance`.
 const FMI: &str = include_str!("fmi3.c");

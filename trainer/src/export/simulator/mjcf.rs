@@ -24,7 +24,7 @@ const BRISTLE_STEP_RAD: f64 = 0.2;
 /// Which elements of MuJoCo are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Elements {
-    /// Attributes of the joint that every version reads.
+    /// Attributes of the joint; three numbers of `damping` need 4.0.
     Joint,
     /// A `dcmotor` without input beside them (MuJoCo 4.0).
     PassiveMotor,
