@@ -21,7 +21,7 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
-    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unnamed, withdraw_unproven,
+    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -151,13 +151,12 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
     polish(workbench, &mut accepted, &noise);
     // In this order: what is set aside later is weighed beside what stays.
-    let mut discarded = Discarded {
+    let discarded = Discarded {
         withdrawn: withdraw_unproven(workbench, &settings, &mut accepted),
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
     };
-    discarded.withdrawn.extend(withdraw_unnamed(workbench, &baseline, &mut accepted));
     if !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
     }

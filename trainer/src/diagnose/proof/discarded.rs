@@ -3,7 +3,7 @@
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
-use crate::diagnose::proof::locked_rows::{prove, prove_alone, rest};
+use crate::diagnose::proof::locked_rows::{prove_alone, rest};
 use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
@@ -92,20 +92,6 @@ pub(crate) fn withdraw_unproven(
         withdrawn.push(accepted.remove(weakest).effect());
     }
     withdrawn
-}
-
-/// Drops structures without a name where nothing else was found and the locked rows do not show by their interval that the error falls:
-/// nobody can act on them.
-pub(crate) fn withdraw_unnamed(workbench: &Workbench, baseline: &Refit, accepted: &mut Vec<Accepted>) -> Vec<EffectId> {
-    let is_unnamed = |found: &Accepted| found.effect() == EffectId::Unknown;
-    if !accepted.iter().all(is_unnamed) {
-        return Vec::new();
-    }
-    let proof = refit(workbench, accepted).and_then(|improved| prove(workbench, baseline, &improved));
-    if proof.is_none_or(|proof| proof.shows_gain()) {
-        return Vec::new();
-    }
-    accepted.drain(..).map(|found| found.effect()).collect()
 }
 
 /// What one effect explains beside all the others.
