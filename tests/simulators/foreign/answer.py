@@ -54,6 +54,7 @@ def summary(answer):
         "verdict": answer["verdict"],
         "findings": findings,
         "health": [note for note in answer["health"] if note["blocking"] and note.get("effect")],
+        "in_simulation": (answer.get("given") or {}).get("holds", []),
         "notes": [note["code"] for note in answer["health"]],
         "held_out": held_out and [held_out["ratio"], *held_out["ci95"]],
         "sealed": sealed and [sealed["ratio"], *(sealed["ci95"] or [])],

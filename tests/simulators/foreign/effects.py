@@ -79,7 +79,8 @@ def gravity(joint, motion, rng):
 
 
 def payload(joint, motion, rng):
-    at, angle = joint.lever_m * rng.uniform(1.0, 2.0), joint.phase_rad
+    # Beside the line to the mass of the link: on it, a payload is a scale of the torque and an inertia.
+    at, angle = joint.lever_m * rng.uniform(1.0, 2.0), joint.phase_rad + rng.choice((-1, 1)) * rng.uniform(0.4, 1.0)
     mass = 0.1 * joint.frictionloss_Nm / GRAVITY_M_S2 / at
     place = f"{-at * math.sin(angle)} 0 {-at * math.cos(angle)}"
 

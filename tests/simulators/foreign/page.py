@@ -46,8 +46,10 @@ def told(result):
         rivals = "".join(f" or {name} {100 * p:.0f} %" for name, p in finding["alternatives"].items())
         parts.append(f"{finding['effect']} {100 * finding['probability']:.0f} %{rivals}")
     parts += [f"{note['effect']} (measurement)" for note in result.get("health", [])]
+    if result.get("in_simulation"):
+        parts.append("in the simulation itself: " + ", ".join(result["in_simulation"]))
     said = "; ".join(parts) or result.get("error", "nothing").splitlines()[0]
-    of = f" at {result['ratio']:g}" if result["ratio"] else ""
+    of = f" at {result['ratio']:g} (beside friction {result['beside_friction_Nm'] / result['noise_Nm']:.2f})" if result["ratio"] else ""
     friction = "tanh" if result["joint"]["sign_width_rad_s"] else "frictionloss"
     where = f"{result['effect']}{of}, {friction}, {result['noise']}, seed {result['seed']}"
     return f"* {where}: {said}; held-out ratio {interval(result.get('held_out'))}, sealed {interval(result.get('sealed'))}"
@@ -86,13 +88,23 @@ def of_healthy(results, title):
     return f"## {title}\n\nPairs with an exit status other than 0.\n\n" + table(["noise", *FRICTIONS], rows) + text
 
 
+def wrong_names(results):
+    """How often every wrong name is given, over friction and noise."""
+    parts = [*by_friction(results), *([r for r in results if r["noise"] == kind] for kind in KINDS)]
+    counts = [Counter(names[0] for r in part for names in r["wrong"]) for part in parts]
+    order = (counts[0] + counts[1]).most_common()
+    rows = [[name, number, *(found[name] for found in counts)] for name, number in order]
+    return table(["named", "all", *FRICTIONS, *KINDS], [*rows, ["pairs", len(results), *(len(part) for part in parts)]])
+
+
 def of_effects(results):
-    columns = ["right: first name or its set", "first name", "named anywhere", "a name whose set misses the truth", "nothing named", "mean set"]
+    columns = ["right: first name or its set", "first name", "named anywhere", "a name whose set misses the truth", "the right name alone", "nothing named", "mean set"]
     for result in results:
         result["nothing"] = not result["size"]
+        result["alone"] = result["right"] and not result["wrong"]
 
     def row(found):
-        return [count(found, key) for key in ("right", "first", "anywhere", "wrong", "nothing")] + [mean_size(found)]
+        return [count(found, key) for key in ("right", "first", "anywhere", "wrong", "alone", "nothing")] + [mean_size(found)]
 
     ratios = sorted({result["ratio"] for result in results}, reverse=True)
     overall = [
@@ -118,6 +130,8 @@ def of_effects(results):
         + calibration(results)
         + "\nWhat was taken for what, the first wrong name of a pair:\n\n"
         + table(["concealed", "named", "pairs"], [[*pair, number] for pair, number in mistakes.most_common()])
+        + "\nWrong names by Coulomb friction and by noise; a pair may have several.\n\n"
+        + wrong_names(results)
         + f"\nEvery pair with a wrong name or without the right one:\n\n{misses}\n\n"
     )
 
@@ -125,12 +139,14 @@ def of_effects(results):
 def page(results):
     """The page in Markdown."""
     groups = {group: [r for r in results if r["group"] == group] for group in ("healthy", "effects", "model")}
-    runs = " ".join(str(run) for run in dict.fromkeys(result["run"] for result in results))
+    runs = Counter((result["group"], result["run"]) for result in results)
+    seeds = ", ".join(f"`--only {group} --seed {run}` ({number} pairs)" for (group, run), number in runs.items())
     text = f"""# Plants that are not ours: joints of MuJoCo
 
-Made by `python tests/simulators/foreign_pairs.py --trainer target/release/trainer --model --page docs/foreign-plants.md` (packages of
-`tests/simulators/requirements.txt`), with a fresh seed at every run; here {runs}. Every figure below is measured by that command, and none of
-the thresholds was chosen on these pairs. Brackets are 95 % intervals (Wilson).
+Made by `python tests/simulators/foreign_pairs.py --trainer target/release/trainer --keep FOLDER` (packages of `tests/simulators/requirements.txt`)
+and, from what it kept, by `foreign_pairs.py --results FOLDER/results.jsonl ... --page docs/foreign-plants.md`. Seeds are fresh at every run, here
+{seeds}; every figure below is counted by that command, and no threshold was chosen on these pairs.
+Brackets are 95 % intervals (Wilson).
 
 A pair is a simulation and a recording of one joint (servo, elbow or shoulder under gravity, with `frictionloss`, `damping` and `armature`) for
 20 to 30 s at 250 Hz, under one controller and one motion of four frequencies, half of the motions with stops. The rigid body is given in
@@ -140,7 +156,8 @@ too where it has a tanh, else at 1 ms. The recording has one of five kinds of no
 an encoder of 12 to 18 bits with its velocity differenced, beside white torque noise; Student's with three degrees of freedom; growing with the
 torque. An effect is the torque that the simulation's joint would not have needed for the recorded motion, below 20 Hz. Its root mean square is
 {100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times
-that.
+that. "Beside friction" is that ratio without what another Coulomb level, viscosity and offset make up for: where it is below about 0.1 there is
+little to be found.
 
 """
     if groups["effects"]:
@@ -149,4 +166,6 @@ that.
         text += of_healthy(groups["healthy"], "Nothing is missing: recording against simulation")
     if groups["model"]:
         text += of_healthy(groups["model"], "Nothing is missing: recording against a model fitted to another recording of 12 to 120 s")
+    else:
+        text += "Recordings against a model fitted to another one (`--only model`) are not measured in these runs.\n"
     return text.rstrip() + "\n"
