@@ -118,6 +118,7 @@ def of_effects(results):
         rights = [f"{sum(r['right'] for r in one)}/{len(one)}" for one in found]
         both = [r for one in found for r in one]
         kinds.append([kind, effect.why, ", ".join(effect.names), ", ".join(effect.beside) or "-", *rights, sum(bool(r["wrong"]) for r in both), mean_size(both)])
+    absent = [kind for kind in EFFECTS if not any(result["effect"] == kind for result in results)]
     mistakes = Counter((r["effect"], r["wrong"][0][0] if r["wrong"] else "nothing") for r in results if r["wrong"] or not r["right"])
     head = ["concealed", "in the plant", "names that are right", "not counted", *(f"right at {ratio:g}" for ratio in ratios), "wrong names", "mean set"]
     misses = "\n".join(told(result) for result in sorted(results, key=lambda r: (r["effect"], -r["ratio"])) if result["wrong"] or not result["right"])
@@ -126,6 +127,7 @@ def of_effects(results):
         + table(["effect over noise", "Coulomb friction", *columns], overall)
         + "\n"
         + table(head, kinds)
+        + (f"\nNot measured in these runs: {', '.join(absent)}.\n" if absent else "")
         + "\nStated probability against frequency; names that are not counted are left out.\n\n"
         + calibration(results)
         + "\nWhat was taken for what, the first wrong name of a pair:\n\n"
