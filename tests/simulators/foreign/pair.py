@@ -1,0 +1,103 @@
+"""A pair of simulation and recording, made from its seed alone."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .effects import EFFECTS
+from .joint import REAL_SUBSTEPS, Log, Plant, random_joint, random_motion, run
+from .noise import KINDS, recorded
+
+# Root mean square of the effect as a share of the friction: above the default of `--least-effect`.
+LEAST_SHARE, LARGEST_SHARE = 0.04, 0.10
+# Runs in which the size of the effect is sought, and the factor from the share that is accepted.
+SIZE_RUNS, SIZE_FACTOR = 12, 1.25
+HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
+
+
+@dataclass
+class Case:
+    """What a pair was made of."""
+
+    seed: int
+    effect: str  # of `EFFECTS`, or "none"
+    ratio: float  # effect over noise, root mean square; 0 without an effect
+    noise: str
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def beside_friction(log):
+    """Root mean square of the effect that no other Coulomb level, viscosity and offset makes up for."""
+    columns = np.column_stack((np.tanh(log.velocity / (0.01 * np.abs(log.velocity).max())), log.velocity, np.ones_like(log.velocity)))
+    return rms(log.effect - columns @ np.linalg.lstsq(columns, log.effect, rcond=None)[0])
+
+
+def sized(joint, motion, shape, share):
+    """The log of the plant whose effect has about that share of the friction, and the size: bisection of its logarithm once it is bracketed."""
+    size, low, high = 1.0, 0.0, math.inf
+    for _ in range(SIZE_RUNS):
+        log = run(joint, shape(size), motion, REAL_SUBSTEPS)
+        found = rms(log.effect) / rms(log.friction)
+        if share / SIZE_FACTOR < found < share * SIZE_FACTOR:
+            break
+        low, high = (size, high) if found < share else (low, size)
+        bracketed = low > 0 and high < math.inf
+        size = math.sqrt(low * high) if bracketed else size * min(max((share / max(found, 1e-9)) ** 0.8, 0.1), 5.0)
+    return log, size
+
+
+def make(case):
+    """Simulation, recording (rows of `HEADER`), text of joint.toml and what describes the pair."""
+    rng = np.random.default_rng(case.seed)
+    joint, seconds = random_joint(rng), rng.uniform(20.0, 30.0)
+    motion = random_motion(rng, seconds)
+    simulation = run(joint, Plant(), motion, REAL_SUBSTEPS if joint.sign_width_rad_s else 1)
+    told = {**vars(case), "seconds": seconds, "joint": vars(joint)}
+    if case.effect == "none":
+        log = run(joint, Plant(), motion, REAL_SUBSTEPS)
+        level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(log.friction)
+    else:
+        effect = EFFECTS[case.effect]
+        shape, share = effect.plant(joint, motion, rng), effect.share * rng.uniform(LEAST_SHARE, LARGEST_SHARE)
+        if effect.sized:
+            log, told["size"] = sized(joint, motion, shape, share)
+        else:
+            log = run(joint, shape(1.0), motion, REAL_SUBSTEPS)
+        level = rms(log.effect) / case.ratio
+        told |= {"names": list(effect.names), "beside": list(effect.beside), "effect_Nm": rms(log.effect), "beside_friction_Nm": beside_friction(log)}
+    rows, noise = recorded(log, case.noise, level, rng)
+    told |= {"noise_Nm": level, "friction_Nm": rms(log.friction), "torque_Nm": rms(log.torque), **noise}
+    return as_rows(simulation), rows, joint_toml(joint), told
+
+
+def model_case(case):
+    """A simulated recording to fit a model to, a healthy recording of another motion, text of joint.toml and what describes the pair."""
+    rng = np.random.default_rng(case.seed)
+    joint, seconds = random_joint(rng), float(np.exp(rng.uniform(np.log(12.0), np.log(120.0))))
+    fitted, other = (run(joint, Plant(), random_motion(rng, length), REAL_SUBSTEPS) for length in (seconds, rng.uniform(20.0, 30.0)))
+    level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(fitted.friction)
+    training, _ = recorded(fitted, KINDS[rng.integers(len(KINDS))], level, rng)
+    rows, noise = recorded(other, case.noise, level, rng)
+    told = {**vars(case), "fitted_s": seconds, "joint": vars(joint), "noise_Nm": level, "friction_Nm": rms(other.friction), **noise}
+    return training, rows, joint_toml(joint), told
+
+
+def as_rows(log: Log):
+    return np.column_stack((log.time, log.position, log.velocity, log.torque))
+
+
+def joint_toml(joint):
+    return f"""name = "joint"
+
+[rigid_body]
+inertia_kgm2 = {joint.inertia_kgm2}
+gravity_torque_Nm = {joint.gravity_torque_Nm}
+gravity_phase_rad = {joint.phase_rad}
+
+[drive]
+rate_Hz = 250.0
+"""
