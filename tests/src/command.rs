@@ -48,3 +48,14 @@ pub fn run(folder: &Path, arguments: &[&str]) -> Run {
         messages: String::from_utf8_lossy(&stderr).into_owned(),
     }
 }
+
+/// Runs `trainer` in `folder` with a line of words and returns its exit status, 0 or 1: a diagnosis that finds something ends with 1.
+///
+/// # Panics
+/// Where it ends with another.
+pub fn called(folder: &Path, line: &str) -> i32 {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let done = run(folder, &words);
+    assert!(done.status <= 1, "{line}: {}", done.messages);
+    done.status
+}

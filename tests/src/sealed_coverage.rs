@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::command::run;
+use crate::command::called;
+use crate::table::columns;
 
 /// Effects that are hidden, with their amplitude.
 pub const EFFECTS: [&str; 4] = ["position_ripple=2", "presliding=1", "direction_asymmetry=1", "viscous_nonlinearity=2"];
@@ -124,22 +125,6 @@ impl Shown {
 
 fn residuals(folder: &Path, model: &str, file: &str) -> Vec<Row> {
     called(folder, &format!("predict {model} {file} --joint ../joint.toml -o predicted.csv --quiet"));
-    let mut table = csv::Reader::from_path(folder.join("predicted.csv")).expect("it was written");
-    let header = table.headers().expect("it has a header").clone();
-    let places = ["time_s", "position_rad", "residual_Nm"]
-        .map(|name| header.iter().position(|column| column == name).expect("a column of a prediction"));
-    let row = |record: Result<csv::StringRecord, csv::Error>| {
-        let record = record.expect("it is whole");
-        let [time, position, residual] = places.map(|place| record[place].parse().expect("a number"));
-        Row { time, position, residual }
-    };
-    table.records().map(row).collect()
-}
-
-/// Runs a command line and returns its exit status, 0 or 1.
-fn called(folder: &Path, arguments: &str) -> i32 {
-    let words: Vec<&str> = arguments.split_whitespace().collect();
-    let done = run(folder, &words);
-    assert!(done.status <= 1, "{arguments}: {}", done.messages);
-    done.status
+    let rows = columns(&folder.join("predicted.csv"), ["time_s", "position_rad", "residual_Nm"]);
+    rows.into_iter().map(|[time, position, residual]| Row { time, position, residual }).collect()
 }

@@ -2,30 +2,11 @@
 
 use std::path::Path;
 
-use frikan_tests::command::run;
+use frikan_tests::command::called;
+use frikan_tests::table::columns;
 use serde_json::Value;
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/elbow.toml");
-
-fn called(folder: &Path, arguments: &str) {
-    let words: Vec<&str> = arguments.split_whitespace().collect();
-    let done = run(folder, &words);
-    assert!(done.status <= 1, "{arguments}: {}", done.messages);
-}
-
-/// Two columns of a table, row by row.
-fn columns(path: &Path, names: [&str; 2]) -> Vec<[f64; 2]> {
-    let mut table = csv::Reader::from_path(path).unwrap();
-    let header = table.headers().unwrap().clone();
-    let places = names.map(|name| header.iter().position(|column| column == name).unwrap());
-    table
-        .records()
-        .map(|row| {
-            let row = row.unwrap();
-            places.map(|column| row[column].parse().unwrap())
-        })
-        .collect()
-}
 
 fn is_sealed(time: f64, when_s: &[[f64; 2]]) -> bool {
     when_s.iter().any(|[from, to]| (*from..=*to).contains(&time))

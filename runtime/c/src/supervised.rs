@@ -147,25 +147,16 @@ fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
 /// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, without adaptation.
 #[unsafe(no_mangle)]
 pub extern "C" fn frikan_supervision(inertia: f32, friction: f32) -> FrikanSupervision {
-    let Supervision {
-        rest_velocity,
-        presliding,
-        observer_time,
-        fall_time,
-        rise_time,
-        least_friction,
-        implausible_time,
-        ..
-    } = Supervision::new(inertia, friction);
+    let defaults = Supervision::new(inertia, friction);
     FrikanSupervision {
-        inertia,
-        rest_velocity,
-        presliding,
-        observer_time,
-        fall_time,
-        rise_time,
-        least_friction,
-        implausible_time,
+        inertia: defaults.inertia,
+        rest_velocity: defaults.rest_velocity,
+        presliding: defaults.presliding,
+        observer_time: defaults.observer_time,
+        fall_time: defaults.fall_time,
+        rise_time: defaults.rise_time,
+        least_friction: defaults.least_friction,
+        implausible_time: defaults.implausible_time,
         adaptation: FrikanAdaptation::default(),
     }
 }

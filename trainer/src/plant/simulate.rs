@@ -23,8 +23,11 @@ pub fn simulate(joint: &Joint, seed: u64) -> Result<SimulatedRecording, PlantErr
 /// # Errors
 /// As [`simulate`].
 pub fn simulate_again(joint: &Joint, seed: u64, motion_seed: u64) -> Result<SimulatedRecording, PlantError> {
-    let mut moving = at_rest(joint, seed)?;
-    let history = integrate(&mut moving, &references(joint, motion_seed))?;
+    let (mut moving, mut followed) = with_references(joint, seed)?;
+    if motion_seed != seed {
+        followed = references(joint, motion_seed);
+    }
+    let history = integrate(&mut moving, &followed)?;
     Ok(record(joint, history, &moving.hidden.faults, moving.hidden.parameters, motion_seed))
 }
 
@@ -44,10 +47,18 @@ pub fn conceal(joint: &Joint, name: &str, amplitude: f64, seed: u64) -> Result<S
 /// # Errors
 /// As [`simulate`], but for an unstable motion.
 pub(crate) fn at_rest(joint: &Joint, seed: u64) -> Result<MovingJoint<'_>, PlantError> {
+    with_references(joint, seed).map(|(moving, _)| moving)
+}
+
+/// A reference, and its gravity torque, N m.
+type Trajectory = (Reference, f64);
+
+/// The joint at rest, and the references of its own seed: effects are drawn for their range.
+fn with_references(joint: &Joint, seed: u64) -> Result<(MovingJoint<'_>, Vec<Trajectory>), PlantError> {
     validate(joint)?;
-    // Effects are drawn for the range of the motions of their own seed.
-    let hidden = Concealed::draw(joint, &references(joint, seed), seed)?;
-    Ok(MovingJoint::new(joint, hidden, seed))
+    let references = references(joint, seed);
+    let hidden = Concealed::draw(joint, &references, seed)?;
+    Ok((MovingJoint::new(joint, hidden, seed), references))
 }
 
 fn validate(joint: &Joint) -> Result<(), PlantError> {
@@ -92,7 +103,7 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
 }
 
 /// The reference of every trajectory, with its gravity torque.
-fn references(joint: &Joint, seed: u64) -> Vec<(Reference, f64)> {
+fn references(joint: &Joint, seed: u64) -> Vec<Trajectory> {
     let campaign = &joint.campaign;
     campaign
         .all()

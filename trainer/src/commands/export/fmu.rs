@@ -49,8 +49,7 @@ fn library(unit: &CoSimulation) -> std::result::Result<Library, String> {
         std::fs::write(folder.path().join(name), text).map_err(|error| error.to_string())?;
     }
     let file = format!("{IDENTIFIER}.{extension}");
-    let sources = unit.sources.iter().map(|(name, _)| *name).filter(|name| name.ends_with(".c"));
-    compile(folder.path(), &sources.collect::<Vec<_>>(), &file)?;
+    compile(folder.path(), &unit.compiled().collect::<Vec<_>>(), &file)?;
     let bytes = std::fs::read(folder.path().join(&file)).map_err(|error| error.to_string())?;
     Ok(Library { platform, file, bytes })
 }

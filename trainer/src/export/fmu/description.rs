@@ -12,10 +12,14 @@ use crate::markup::escape;
 pub const IDENTIFIER: &str = "joint_friction";
 
 /// How the sources are compiled (FMI 3.0.2, section 2.5.1).
-pub(super) const BUILD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  \
-     <BuildConfiguration modelIdentifier=\"joint_friction\">\n    <SourceFileSet language=\"C99\">\n      \
-     <SourceFile name=\"law.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    </SourceFileSet>\n  </BuildConfiguration>\n\
-     </fmiBuildDescription>\n";
+pub(super) fn build<'a>(sources: impl Iterator<Item = &'a str>) -> String {
+    let files: String = sources.map(|name| format!("      <SourceFile name=\"{name}\"/>\n")).collect();
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  \
+         <BuildConfiguration modelIdentifier=\"{IDENTIFIER}\">\n    <SourceFileSet language=\"C99\">\n{files}    </SourceFileSet>\n  \
+         </BuildConfiguration>\n</fmiBuildDescription>\n"
+    )
+}
 
 /// Value references: those of `fmi3.c`.
 const FRICTION: usize = 1;

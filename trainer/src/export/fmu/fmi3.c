@@ -126,16 +126,19 @@ FUNCTION(Status, fmi3GetFloat64, (Unit unit, const Reference at[], size_t count,
     return OK;
 }
 
-FUNCTION(Status, fmi3GetFMUState, (Unit unit, void **state)) {
+/* Copies an instance to a state, into new memory where it has none. */
+static Status keep(void **state, const void *instance) {
     if (*state == NULL) {
         *state = malloc(sizeof(Instance));
     }
     if (*state == NULL) {
         return ERROR;
     }
-    memcpy(*state, unit, sizeof(Instance));
+    memcpy(*state, instance, sizeof(Instance));
     return OK;
 }
+
+FUNCTION(Status, fmi3GetFMUState, (Unit unit, void **state)) { return keep(state, unit); }
 
 FUNCTION(Status, fmi3SetFMUState, (Unit unit, void *state)) {
     if (state == NULL) {
@@ -169,17 +172,7 @@ FUNCTION(Status, fmi3SerializeFMUState, (Unit unit, void *state, uint8_t bytes[]
 
 FUNCTION(Status, fmi3DeserializeFMUState, (Unit unit, const uint8_t bytes[], size_t size, void **state)) {
     (void)unit;
-    if (size < sizeof(Instance)) {
-        return ERROR;
-    }
-    if (*state == NULL) {
-        *state = malloc(sizeof(Instance));
-    }
-    if (*state == NULL) {
-        return ERROR;
-    }
-    memcpy(*state, bytes, sizeof(Instance));
-    return OK;
+    return size < sizeof(Instance) ? ERROR : keep(state, bytes);
 }
 
 /* What has nothing to do. */

@@ -11,7 +11,7 @@ use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 
 pub use self::description::IDENTIFIER;
-use self::description::{BUILD, Description};
+use self::description::{Description, build};
 use super::source::{c, moves_link, parameters};
 use crate::error::Result;
 use crate::fit::CELLS;
@@ -26,7 +26,7 @@ const LAW: &str = "law";
 #[derive(Clone, Debug)]
 pub struct CoSimulation {
     description: String,
-    /// Names and texts of the sources; those that end in `.c` make the library.
+    /// Names and texts of the sources.
     pub sources: Vec<(&'static str, String)>,
 }
 
@@ -86,6 +86,11 @@ fn calls(inputs: usize, is_static: bool, moves_link: bool) -> String {
 }
 
 impl CoSimulation {
+    /// Names of the sources that make the library.
+    pub fn compiled(&self) -> impl Iterator<Item = &'static str> {
+        self.sources.iter().map(|(name, _)| *name).filter(|name| name.ends_with(".c"))
+    }
+
     /// The unit as a file, the same bytes for the same parts.
     ///
     /// # Errors
@@ -101,7 +106,7 @@ impl CoSimulation {
         for (name, text) in &self.sources {
             add(format!("sources/{name}"), text.as_bytes())?;
         }
-        add("sources/buildDescription.xml".to_owned(), BUILD.as_bytes())?;
+        add("sources/buildDescription.xml".to_owned(), build(self.compiled()).as_bytes())?;
         if let Some(Library { platform, file, bytes }) = library {
             add(format!("binaries/{platform}/{file}"), bytes)?;
         }

@@ -13,7 +13,7 @@ use crate::fit::CELLS;
 use frikan_shared::effect::Effect;
 
 /// Names of the parameters of the law.
-pub(super) fn parameters(model: &Model<CELLS>) -> Vec<String> {
+pub(in crate::export) fn parameters(model: &Model<CELLS>) -> Vec<String> {
     model.inputs.iter().map(parameter).collect()
 }
 

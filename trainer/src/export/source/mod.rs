@@ -13,14 +13,10 @@ pub mod rust;
 
 use frikan_shared::model::Model;
 
+pub(super) use self::law::parameters;
 use crate::fit::CELLS;
 
 /// Whether an effect adds to the position of the link.
 pub(super) fn moves_link(model: &Model<CELLS>) -> bool {
     model.effects.iter().any(effects::moves_link)
-}
-
-/// Names of the channels of a model, as every language takes them.
-pub(super) fn parameters(model: &Model<CELLS>) -> Vec<String> {
-    law::parameters(model)
 }
