@@ -6,7 +6,7 @@ use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::evidence::score::Bench;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::noise::autoregression::Noise;
+use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::{Prepared, identified_inertia};
 use crate::numerics::least_squares::{dot, gram, orthonormal, project_out, solve_symmetric};
 use crate::numerics::random::{normal, uniform};
@@ -43,9 +43,7 @@ impl MeasurementNoise {
         let steps = signals.position.iter().map(|q| q + signals.position_resolution * (uniform(&mut random) - 0.5));
         let late = prepared.state.velocity.iter().map(|v| prepared.sampling_jitter * v * normal(&mut instants));
         let position: Vec<f64> = steps.zip(late).map(|(q, late)| q + late).collect();
-        let filtered = DEVIATION_PER_MEDIAN * quantile(left_by_base.iter().map(|left| left.abs()), 0.5);
-        let deviation = filtered / prepared.filter.gain();
-        let noise: Vec<f64> = signals.torque.iter().map(|_| deviation * normal(&mut random)).collect();
+        let noise = torque_noise(prepared, left_by_base, &mut random);
         let torque: Vec<f64> = signals.torque.iter().zip(&noise).map(|(torque, noise)| torque + noise).collect();
         let mut state = prepared.state_at(&position, &torque);
         let inertial = state.map(|i| inertia * (state.acceleration[i] - prepared.state.acceleration[i]));
@@ -61,6 +59,29 @@ impl MeasurementNoise {
         let left = workbench.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
         NoiseBeside { state: &self.state, workbench, bench, noise, base, left, runs }
     }
+}
+
+/// White noise of the torque at every sample: drawn from what a base leaves once it is white, with the deviation that the state gives
+/// there, so large that behind the filter it is what the base leaves in half of the rows.
+fn torque_noise(prepared: &Prepared, left_by_base: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
+    let runs = prepared.open_runs();
+    let model = Noise::fit(left_by_base, &runs, &noise_features(prepared));
+    let white = model.whitened(left_by_base, &runs);
+    let drawn: Vec<f64> = runs.iter().flat_map(|run| &white[run.clone()]).copied().collect();
+    let of_most = |values: &[f64]| DEVIATION_PER_MEDIAN * quantile(values.iter().map(|value| value.abs()), 0.5);
+    let usual_deviation = quantile(model.deviation.iter().copied(), 0.5);
+    let scale =
+        of_most(left_by_base) / prepared.filter.gain() / (of_most(&drawn) * usual_deviation).max(f64::MIN_POSITIVE);
+    let mut row = 0;
+    let at_sample = |sample: usize| {
+        // Samples between working rows have the deviation of the row before.
+        while prepared.rows.get(row + 1).is_some_and(|next| *next <= sample) {
+            row += 1;
+        }
+        let index = ((uniform(random) * drawn.len() as f64) as usize).min(drawn.len().saturating_sub(1));
+        scale * model.deviation.get(row).unwrap_or(&0.0) * drawn.get(index).unwrap_or(&0.0)
+    };
+    (0..prepared.torque.len()).map(at_sample).collect()
 }
 
 /// A second helping of grain and noise beside a bench.

@@ -177,7 +177,7 @@ fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -
 /// glitch more and would bend the fit. Chosen by judgement: anything between the two.
 const LARGEST_FEATURE: f64 = 20.0;
 
-/// What the variance of the noise may depend on: |v|, |a| and nearness to standstill, each scaled to order one.
+/// What the variance of the noise may depend on: |v|, |a|, |tau| and nearness to standstill, each scaled to order one.
 pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
     let scaled = |series: Vec<f64>| {
@@ -188,6 +188,7 @@ pub(crate) fn noise_features(prepared: &Prepared) -> Vec<Vec<f64>> {
     vec![
         scaled(prepared.rows.iter().map(|&i| state.velocity[i].abs()).collect()),
         scaled(prepared.rows.iter().map(|&i| state.acceleration[i].abs()).collect()),
+        scaled(prepared.rows.iter().map(|&i| state.torque[i].abs()).collect()),
         prepared.rows.iter().map(|&i| (-(state.velocity[i] / slow).powi(2)).exp()).collect(),
     ]
 }

@@ -5,11 +5,6 @@ use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::search::thresholds::Settings;
 use statrs::function::erf::erfc_inv;
 
-/// Family-wise level over the usual one for an effect of which the locked rows ask for the opposite. Chosen by
-/// judgement: their product of 4e-5 was kept when `concealed-suite --controls 200` lowered the level from 0.01 (15
-/// alarms in 1000) to 0.006; larger lets effects stand that the locked rows contradict.
-const CONTRADICTED_LEVEL_RATIO: f64 = 0.007;
-
 /// Weight of the locked rows over their share of the evidence. Chosen by judgement: two, as of what the open rows could
 /// tell much is spent on the choice of effect and shape; `what_the_locked_rows_tell_counts_double` holds it.
 const LOCKED_WEIGHT: f64 = 2.0;
@@ -17,9 +12,9 @@ const LOCKED_WEIGHT: f64 = 2.0;
 /// is locked; at one they would count for nothing.
 const LARGEST_LOCKED_WEIGHT: f64 = 0.9;
 
-/// Share of the evidence (0..1) above which locked rows can contradict the open ones. Chosen by judgement: below it
-/// their sign is chance; `rows_that_hardly_show_an_effect_do_not_contradict_it` holds it.
-const CONTRADICTING_SHARE: f64 = 0.03;
+/// Deviations of the locked rows above which they show an effect by themselves: 5 % of what is not there (one-sided). Of an effect that
+/// they are not expected to show so clearly the open rows have to be as sure as of what no locked rows can confirm.
+const SHOWN_DEVIATIONS: f64 = 1.645;
 
 /// Error of the locked rows with a one-off event over that without, above which the event is refused. Chosen by
 /// judgement: they may hold the rest of the event, so that a tenth is no sign against it; larger lets an event distort
@@ -32,24 +27,24 @@ const NAMED_ERROR_RATIO: f64 = 1.03;
 /// suit its form less; larger keeps structures that only the open rows show.
 const UNNAMED_ERROR_RATIO: f64 = 1.5;
 
-/// Whether open and locked rows together carry an effect: their deviations, weighted by what each can tell, make one p-value
-/// (Liptak 1958). The locked rows count double: of what the open ones could tell much is spent on the choice. What the locked
-/// rows ask for the opposite of, where they count once, has to be beyond doubt on the open ones, and nothing carries what makes
-/// the locked rows clearly worse, whitened and not: beside larger effects, whose formulas err slowly, whitening may see a loss
-/// where the error falls. A structure without a name is not compensated: of it the locked rows may ask for less.
+/// Whether open and locked rows together carry an effect. Locked rows that can show it have to: alone, and together with the open
+/// ones, as their deviations, weighted by what each can tell, make one p-value (Liptak 1958); there the locked rows count double, as
+/// of what the open ones could tell much is spent on the choice. Nothing carries what makes the locked rows clearly worse, whitened
+/// and not: beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls. A structure without a
+/// name is not compensated: of it the locked rows may ask for less.
 pub(crate) fn is_carried(settings: &Settings, label: &Label, family_wise: f64, locked: &Proof) -> bool {
-    let is_contradicted = locked.locked_deviations < 0.0 && locked.locked_share > CONTRADICTING_SHARE;
-    let counted = if is_contradicted { 1.0 } else { LOCKED_WEIGHT };
-    let weight = (counted * locked.locked_share).min(LARGEST_LOCKED_WEIGHT);
-    let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
-    let level = if is_contradicted { CONTRADICTED_LEVEL_RATIO } else { 1.0 } * settings.family_wise_level;
+    let is_shown = if locked.expected_deviations < SHOWN_DEVIATIONS {
+        family_wise < settings.unconfirmed_level
+    } else {
+        let weight = (LOCKED_WEIGHT * locked.locked_share).min(LARGEST_LOCKED_WEIGHT);
+        let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
+        let is_asked_for = locked.locked_deviations > SHOWN_DEVIATIONS;
+        is_asked_for && together > deviations_of(settings.family_wise_level) || locked.shows_gain()
+    };
     let is_to_be_compensated = matches!(label, Label::Named(_));
-    let is_far_worse = locked.improved_rmse > UNNAMED_ERROR_RATIO * locked.baseline_rmse;
-    let may_be_worse = !is_contradicted && !is_to_be_compensated && !is_far_worse;
+    let may_be_worse = !is_to_be_compensated && locked.improved_rmse <= UNNAMED_ERROR_RATIO * locked.baseline_rmse;
     let errs_more = locked.ratio_ci95[0] > 1.0 && locked.improved_rmse > NAMED_ERROR_RATIO * locked.baseline_rmse;
-    together >= deviations_of(level)
-        && (may_be_worse || !is_worse(settings, locked))
-        && !(is_to_be_compensated && errs_more)
+    is_shown && (may_be_worse || !is_worse(settings, locked)) && !(is_to_be_compensated && errs_more)
 }
 
 /// Whether an effect makes the locked rows clearly worse.
@@ -79,18 +74,23 @@ mod tests {
     const NAMED: Label = Label::Named(EffectId::Stribeck);
 
     fn named_is_carried(family_wise: f64, locked_deviations: f64, gain_nats: f64) -> bool {
-        let locked = Proof { gain_nats, locked_deviations, locked_share: 0.2, ..Proof::default() };
+        let locked = Proof {
+            gain_nats,
+            locked_deviations,
+            expected_deviations: 2.0,
+            locked_share: 0.2,
+            ratio_ci95: [0.9, 1.1],
+            ..Proof::default()
+        };
         is_carried(&Settings::default(), &NAMED, family_wise, &locked)
     }
 
     #[test]
-    fn locked_rows_decide_about_a_weak_candidate() {
+    fn locked_rows_decide_about_a_candidate() {
         assert!(named_is_carried(0.03, 2.8, 3.0));
         assert!(!named_is_carried(0.03, 0.5, 0.0), "the locked rows hardly ask for it");
-        assert!(named_is_carried(3e-4, 0.0, -2.0), "what is clear on the open rows stands");
-        assert!(!named_is_carried(3e-3, 0.0, -2.0));
-        assert!(!named_is_carried(1e-4, -0.2, -3.0), "the locked rows ask for the opposite");
-        assert!(named_is_carried(1e-8, -0.2, -3.0), "beyond doubt on the open rows");
+        assert!(!named_is_carried(1e-8, 1.6, 1.2), "however clear it is on the open rows");
+        assert!(named_is_carried(1e-8, 1.7, 1.4));
         assert!(!named_is_carried(1e-30, -2.0, -20.0), "nothing survives locked rows that clearly speak against it");
     }
 
@@ -98,14 +98,18 @@ mod tests {
     fn what_the_locked_rows_tell_counts_double() {
         // Weighted by their shares alone the deviations would make 2.41, and 2.51 are needed.
         assert!(named_is_carried(0.05, 2.1, 2.5));
-        assert!(!named_is_carried(3e-3, 0.3, -0.5), "the open rows have chosen: alone they hardly count");
+        assert!(!named_is_carried(0.1, 1.9, 2.5));
     }
 
     #[test]
-    fn rows_that_hardly_show_an_effect_do_not_contradict_it() {
-        let hardly = Proof { locked_deviations: -0.5, locked_share: 0.01, ..Proof::default() };
-        assert!(is_carried(&Settings::default(), &NAMED, 1e-3, &hardly));
-        assert!(!is_carried(&Settings::default(), &NAMED, 1e-3, &Proof { locked_share: 0.2, ..hardly }));
+    fn what_the_locked_rows_can_hardly_show_needs_open_ones_that_are_sure() {
+        let carried = |family_wise: f64, expected_deviations: f64| {
+            let blind =
+                Proof { expected_deviations, locked_deviations: -0.2, ratio_ci95: [0.9, 1.1], ..Proof::default() };
+            is_carried(&Settings::default(), &NAMED, family_wise, &blind)
+        };
+        let level = Settings::default().unconfirmed_level;
+        assert!(carried(0.9 * level, 1.6) && !carried(1.1 * level, 1.6) && !carried(0.9 * level, 1.7));
     }
 
     #[test]
@@ -116,20 +120,12 @@ mod tests {
     }
 
     #[test]
-    fn what_the_locked_rows_cannot_show_needs_the_open_ones_alone() {
-        let blind = Proof::default();
-        let level = Settings::default().family_wise_level;
-        assert!(
-            is_carried(&Settings::default(), &NAMED, 0.9 * level, &blind)
-                && !is_carried(&Settings::default(), &NAMED, 1.1 * level, &blind)
-        );
-    }
-
-    #[test]
     fn a_loss_behind_whitening_is_none_where_the_error_falls() {
         let locked = Proof {
             baseline_rmse: 242.0,
             improved_rmse: 142.0,
+            ratio_ci95: [0.5, 0.7],
+            expected_deviations: 8.0,
             gain_nats: -20.0,
             locked_deviations: -2.0,
             locked_share: 0.2,
@@ -141,7 +137,14 @@ mod tests {
     #[test]
     fn of_a_structure_without_a_name_the_locked_rows_may_ask_for_less() {
         let unnamed = Label::Generic(Generic { factor: Factor::Sign, channel: Channel::Position, form: Form::Free });
-        let less = Proof { gain_nats: -6.0, locked_deviations: 1.9, locked_share: 0.2, ..Proof::default() };
+        let less = Proof {
+            gain_nats: -6.0,
+            locked_deviations: 1.9,
+            expected_deviations: 5.8,
+            locked_share: 0.2,
+            ratio_ci95: [0.9, 1.1],
+            ..Proof::default()
+        };
         assert!(
             is_carried(&Settings::default(), &unnamed, 1e-20, &less)
                 && !is_carried(&Settings::default(), &NAMED, 1e-20, &less)

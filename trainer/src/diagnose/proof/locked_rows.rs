@@ -22,6 +22,8 @@ pub struct Proof {
     /// How much of the change that the open rows ask for the locked ones ask for as well, in standard deviations: standard normal
     /// where nothing is missing.
     pub locked_deviations: f64,
+    /// The same deviations as they would be expected of an effect that is as large there as on the open rows.
+    pub expected_deviations: f64,
     /// Share of that change's whitened energy that lies in the locked rows.
     pub locked_share: f64,
     /// Locked rows.
@@ -63,6 +65,7 @@ pub(crate) fn prove(workbench: &Workbench, baseline: &Refit, improved: &Refit) -
         ratio_ci95: ratio_interval(&pairs, ratio),
         gain_nats: asked_for - 0.5 * locked_energy,
         locked_deviations: asked_for / locked_energy.sqrt().max(f64::MIN_POSITIVE),
+        expected_deviations: locked_energy.sqrt(),
         locked_share: locked_energy / change_energy.max(f64::MIN_POSITIVE),
         rows,
     })

@@ -85,10 +85,9 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
     let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given).unwrap_or(law) };
-    if let Some(rest) = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise) {
-        law.replay = Some(ReplayedResidual::of(simulation, &law.torque(&prepared.state)));
-        law.formula_error = rest.formula_error;
-    }
+    law.replay = Some(ReplayedResidual::of(simulation, &law.torque(&prepared.state)));
+    let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
+    law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
     Ok(law)
 }
 

@@ -38,9 +38,11 @@ pub(crate) struct SimulatedEffects {
 /// Noise that the simulation is given, over that of the recording: what the recording shows is found in the simulation first.
 const ADDED_NOISE_SHARE: f64 = 1.0 / 3.0;
 
-/// Whether an effect is a function of the state, which another recording has as well, and not of the clock.
+/// Whether an effect is a function of the state, which another recording has as well, and not of the clock; nor a level of friction,
+/// which the law has as its own.
 fn belongs_to_the_state(effect: EffectId) -> bool {
-    !matches!(effect, EffectId::SlowDrift | EffectId::TransientEvent | EffectId::TimeMisalignment)
+    use EffectId::{FrictionLevel, SlowDrift, TimeMisalignment, TransientEvent};
+    !matches!(effect, SlowDrift | TransientEvent | TimeMisalignment | FrictionLevel)
 }
 
 /// What a diagnosis of the simulation names beside its static law. `None` where that is nothing.
