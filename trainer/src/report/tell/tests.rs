@@ -89,6 +89,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
             ratio_ci95: [0.4, 0.5],
             gain_nats: 20.0,
             locked_deviations: 6.0,
+            expected_deviations: 4.0,
             locked_share: 0.2,
             rows: 300,
         }),
