@@ -191,12 +191,6 @@ fn the_plain_spring_goes_before_one_with_a_loop_that_explains_a_little_more() {
     assert_eq!(hidden("elasticity", 150.0, 71_000_055).named(), [EffectId::Elasticity]);
 }
 
-/// Of what is weak a fifth of the rows may hold nothing by chance.
-#[test]
-fn a_clear_effect_survives_locked_rows_that_hold_little_of_it() {
-    assert!(in_set(&hidden("presliding", 50.0, 43_000_016), "presliding"));
-}
-
 #[test]
 fn locked_rows_that_hardly_touch_an_effect_do_not_withdraw_it() {
     assert!(in_set(&hidden("contact", 80.0, 85_000_244), "contact"));

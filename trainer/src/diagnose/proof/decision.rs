@@ -29,17 +29,21 @@ const UNNAMED_ERROR_RATIO: f64 = 1.5;
 
 /// Whether open and locked rows together carry an effect. Locked rows that can show it have to: alone, and together with the open
 /// ones, as their deviations, weighted by what each can tell, make one p-value (Liptak 1958); there the locked rows count double, as
-/// of what the open ones could tell much is spent on the choice. Nothing carries what makes the locked rows clearly worse, whitened
+/// of what the open ones could tell much is spent on the choice. Of what is clear on the open ones they only have to ask for more than
+/// half. Nothing carries what makes the locked rows clearly worse, whitened
 /// and not: beside larger effects, whose formulas err slowly, whitening may see a loss where the error falls. A structure without a
 /// name is not compensated: of it the locked rows may ask for less.
 pub(crate) fn is_carried(settings: &Settings, label: &Label, family_wise: f64, locked: &Proof) -> bool {
+    let is_clear = family_wise < settings.unconfirmed_level;
     let is_shown = if locked.expected_deviations < SHOWN_DEVIATIONS {
-        family_wise < settings.unconfirmed_level
+        is_clear
     } else {
         let weight = (LOCKED_WEIGHT * locked.locked_share).min(LARGEST_LOCKED_WEIGHT);
         let together = (1.0 - weight).sqrt() * deviations_of(family_wise) + weight.sqrt() * locked.locked_deviations;
         let is_asked_for = locked.locked_deviations > SHOWN_DEVIATIONS;
-        is_asked_for && together > deviations_of(settings.family_wise_level) || locked.shows_gain()
+        is_asked_for && together > deviations_of(settings.family_wise_level)
+            || is_clear && locked.gain_nats > 0.0
+            || locked.shows_gain()
     };
     let is_to_be_compensated = matches!(label, Label::Named(_));
     let may_be_worse = !is_to_be_compensated && locked.improved_rmse <= UNNAMED_ERROR_RATIO * locked.baseline_rmse;
@@ -89,8 +93,9 @@ mod tests {
     fn locked_rows_decide_about_a_candidate() {
         assert!(named_is_carried(0.03, 2.8, 3.0));
         assert!(!named_is_carried(0.03, 0.5, 0.0), "the locked rows hardly ask for it");
-        assert!(!named_is_carried(1e-8, 1.6, 1.2), "however clear it is on the open rows");
-        assert!(named_is_carried(1e-8, 1.7, 1.4));
+        assert!(!named_is_carried(1e-3, 1.6, 1.2) && named_is_carried(1e-3, 1.7, 1.4));
+        assert!(named_is_carried(1e-8, 1.1, 0.2), "what is clear on the open rows stands");
+        assert!(!named_is_carried(1e-8, 0.9, -0.2), "unless the locked ones ask for less than half of it");
         assert!(!named_is_carried(1e-30, -2.0, -20.0), "nothing survives locked rows that clearly speak against it");
     }
 

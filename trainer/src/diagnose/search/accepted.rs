@@ -15,7 +15,7 @@ pub struct Accepted {
     pub score: f64,
     /// Family-wise probability under the null when it was accepted.
     pub family_wise: f64,
-    /// SimulatedEffect-out gain of each fold in nats.
+    /// Held-out gain of each fold in nats.
     pub fold_gain: Vec<f64>,
     /// Margin in nats to the best rival outside the set.
     pub margin: f64,

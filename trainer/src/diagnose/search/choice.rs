@@ -40,6 +40,12 @@ const UNKNOWN_LEAD_NATS: f64 = 12.0;
 /// inferred one.
 const YIELDING_LEAD_NATS: f64 = 8.0;
 
+/// Torque of an event behind the filter over its largest, below which a row is beyond the event: what a filter leaves of an edge.
+const EVENT_EDGE_SHARE: f64 = 0.01;
+/// Energy of an effect during an event over all of it, above which the event is its only occasion. Chosen by judgement: an effect that
+/// acts twice has about half.
+const ONLY_OCCASION_ENERGY_SHARE: f64 = 0.9;
+
 impl Round<'_, '_> {
     /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing; nothing too where that set holds nearly
     /// everything.
@@ -88,7 +94,9 @@ impl Round<'_, '_> {
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
                 Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
             };
-            if is_ruled_out {
+            if passes(&rival) && self.is_the_only_occasion(best, rival) {
+                rivals.push((effect, distance.min(settings.ambiguity_margin)));
+            } else if is_ruled_out {
                 margin = margin.min(distance);
             } else if distance < 0.0 || !self.contains(rival, best, SAME_FORMULA_ENERGY_SHARE) {
                 rivals.push((effect, distance));
@@ -124,6 +132,24 @@ impl Round<'_, '_> {
             own.is_none_or(|own| own.score > generic.score - self.search.settings.ambiguity_margin)
         };
         explains_as_much && errs_by_its_formula()
+    }
+
+    /// Whether a one-off event is all that a recording shows of another effect: a stop that is reached, or a limit that is exceeded once
+    /// only.
+    fn is_the_only_occasion(&self, event: &Scored, other: &Scored) -> bool {
+        if event.label != Label::Named(EffectId::TransientEvent) {
+            return false;
+        }
+        let column = |scored: &Scored| {
+            self.search.workbench.filtered_columns(&scored.label, &scored.shape).first().cloned().unwrap_or_default()
+        };
+        let (of_event, of_other) = (column(event), column(other));
+        let least = EVENT_EDGE_SHARE * of_event.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+        let energy = |rows: &dyn Fn(f64) -> bool| -> f64 {
+            let pairs = of_event.iter().zip(&of_other).filter(|(event, _)| rows(event.abs()));
+            pairs.map(|(_, other)| other * other).sum()
+        };
+        energy(&|event| event > least) > ONLY_OCCASION_ENERGY_SHARE * energy(&|_| true)
     }
 
     /// Whether the open rows prove a hypothesis by themselves.

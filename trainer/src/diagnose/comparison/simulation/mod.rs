@@ -66,9 +66,9 @@ pub struct InverseLaw {
     coefficients: Vec<f64>,
     /// Weights of each direction in which the law is not sure of itself, at one standard deviation.
     uncertainty: Vec<Vec<f64>>,
-    /// What the law leaves of a simulation that is quiet.
+    /// What the law leaves of the simulation.
     replay: Option<ReplayedResidual>,
-    /// Root mean square of that beside the simulation's noise; zero of one that is not quiet.
+    /// Root mean square of that beside the simulation's noise; zero of a simulation whose noise is nearly that of the recording.
     formula_error: f64,
     /// Root mean square of what the law leaves of the simulation, in the unit of the actuator.
     pub rmse: f64,
@@ -85,9 +85,9 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
     let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given).unwrap_or(law) };
-    law.replay = Some(ReplayedResidual::of(simulation, &law.torque(&prepared.state)));
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
+    law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
     Ok(law)
 }
 
