@@ -42,9 +42,9 @@ const YIELDING_LEAD_NATS: f64 = 8.0;
 
 /// Torque of an event behind the filter over its largest, below which a row is beyond the event: what a filter leaves of an edge.
 const EVENT_EDGE_SHARE: f64 = 0.01;
-/// Energy of an effect during an event over all of it, above which the event is its only occasion. Chosen by judgement: an effect that
-/// acts twice has about half.
-const ONLY_OCCASION_ENERGY_SHARE: f64 = 0.9;
+/// Energy of an effect during an event over all of it, above which the event may be its occasion. Chosen by judgement: most of it; a stop
+/// that is hit hard once may be touched lightly at other times.
+const OCCASION_ENERGY_SHARE: f64 = 0.5;
 
 impl Round<'_, '_> {
     /// Decides the round: the best passing hypothesis with its ambiguity set, or nothing; nothing too where that set holds nearly
@@ -94,7 +94,7 @@ impl Round<'_, '_> {
                 Label::Named(_) => !within_reach(best, rival, settings.ambiguity_margin),
                 Label::Generic(_) => distance >= UNKNOWN_LEAD_NATS || !passes(&rival),
             };
-            if passes(&rival) && self.is_the_only_occasion(best, rival) {
+            if passes(&rival) && self.is_the_occasion(best, rival) {
                 rivals.push((effect, distance.min(settings.ambiguity_margin)));
             } else if is_ruled_out {
                 margin = margin.min(distance);
@@ -134,9 +134,9 @@ impl Round<'_, '_> {
         explains_as_much && errs_by_its_formula()
     }
 
-    /// Whether a one-off event is all that a recording shows of another effect: a stop that is reached, or a limit that is exceeded once
-    /// only.
-    fn is_the_only_occasion(&self, event: &Scored, other: &Scored) -> bool {
+    /// Whether a one-off event is most of what a recording would show of another effect: a stop that is reached, or a limit that is
+    /// exceeded once.
+    fn is_the_occasion(&self, event: &Scored, other: &Scored) -> bool {
         if event.label != Label::Named(EffectId::TransientEvent) {
             return false;
         }
@@ -149,7 +149,7 @@ impl Round<'_, '_> {
             let pairs = of_event.iter().zip(&of_other).filter(|(event, _)| rows(event.abs()));
             pairs.map(|(_, other)| other * other).sum()
         };
-        energy(&|event| event > least) > ONLY_OCCASION_ENERGY_SHARE * energy(&|_| true)
+        energy(&|event| event > least) > OCCASION_ENERGY_SHARE * energy(&|_| true)
     }
 
     /// Whether the open rows prove a hypothesis by themselves.

@@ -106,7 +106,12 @@ impl<'a> Search<'a> {
         while accepted.len() > 1 {
             let superfluous = (0..accepted.len()).filter(|&index| {
                 // What only the locked rows can still confirm displaces nothing that the open rows have proved.
-                let counts = |other: &Accepted| self.is_proved(other) || !self.is_proved(&accepted[index]);
+                // Nor does a structure without a name displace a name: that was kept beside it when it came.
+                let is_named = |found: &Accepted| found.label.channel().is_none();
+                let counts = |other: &Accepted| {
+                    (self.is_proved(other) || !self.is_proved(&accepted[index]))
+                        && (is_named(other) || !is_named(&accepted[index]))
+                };
                 let bench = self.workbench.bench(
                     self.workbench
                         .base_with_tangents(others(&accepted, index).filter(|other| counts(other)).map(Accepted::term)),
