@@ -61,12 +61,15 @@ impl MeasurementNoise {
     }
 }
 
-/// White noise of the torque at every sample: drawn from what a base leaves once it is white, with the deviation that the state gives
-/// there, so large that behind the filter it is what the base leaves in half of the rows.
+/// White noise of the torque at every sample, so large that behind the filter it is what a base leaves in half of the rows. How it is
+/// spread over the states and how heavy its tails are tells what changes from sample to sample, which no effect does.
 fn torque_noise(prepared: &Prepared, left_by_base: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
     let runs = prepared.open_runs();
-    let model = Noise::fit(left_by_base, &runs, &noise_features(prepared));
-    let white = model.whitened(left_by_base, &runs);
+    let torque = &prepared.torque;
+    let change = |&i: &usize| torque[i.saturating_sub(1)] - 2.0 * torque[i] + torque[(i + 1).min(torque.len() - 1)];
+    let changes: Vec<f64> = prepared.rows.iter().map(change).collect();
+    let model = Noise::fit(&changes, &runs, &noise_features(prepared));
+    let white = model.whitened(&changes, &runs);
     let drawn: Vec<f64> = runs.iter().flat_map(|run| &white[run.clone()]).copied().collect();
     let of_most = |values: &[f64]| DEVIATION_PER_MEDIAN * quantile(values.iter().map(|value| value.abs()), 0.5);
     let usual_deviation = quantile(model.deviation.iter().copied(), 0.5);

@@ -3,7 +3,7 @@
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
-use crate::diagnose::proof::locked_rows::{prove_alone, rest};
+use crate::diagnose::proof::locked_rows::{prove, prove_alone, rest};
 use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
@@ -91,7 +91,21 @@ pub(crate) fn withdraw_unproven(
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
     }
+    if !lowers_the_locked_error(workbench, accepted) {
+        // An event lies in rows that no others can speak for, and a fault of the measurement adds no torque.
+        let stays = |found: &Accepted| {
+            found.effect() == EffectId::TransientEvent || found.effect().action() == Action::Measurement
+        };
+        withdrawn.extend(accepted.extract_if(.., |found| !stays(found)).map(|found| found.effect()));
+    }
     withdrawn
+}
+
+/// Whether the error on the locked rows falls with all that was accepted; true where nothing is locked.
+fn lowers_the_locked_error(workbench: &Workbench, accepted: &[Accepted]) -> bool {
+    let [baseline, improved] = [&[][..], accepted].map(|effects| refit(workbench, effects));
+    let proof = baseline.zip(improved).and_then(|(baseline, improved)| prove(workbench, &baseline, &improved));
+    proof.is_none_or(|proof| proof.improved_rmse < proof.baseline_rmse)
 }
 
 /// What one effect explains beside all the others.
