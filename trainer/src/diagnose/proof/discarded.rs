@@ -2,7 +2,7 @@
 
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::states::Prepared;
-use crate::diagnose::proof::decision::{is_carried, is_worse_by_an_event};
+use crate::diagnose::proof::decision::{SHOWN_DEVIATIONS, is_carried, is_worse_by_an_event};
 use crate::diagnose::proof::locked_rows::{prove, prove_alone, rest};
 use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
@@ -101,11 +101,11 @@ pub(crate) fn withdraw_unproven(
     withdrawn
 }
 
-/// Whether the error on the locked rows falls with all that was accepted; true where nothing is locked.
+/// Whether the error on the locked rows falls with all that was accepted; true where these rows could not show it.
 fn lowers_the_locked_error(workbench: &Workbench, accepted: &[Accepted]) -> bool {
     let [baseline, improved] = [&[][..], accepted].map(|effects| refit(workbench, effects));
     let proof = baseline.zip(improved).and_then(|(baseline, improved)| prove(workbench, &baseline, &improved));
-    proof.is_none_or(|proof| proof.improved_rmse < proof.baseline_rmse)
+    proof.is_none_or(|proof| proof.expected_deviations < SHOWN_DEVIATIONS || proof.improved_rmse < proof.baseline_rmse)
 }
 
 /// What one effect explains beside all the others.
