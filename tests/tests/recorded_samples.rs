@@ -5,8 +5,8 @@ use std::path::Path;
 
 use frikan_tests::recordings;
 use frikan_trainer::joint::Joint;
+use frikan_trainer::numerics::regression::least_squares;
 use frikan_trainer::recording::{self, Recording};
-use frikan_trainer::samples::regression::least_squares;
 use frikan_trainer::samples::relevance::relevance;
 use frikan_trainer::samples::rigid_body::{TermKind, separate};
 use frikan_trainer::samples::{Preparation, Request, Samples, prepare, prepare_every_row};

@@ -16,7 +16,7 @@ pub mod kan;
 pub mod key;
 pub mod law;
 mod markup;
-mod numerics;
+pub mod numerics;
 pub mod parameter;
 pub mod physics;
 pub mod plant;

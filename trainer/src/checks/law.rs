@@ -3,12 +3,12 @@
 //! should be; it is no model of anything.
 
 use super::motion::{top_speed, torque};
+use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::numerics::least_squares::weighted;
+use crate::numerics::regression::{LinearFit, least_squares};
 use crate::numerics::statistics::mean;
 use crate::recording::{Axis, Quantity};
 use crate::samples::Samples;
-use crate::samples::filter::{GaussianFilter, Order};
-use crate::samples::regression::{LinearFit, least_squares};
 use std::ops::Range;
 
 /// Share of the top speed over which the Coulomb torque turns.

@@ -3,9 +3,9 @@
 use super::motion::{sigma_s, smooth};
 use super::note::{Contradiction, Fault, Note, WrongUnit};
 use super::steps::resolution;
+use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::{Quantity, Recording};
 use crate::samples::VelocitySource;
-use crate::samples::filter::{GaussianFilter, Order};
 use std::f64::consts::TAU;
 
 /// Share of the derivative that the grain of the encoder may make up for it to contradict anything.

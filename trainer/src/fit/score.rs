@@ -4,8 +4,8 @@ use super::model::HostModel;
 use super::outcome::{RestScore, Score, SplitScore, Trace};
 use super::predict::{Prediction, every_row, nothing_recorded, predict};
 use crate::error::{Error, Result};
+use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::Recording;
-use crate::samples::filter::{GaussianFilter, Order};
 use crate::samples::{Samples, top_speed};
 
 /// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.

@@ -1,9 +1,11 @@
-//! Numerics that every room uses: least squares over runs of rows, covariances, statistics, random draws. Knows no physics.
+//! Numerics that every room uses: filters, least squares over runs of rows, covariances, statistics, random draws. Knows no physics.
 
 pub(crate) mod covariance;
 pub(crate) mod derivatives;
+pub mod filter;
 pub(crate) mod least_squares;
 pub(crate) mod pattern_search;
 pub(crate) mod products;
 pub(crate) mod random;
+pub mod regression;
 pub(crate) mod statistics;

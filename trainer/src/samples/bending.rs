@@ -91,7 +91,7 @@ mod tests {
         let velocity: Vec<f64> = (1..401).map(|i| (f64::from(i) * 0.0731).sin()).collect();
         let law = BendingLaw::over(&velocity).unwrap();
         let torque: Vec<f64> = velocity.iter().map(|v| 2.0 * v.signum() + 0.7 * v - 0.3).collect();
-        let fit = super::super::regression::least_squares(&law.columns(&velocity), &torque, &[0..200, 200..400]);
+        let fit = crate::numerics::regression::least_squares(&law.columns(&velocity), &torque, &[0..200, 200..400]);
         assert!(fit.rmse < 1e-9, "{}", fit.rmse);
         let weights = law.even_part(&velocity);
         let offset: f64 = weights.iter().zip(&fit.coefficients).map(|(w, c)| w * c).sum();

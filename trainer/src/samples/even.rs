@@ -6,9 +6,6 @@ use super::grid::Grid;
 use crate::error::{Error, Result, codes};
 use crate::recording::{Quantity, Recording};
 
-/// Name of the channel that numbers the trajectories of a campaign.
-const TRAJECTORY: &str = "trajectory";
-
 /// Channels of a recording on an even clock.
 #[derive(Clone, Debug)]
 pub struct EvenClock {
@@ -51,9 +48,6 @@ impl EvenClock {
             let values = grid.segments.iter().flat_map(|segment| grid.values(segment, time, &channel.values)).collect();
             even.channels.push((channel.quantity, channel.name.clone(), values));
         }
-        if let Some(trajectory) = even.named(TRAJECTORY).map(<[f64]>::to_vec) {
-            even.split_where(|i| trajectory[i].round() != trajectory[i - 1].round());
-        }
         Ok(even)
     }
 
@@ -67,20 +61,5 @@ impl EvenClock {
     #[must_use]
     pub fn named(&self, name: &str) -> Option<&[f64]> {
         self.channels.iter().find(|(_, n, _)| n == name).map(|(_, _, values)| values.as_slice())
-    }
-
-    fn split_where(&mut self, begins: impl Fn(usize) -> bool) {
-        let mut split = Vec::new();
-        for segment in &self.segments {
-            let mut begin = segment.start;
-            for i in segment.start + 1..segment.end {
-                if begins(i) {
-                    split.push(begin..i);
-                    begin = i;
-                }
-            }
-            split.push(begin..segment.end);
-        }
-        self.segments = split;
     }
 }

@@ -6,12 +6,10 @@
 mod bending;
 pub mod blocks;
 mod even;
-pub mod filter;
 mod grid;
 pub mod hold_out;
 pub mod plan;
 mod prepare;
-pub mod regression;
 pub mod relevance;
 pub mod rigid_body;
 pub mod spikes;

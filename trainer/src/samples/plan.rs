@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use super::bending::BendingLaw;
-use super::filter::GaussianFilter;
 use super::grid::Grid;
 use super::{Samples, width};
 use crate::error::{Error, Result};
 use crate::joint::Joint;
+use crate::numerics::filter::gaussian::GaussianFilter;
 use crate::numerics::statistics::{mean, quantile, root_mean_square};
 use crate::recording::{Quantity, Recording};
 

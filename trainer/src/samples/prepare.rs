@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::Samples;
-use super::filter::{GaussianFilter, Order};
 use super::grid::{Grid, Segment, interpolate};
 use super::plan::{Preparation, VelocitySource};
 use crate::error::{Error, Result, codes};
+use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::{Quantity, Recording};
 
 /// Temperatures are smoothed over this standard deviation, s: their sensor's noise would otherwise hand what

@@ -6,8 +6,8 @@ use super::Samples;
 use super::bending::BendingLaw;
 use super::blocks::{blocks, correlation_time};
 use super::hold_out::motions;
-use super::regression::least_squares;
 use crate::error::Result;
+use crate::numerics::regression::least_squares;
 
 /// An input besides velocity is picked when it explains at least this share of the variance of friction more...
 pub const LEAST_ADDED_SHARE: f64 = 0.02;

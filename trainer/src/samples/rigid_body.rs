@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use super::Samples;
 use super::bending::BendingLaw;
-use super::regression::least_squares;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
+use crate::numerics::regression::least_squares;
 use crate::recording::Axis;
 
 /// Gravity is asked for where the position covers at least this, rad; below, it cannot be told from an offset.

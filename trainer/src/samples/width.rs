@@ -8,12 +8,12 @@
 use rayon::prelude::*;
 
 use super::prepare::prepare;
-use super::regression::least_squares;
 use super::rigid_body;
 use super::{Preparation, Samples, top_speed};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::numerics::products::norm;
+use crate::numerics::regression::least_squares;
 use crate::recording::Recording;
 
 /// Factor from one width to the next.

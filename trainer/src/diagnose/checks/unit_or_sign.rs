@@ -3,8 +3,8 @@
 use crate::diagnose::checks::note::{HealthNote, Observation, TorquePart};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
+use crate::numerics::filter::windowed_sinc::ZeroPhase;
 use crate::numerics::least_squares::{least_squares, residual};
 use crate::physics::EffectId;
 

@@ -1,7 +1,6 @@
 //! From signals to states and working rows behind one filter for all channels. Knows no base model and no candidate.
 
 pub(crate) mod cut_off;
-pub(crate) mod filter;
 pub(crate) mod gravity;
 pub(crate) mod position_error;
 pub(crate) mod rows;

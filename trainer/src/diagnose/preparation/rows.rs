@@ -1,7 +1,7 @@
 //! Which rows are worked on, in which blocks, and which blocks are locked away.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::ZeroPhase;
+use crate::numerics::filter::windowed_sinc::ZeroPhase;
 use crate::numerics::least_squares::rows_in;
 use crate::physics::JointState;
 use std::ops::Range;

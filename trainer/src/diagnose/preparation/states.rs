@@ -2,12 +2,12 @@
 //! aside.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::filter::ZeroPhase;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
 use crate::diagnose::preparation::rows::{Block, Division, Lock, divide, hesitation, standstill};
 use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
 use crate::diagnose::preparation::two_encoders::shown_by_twist;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
+use crate::numerics::filter::windowed_sinc::ZeroPhase;
 use crate::numerics::least_squares::least_squares;
 use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, quantile};
 use crate::physics::{JointState, MemoryAxes, OtherJoint, Twist, top_speed};

@@ -1,8 +1,8 @@
 //! Reduced forms of a friction law: what the parameters of a simulator can express.
 
 use super::law::FrictionCurve;
+use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::root_mean_square;
-use crate::samples::regression::least_squares;
 
 /// Stribeck velocities that are tried, each a step above the last.
 const STRIBECK_VELOCITIES: usize = 48;

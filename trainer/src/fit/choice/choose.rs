@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::fit::data::gather::Material;
 use crate::fit::model::HostModel;
 use crate::fit::predict::predict;
+use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::mean;
 use crate::samples::blocks::Split;
-use crate::samples::regression::least_squares;
 
 /// Blocks from which on their scatter is an error to go by.
 const LEAST_BLOCKS: usize = 3;

@@ -4,10 +4,10 @@ use frikan_shared::model::RigidBody;
 
 use super::gather::Material;
 use crate::joint::Joint;
+use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::NORMAL_95;
 use crate::parameter::Parameter;
 use crate::recording::Axis;
-use crate::samples::regression::least_squares;
 use crate::samples::rigid_body::TermKind;
 
 /// A column of which the others and friction leave less than this share of its square cannot be told from them.

@@ -1,9 +1,10 @@
-//! The one filter: a Gaussian and its derivatives, zero phase, applied alike to every channel.
+//! A Gaussian low-pass and its first two derivatives: the filter of `fit` and `predict`.
 //!
 //! Velocity is the convolution of the position with the derivative of the kernel and acceleration that with its second
 //! derivative, so that F, F D and F D2 have the same gain at every frequency and terms that are linear in the motion
 //! match the filtered torque exactly (rule P1).
 
+use super::continued;
 use crate::numerics::products::dot;
 
 /// The kernel is cut off at this many standard deviations.
@@ -91,13 +92,7 @@ impl GaussianFilter {
     /// slope. Values within a half width of an end are less certain.
     #[must_use]
     pub fn apply_everywhere(&self, signal: &[f64], order: Order) -> Vec<f64> {
-        let (Some(&head), Some(&tail)) = (signal.first(), signal.last()) else { return Vec::new() };
-        let last = signal.len() - 1;
-        let half = self.half_width();
-        let reach = |distance: usize| distance.min(last);
-        let before = (1..=half).rev().map(|k| 2.0 * head - signal[reach(k)]);
-        let after = (1..=half).map(|k| 2.0 * tail - signal[last - reach(k)]);
-        let padded: Vec<f64> = before.chain(signal.iter().copied()).chain(after).collect();
+        let padded = continued(signal, self.half_width());
         let stride = (self.sigma_s / self.period_s / NODES_IN_SIGMA) as usize;
         if stride < 2 {
             return self.apply(&padded, order, 1);

@@ -1,7 +1,9 @@
-//! The one zero-phase filter that every channel and every regressor passes, and the states behind it.
+//! A Hamming-windowed sinc low-pass: the filter of `diagnose`, which every channel and every regressor passes.
 
 use std::f64::consts::PI;
 use std::ops::Range;
+
+use super::continued;
 
 /// A symmetric low-pass FIR filter (Hamming-windowed sinc), zero phase.
 #[derive(Clone, Debug)]
@@ -62,14 +64,7 @@ impl ZeroPhase {
         let mut filtered = series.to_vec();
         for segment in segments {
             let piece = &series[segment.clone()];
-            if piece.is_empty() {
-                continue;
-            }
-            let last = piece.len() - 1;
-            let mut padded = Vec::with_capacity(piece.len() + 2 * half);
-            padded.extend((1..=half).rev().map(|k| 2.0 * piece[0] - piece[k.min(last)]));
-            padded.extend_from_slice(piece);
-            padded.extend((1..=half).map(|k| 2.0 * piece[last] - piece[last - k.min(last)]));
+            let padded = continued(piece, half);
             for i in 0..piece.len() {
                 filtered[segment.start + i] = self.at(&padded, i + half);
             }

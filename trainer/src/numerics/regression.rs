@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::numerics::least_squares::residual;
 use crate::numerics::products::{dot, norm};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -53,12 +54,7 @@ pub fn least_squares(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize
     let solution = &inverse * moment;
     let coefficients: Vec<f64> = solution.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
 
-    let mut residuals = target.to_vec();
-    for (column, coefficient) in columns.iter().zip(&coefficients) {
-        for (residual, value) in residuals.iter_mut().zip(column) {
-            *residual -= coefficient * value;
-        }
-    }
+    let residuals = residual(columns, target, &coefficients);
     let rmse = norm(&residuals) / (target.len().max(1) as f64).sqrt();
 
     let mut meat = DMatrix::zeros(width, width);
