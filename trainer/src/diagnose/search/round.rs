@@ -210,9 +210,14 @@ impl<'s, 'a> Round<'s, 'a> {
         /// Score over that of the leading name above which they are refined as well: a resonance between two of the grid may lose
         /// three quarters of it.
         const REFINED_SCORE_SHARE: f64 = 0.25;
+        /// Distance to the leading name, nats, from which none is refined whatever its share: behind so clear a lead the next rounds
+        /// are for what is left.
+        const REFINED_AT_MOST_WITHIN_NATS: f64 = 100.0;
         let named = table.iter().filter(|s| matches!(s.label, Label::Named(_)));
         let lead = named.map(|s| s.score).fold(f64::NEG_INFINITY, f64::max);
-        let threshold = (lead - REFINED_WITHIN_NATS).min(REFINED_SCORE_SHARE * lead).max(0.0);
+        let threshold = (lead - REFINED_WITHIN_NATS)
+            .min((REFINED_SCORE_SHARE * lead).max(lead - REFINED_AT_MOST_WITHIN_NATS))
+            .max(0.0);
         table.par_iter_mut().for_each(|scored| {
             let Label::Named(effect) = scored.label else { return };
             let Some(hypothesis) = self.search.workbench.hypothesis(effect) else { return };
