@@ -14,23 +14,22 @@ pub(crate) struct LawUncertainty {
 }
 
 impl LawUncertainty {
-    /// LawUncertaintys given as whitened torque beside whitened base columns.
+    /// Uncertainty given as whitened torque beside whitened base columns.
     pub fn beside(base: &[Vec<f64>], torque: Vec<Vec<f64>>, runs: Vec<Range<usize>>) -> Self {
         let base = if torque.is_empty() { Vec::new() } else { orthonormal(base, &runs) };
         Self { torque, base, runs }
     }
 
-    /// Variance that noise alone gives the evidence of whitened columns over that beside noise and uncertainty, above 0 and at most 1.
-    pub fn trust(&self, columns: &[Vec<f64>]) -> f64 {
+    /// Variance that noise alone gives the evidence of a whitened torque over that beside noise and uncertainty, above 0 and at most 1.
+    pub fn trust(&self, torque: &[f64]) -> f64 {
         if self.torque.is_empty() {
             return 1.0;
         }
-        let mut free = columns.to_vec();
-        free.iter_mut().for_each(|column| project_out(column, &self.base, &self.runs));
-        let directions = orthonormal(&free, &self.runs);
-        let shares =
-            directions.iter().flat_map(|d| self.torque.iter().map(|torque| dot(d, torque, &self.runs).powi(2)));
-        1.0 / (1.0 + shares.sum::<f64>() / directions.len().max(1) as f64)
+        let mut free = torque.to_vec();
+        project_out(&mut free, &self.base, &self.runs);
+        let energy = dot(&free, &free, &self.runs);
+        let doubt: f64 = self.torque.iter().map(|torque| dot(&free, torque, &self.runs).powi(2)).sum();
+        if energy == 0.0 { 1.0 } else { 1.0 / (1.0 + doubt / energy) }
     }
 }
 
@@ -44,9 +43,10 @@ mod tests {
             |place: usize, length: f64| (0..4).map(|i| if i == place { length } else { 0.0 }).collect::<Vec<f64>>();
         let all = std::iter::once(0..4).collect::<Vec<_>>();
         let uncertainty = LawUncertainty::beside(&[axis(0, 2.0)], vec![axis(0, 9.0), axis(1, 3.0)], all.clone());
-        assert!((uncertainty.trust(&[axis(1, 0.5)]) - 0.1).abs() < 1e-12);
-        assert_eq!(uncertainty.trust(&[axis(2, 0.5)]), 1.0);
-        assert!((uncertainty.trust(&[axis(1, 1.0), axis(2, 1.0)]) - 1.0 / 5.5).abs() < 1e-12);
-        assert_eq!(LawUncertainty::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&[axis(1, 0.5)]), 1.0);
+        assert!((uncertainty.trust(&axis(1, 0.5)) - 0.1).abs() < 1e-12);
+        assert_eq!(uncertainty.trust(&axis(2, 0.5)), 1.0);
+        let between: Vec<f64> = axis(1, 1.0).iter().zip(axis(2, 1.0)).map(|(a, b)| a + b).collect();
+        assert!((uncertainty.trust(&between) - 1.0 / 5.5).abs() < 1e-12);
+        assert_eq!(LawUncertainty::beside(&[axis(0, 2.0)], Vec::new(), all).trust(&axis(1, 0.5)), 1.0);
     }
 }

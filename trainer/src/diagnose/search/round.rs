@@ -11,7 +11,7 @@ use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_squar
 use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::setup::Search;
 use crate::diagnose::search::thresholds::Settings;
-use crate::numerics::least_squares::{orthonormal, project_out};
+use crate::numerics::least_squares::{orthonormal, project_out, weighted};
 use crate::physics::{EffectId, Shape};
 use rayon::prelude::*;
 
@@ -154,18 +154,21 @@ impl<'s, 'a> Round<'s, 'a> {
                 let admissible = self.admissible(index);
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.workbench.scanned_beyond(index);
-                let trust = |variant: &Variant| self.law_uncertainty.trust(&self.white[variant.columns.clone()]);
+                let trust = |variant: &Variant, evidence: &VariantEvidence| {
+                    self.law_uncertainty.trust(&weighted(&self.white[variant.columns.clone()], &evidence.coefficients))
+                };
                 // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&admissible);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
                     .filter_map(|(variant, evidence)| evidence.as_ref().map(|v| (variant, v)))
-                    .map(|(variant, v)| chi_square_surprise(trust(variant) * v.statistic, v.degrees) - scanned)
+                    .map(|(variant, v)| chi_square_surprise(trust(variant, v) * v.statistic, v.degrees) - scanned)
                     .fold(0.0, f64::max);
+                let best = admissible[evidence.best].as_ref()?;
                 Some(Scored {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
-                    score: trust(&group.variants[evidence.best]) * score_of(&group.label, &evidence, grid),
+                    score: trust(&group.variants[evidence.best], best) * score_of(&group.label, &evidence, grid),
                     family_wise: 1.0,
                     evidence,
                     group: index,
@@ -236,8 +239,9 @@ impl<'s, 'a> Round<'s, 'a> {
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.workbench.grid_size(scored.group);
-            if let Some(evidence) = GroupEvidence::weigh(alone, &[weigh(&shape)], rows, grid) {
-                let trust = self.law_uncertainty.trust(&white(&shape));
+            let Some(refined) = weigh(&shape) else { return };
+            let trust = self.law_uncertainty.trust(&weighted(&white(&shape), &refined.coefficients));
+            if let Some(evidence) = GroupEvidence::weigh(alone, &[Some(refined)], rows, grid) {
                 let score = trust * score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
