@@ -6,14 +6,14 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
-use crate::model::{Model, Provenance};
+use crate::model::{LawError, Model, Provenance};
 use crate::validate::InvalidModel;
 
 /// First bytes of every image.
 pub const MAGIC: [u8; 4] = *b"FRKN";
 
 /// Version of the format that this crate writes and reads.
-pub const FORMAT_VERSION: u16 = 4;
+pub const FORMAT_VERSION: u16 = 5;
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 16;
@@ -165,7 +165,11 @@ pub fn decode<const CELLS: usize>(bytes: &[u8]) -> Result<Image<CELLS>, ImageErr
     if usize::from(header.cells) > CELLS {
         return Err(ImageError::TooLarge);
     }
-    let (provenance, rest) = postcard::take_from_bytes(payload).map_err(|_| ImageError::Malformed)?;
+    let (provenance, rest) = postcard::take_from_bytes::<Provenance>(payload).map_err(|_| ImageError::Malformed)?;
+    let LawError { slow, sliding } = provenance.law_error;
+    if ![slow, sliding].iter().all(|error| error.is_finite() && *error >= 0.0) {
+        return Err(ImageError::Malformed);
+    }
     let (model, rest) = postcard::take_from_bytes::<Model<CELLS>>(rest).map_err(|_| ImageError::Malformed)?;
     if !rest.is_empty() || model.cells.len() != usize::from(header.cells) {
         return Err(ImageError::Malformed);

@@ -70,7 +70,7 @@ impl From<Table> for Law {
 }
 
 /// Where a model comes from.
-#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Provenance {
     /// Name of the joint.
     pub joint: heapless::String<JOINT_NAME_BYTES>,
@@ -80,7 +80,22 @@ pub struct Provenance {
     pub recordings_hash: u64,
     /// Seed of the training.
     pub seed: u64,
+    /// What the law gets wrong of the recordings.
+    pub law_error: LawError,
 }
+
+/// What a law gets wrong of the recordings that it was fitted to, beside their noise: root mean squares in the unit of the output,
+/// finite and at least 0; 0 where it was not determined.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct LawError {
+    /// Up to [`SLOW_SHARE`] of the largest velocity of the model's range.
+    pub slow: f32,
+    /// Above it.
+    pub sliding: f32,
+}
+
+/// Share of the largest velocity of a model's range up to which friction may be that of break-away.
+pub const SLOW_SHARE: f32 = 0.1;
 
 /// A friction model with room for `CELLS` cells.
 ///

@@ -1,7 +1,7 @@
 use super::*;
 use crate::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS};
 use crate::expression::{Operation, Program, ProgramFault};
-use crate::model::{Input, Law, RigidBody};
+use crate::model::{Input, Law, LawError, RigidBody};
 use crate::table::{Cell, Geometric, GeometricShape, Symmetry};
 use crate::units::{Quantity, Unit};
 use proptest::prelude::*;
@@ -40,6 +40,7 @@ fn table_image(symmetry: Symmetry) -> Image<64> {
         trainer_version: "0.1.0".try_into().unwrap(),
         recordings_hash: u64::MAX,
         seed: 7,
+        law_error: LawError { slow: 0.25, sliding: 0.125 },
     };
     Image { provenance, model }
 }

@@ -34,6 +34,7 @@ use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
 use compare::{Compared, comparison};
 use frikan_shared::image::Image;
+use frikan_shared::model::LawError;
 use frikan_shared::units::Unit;
 use sealed::sealed_score;
 use std::path::{Path, PathBuf};
@@ -249,7 +250,7 @@ fn improved_image(
     let origin = match compared {
         Compared::Itself(body) => Origin::Recording(**body),
         Compared::Simulation(law) => Origin::Simulation(law),
-        Compared::Model(model) => Origin::Model(model),
+        Compared::Model(image) => Origin::Model(&image.model),
     };
     let unit = match units(&recordings[0]).actuator {
         "N" => Unit::Newton,
@@ -259,7 +260,11 @@ fn improved_image(
     let improved = improve(diagnosis, comparison, origin, unit, arguments.target.unwrap_or_default())
         .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
     let name = joint.name.as_deref().unwrap_or_default();
-    let provenance = fit::model::provenance(name, recordings, arguments.seed);
+    let law_error = match compared {
+        Compared::Model(image) => image.provenance.law_error,
+        Compared::Itself(_) | Compared::Simulation(_) => LawError::default(),
+    };
+    let provenance = fit::model::provenance(name, recordings, arguments.seed, law_error);
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.
     let after = fit::model::from_bytes(&image)?.model;

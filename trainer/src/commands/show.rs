@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
-use frikan_shared::model::Law;
+use frikan_shared::model::{Law, LawError};
 
 use super::output::Outputs;
 use crate::error::Result;
@@ -171,6 +171,14 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         if value != 0.0 {
             writeln!(out, "rigid body  {name} {}", significant(f64::from(value), DIGITS))?;
         }
+    }
+    let LawError { slow, sliding } = provenance.law_error;
+    if slow.max(sliding) > 0.0 {
+        let [slow, sliding] = [slow, sliding].map(|error| significant(f64::from(error), DIGITS));
+        writeln!(
+            out,
+            "law error   {sliding} {unit} sliding, {slow} {unit} slower, beside the noise of the recordings"
+        )?;
     }
     writeln!(
         out,

@@ -22,6 +22,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
     Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
+    withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -159,6 +160,10 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     };
     if !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
+    }
+    let mut discarded = discarded;
+    if comparison.reference.as_ref().is_some_and(|reference| reference.is_fitted) {
+        discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
     }
     let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
     let proof = prove(workbench, &baseline, &improved);

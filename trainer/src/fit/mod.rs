@@ -4,6 +4,7 @@
 
 mod choice;
 mod data;
+mod law_error;
 mod laws;
 pub mod model;
 mod options;

@@ -11,6 +11,7 @@ use super::choice::turn::{self, Turn};
 use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
+use super::law_error::law_error;
 use super::laws::builder::Builder;
 use super::laws::formula::{self, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
@@ -90,7 +91,8 @@ fn fit_once(
     let violation = Violation::of(&model, &material);
 
     let name = joint.name.clone().unwrap_or_default();
-    let image = to_bytes(&Image { provenance: provenance(&name, recordings, options.seed), model: *model })?;
+    let provenance = provenance(&name, recordings, options.seed, law_error(&model, &material)?);
+    let image = to_bytes(&Image { provenance, model: *model })?;
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;
     tell(Stage::Scoring);

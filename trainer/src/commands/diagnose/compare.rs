@@ -8,11 +8,12 @@ use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
-use crate::fit::{self, HostModel};
+use crate::fit::{self, CELLS};
 use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{self, Quantity, Recording};
+use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
 use std::path::Path;
 
@@ -20,7 +21,7 @@ use std::path::Path;
 pub(super) enum Compared {
     Itself(Box<RigidBody>),
     Simulation(Box<InverseLaw>),
-    Model(Box<HostModel>),
+    Model(Box<Image<CELLS>>),
 }
 
 impl Compared {
@@ -29,9 +30,7 @@ impl Compared {
         match self {
             Self::Itself(_) => None,
             Self::Simulation(law) => Some(law.at(state)),
-            Self::Model(image) => {
-                from_model::at(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok()
-            }
+            Self::Model(image) => of_model(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok(),
         }
     }
 }
@@ -52,12 +51,19 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let signals = joined(real, &bare)?;
         let state = states(&signals, &real[0])?;
-        let reference = from_model::at(&image.model, &state, state.rigid_body.as_deref())
-            .map_err(|error| error.in_file(real[0].file()))?;
-        Ok((Comparison::with(signals, reference), Compared::Model(Box::new(image.model))))
+        let reference =
+            of_model(&image, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real[0].file()))?;
+        Ok((Comparison::with(signals, reference), Compared::Model(image)))
     } else {
         Ok((joined(real, joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
+}
+
+/// A model at the states of a recording, with the error that its law has by the image.
+fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> Result<Reference> {
+    let mut reference = from_model::at(&image.model, state, given)?;
+    reference.uncertainty = from_model::uncertainty(&image.model, image.provenance.law_error, state);
+    Ok(reference)
 }
 
 /// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.

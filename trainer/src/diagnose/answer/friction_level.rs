@@ -4,6 +4,7 @@
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::stated_probability::WITHOUT_RIVAL;
+use crate::diagnose::comparison::base::Base;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
@@ -11,6 +12,7 @@ use crate::diagnose::proof::discarded::torque_beside_rigid_body;
 use crate::diagnose::proof::locked_rows::{prove, rest};
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::accepted::Accepted;
+use crate::diagnose::search::thresholds::OTHER_ROWS_ERROR_RATIO;
 use crate::numerics::covariance;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
@@ -63,13 +65,20 @@ impl FrictionLevel {
         if proof.ratio_ci95[1] >= 1.0 {
             return Self::Unchanged;
         }
-        if size < least_effect * torque_beside_rigid_body(workbench) {
+        let law_error = OTHER_ROWS_ERROR_RATIO * law_error(workbench.base);
+        if size < law_error.max(least_effect * torque_beside_rigid_body(workbench)) {
             return Self::Small(size);
         }
         let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: change.p_value(), rivals: 0 };
         let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
         Self::Wrong { finding, torque: change.torque, as_given: baseline.with_base_as_given(workbench) }
     }
+}
+
+/// Error of a reference behind the filter, root mean square: of its formulas, or what it is not sure of.
+fn law_error(base: &Base) -> f64 {
+    let energy = |torque: &Vec<f64>| root_mean_square(torque).powi(2);
+    base.formula_error.max(base.uncertainty.iter().map(energy).sum::<f64>().sqrt())
 }
 
 /// Coulomb and viscous friction that a reference lacks.

@@ -3,6 +3,7 @@
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, friction_basis, raw_columns};
 use crate::diagnose::comparison::delay::{LONGEST_SAMPLING_DELAY, position_error_energy};
 use crate::diagnose::comparison::reference::{Comparison, tabulated_velocities};
+use crate::diagnose::comparison::relaxation::{self, relaxation_time};
 use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
 use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
@@ -50,6 +51,12 @@ impl Base {
         let target = prepared.filtered(&prepared.friction_torque);
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, comparison, &raw);
+        if comparison.reference.as_ref().is_some_and(|reference| reference.is_fitted) {
+            // A fitted law is a function of the velocity alone, whatever solver made the recording that it was fitted to.
+            let column =
+                |time| prepared.filtered(&relaxation::column(&prepared.state, prepared.state.sign_velocity, time));
+            columns.extend(relaxation_time(prepared, &columns, &target, 0.0).map(column));
+        }
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);
         add_soft_sign(prepared, &mut columns, &target);

@@ -3,13 +3,14 @@
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
+use crate::numerics::hat_functions::speed_hats;
 use crate::numerics::least_squares::{dot, project_out};
 use crate::physics::JointState;
 use crate::samples::blocks::rests;
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
 use frikan_shared::expression::Operation;
-use frikan_shared::model::{Law, Model};
+use frikan_shared::model::{Law, LawError, Model, SLOW_SHARE};
 use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
@@ -47,6 +48,7 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
         jacobian: jacobian(model, state),
         outside: outside(model, state),
         friction: curve(model, state),
+        is_fitted: true,
         ..Reference::default()
     })
 }
@@ -99,6 +101,28 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
         }
     }
     friction
+}
+
+/// Hats over speed by which the error of a law is described.
+const ERROR_KNOTS: usize = 17;
+
+/// Torque of each direction in which the law is not sure of itself, at one standard deviation: a hat over speed, of its own where the
+/// joint speeds up and where it slows down. None where the image does not say how wrong its law is.
+pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, state: &JointState) -> Vec<Vec<f64>> {
+    if error == LawError::default() {
+        return Vec::new();
+    }
+    let of_velocity = model.inputs.iter().find(|input| input.quantity == Quantity::Velocity);
+    let top = of_velocity.map_or(state.top_speed(), |input| f64::from(input.low.abs().max(input.high.abs())));
+    let mut directions = vec![vec![0.0; state.len()]; 2 * ERROR_KNOTS];
+    for i in 0..state.len() {
+        let share = state.velocity[i].abs() / top.max(f64::MIN_POSITIVE);
+        let deviation = f64::from(if share <= f64::from(SLOW_SHARE) { error.slow } else { error.sliding });
+        let speeds_up = state.acceleration[i] * state.velocity[i] > 0.0;
+        let own = directions.iter_mut().skip(if speeds_up { 0 } else { ERROR_KNOTS });
+        own.zip(speed_hats(share, ERROR_KNOTS)).for_each(|(column, hat)| column[i] = deviation * hat * state.sign[i]);
+    }
+    directions
 }
 
 /// The channels of a recording at their mean; at no speed.

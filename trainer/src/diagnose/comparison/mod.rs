@@ -5,5 +5,6 @@ pub(crate) mod columns;
 pub(crate) mod delay;
 pub mod from_model;
 pub(crate) mod reference;
+pub(crate) mod relaxation;
 pub(crate) mod sign_width;
 pub mod simulation;

@@ -14,6 +14,8 @@ pub struct Reference {
     pub rigid_body: Vec<f64>,
     /// Change of the torque with each parameter that may move, with its name.
     pub jacobian: Vec<(&'static str, Vec<f64>)>,
+    /// Whether it is a model that was fitted to another recording.
+    pub is_fitted: bool,
     /// Effects of the catalogue that it holds itself.
     pub effects: Vec<EffectId>,
     /// What the law leaves of the simulation from which it was learned, where that is of the same motion.

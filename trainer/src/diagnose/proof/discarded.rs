@@ -92,13 +92,32 @@ pub(crate) fn withdraw_unproven(
         withdrawn.push(accepted.remove(weakest).effect());
     }
     if !lowers_the_locked_error(workbench, accepted) {
-        // An event lies in rows that no others can speak for, and a fault of the measurement adds no torque.
-        let stays = |found: &Accepted| {
-            found.effect() == EffectId::TransientEvent || found.effect().action() == Action::Measurement
-        };
-        withdrawn.extend(accepted.extract_if(.., |found| !stays(found)).map(|found| found.effect()));
+        withdrawn.extend(take_what_repeats(accepted));
     }
     withdrawn
+}
+
+/// Drops all effects where the locked rows do not show by the interval of their ratio that the error falls with them: a model that was
+/// fitted to another recording is wrong in ways that its image does not tell.
+pub(crate) fn withdraw_without_shown_gain(
+    workbench: &Workbench,
+    baseline: &Refit,
+    accepted: &mut Vec<Accepted>,
+) -> Vec<EffectId> {
+    let improved = refit(workbench, accepted);
+    let proof = improved.and_then(|improved| prove(workbench, baseline, &improved));
+    if proof.is_none_or(|proof| proof.shows_gain()) {
+        return Vec::new();
+    }
+    take_what_repeats(accepted).collect()
+}
+
+/// Takes away what other rows of the recording would show again: all but a one-off event, which lies in rows that no others can speak for,
+/// and a fault of the measurement, which adds no torque.
+fn take_what_repeats(accepted: &mut Vec<Accepted>) -> impl Iterator<Item = EffectId> {
+    let stays =
+        |found: &Accepted| found.effect() == EffectId::TransientEvent || found.effect().action() == Action::Measurement;
+    accepted.extract_if(.., move |found| !stays(found)).map(|found| found.effect())
 }
 
 /// Whether the error on the locked rows falls with all that was accepted; true where these rows could not show it.

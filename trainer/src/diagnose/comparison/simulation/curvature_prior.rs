@@ -1,6 +1,6 @@
 //! Friction between knots that no row tells apart: it bends little there.
 
-use crate::diagnose::comparison::columns::speed_knot;
+use crate::numerics::hat_functions::speed_knot;
 use crate::numerics::statistics::quantile;
 use std::ops::Range;
 

@@ -2,23 +2,23 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 mod curvature_prior;
-mod relaxation;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
 
-use crate::diagnose::comparison::columns::{nuisances, speed_hats};
+use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
+use crate::diagnose::comparison::relaxation::{self, relaxation_time};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::numerics::covariance::of_whitened;
+use crate::numerics::hat_functions::speed_hats;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState};
 use curvature_prior::CurvaturePrior;
-use relaxation::relaxation_time;
 use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
@@ -33,6 +33,10 @@ const KNOTS: [usize; 4] = [5, 9, 17, 33];
 
 /// Noise of a simulation over that of the recording below which what a law leaves of it is the error of the law's formulas.
 const QUIET_NOISE_RATIO: f64 = 0.5;
+
+/// Least share of what a law leaves otherwise that a relaxation of the simulator's constraints has to explain: most of what a solver gets
+/// wrong near rest, where elasticity and memories of another kind leave more.
+const LEAST_RELAXATION_SHARE: f64 = 0.3;
 
 /// Why no law can be learned from a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -118,7 +122,8 @@ fn learn_with(
         rmse: 0.0,
     };
     let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
-    unfitted.relaxation_s = relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque));
+    unfitted.relaxation_s =
+        relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
     let laws: Vec<(InverseLaw, Vec<f64>)> =
         KNOTS.into_iter().filter_map(|knots| InverseLaw { knots, ..unfitted.clone() }.fitted(prepared)).collect();
     // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
@@ -288,6 +293,7 @@ impl InverseLaw {
             formula_error,
             uncertainty: self.uncertainty.iter().map(|direction| weighted(&columns, direction)).collect(),
             outside: Outside::default(),
+            is_fitted: false,
             friction: self.friction_curve(),
         }
     }

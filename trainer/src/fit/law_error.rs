@@ -1,0 +1,155 @@
+//! How wrong a shipped law is where it was fitted, beside the noise: what another recording may show of it is no physics that came later.
+
+use super::data::gather::Material;
+use super::model::HostModel;
+use super::predict::predict;
+use crate::error::Result;
+use crate::numerics::hat_functions::speed_hats;
+use crate::numerics::least_squares::{dot, gram, rows_in, solve_symmetric};
+use crate::numerics::regression::least_squares;
+use crate::samples::top_speed;
+use frikan_shared::model::{LawError, SLOW_SHARE};
+use frikan_shared::units::Quantity;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Hats over speed by which the error is described: the finest curve that a diagnosis learns of a simulation has twice as many.
+const KNOTS: usize = 17;
+/// Groups of blocks that are held out in turn: tenfold cross-validation (Stone 1974; Kohavi 1995 for the ten).
+const FOLDS: usize = 10;
+/// Rows without an error that each hat is given, so that one which few rows fall under says nothing.
+const ROWS_WITHOUT_ERROR: f64 = 1.0;
+
+/// Error of a law over the rows that it was fitted to: what of its residual is a function of velocity and of whether the joint speeds up or
+/// slows down, estimated on rows held out, and the standard error of a curve over speed.
+///
+/// # Errors
+/// As [`predict`].
+pub(super) fn law_error(model: &HostModel, material: &Material) -> Result<LawError> {
+    let samples = &material.samples;
+    let predicted = predict(model, samples)?.total();
+    let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+    let left: Vec<f64> = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
+    let velocity = samples.velocity.as_deref().unwrap_or_default();
+    let of_velocity = model.inputs.iter().find(|input| input.quantity == Quantity::Velocity);
+    let top = of_velocity.map_or(top_speed(velocity), |input| f64::from(input.low.abs().max(input.high.abs())));
+    let over = |is_slow: bool| {
+        let counts =
+            |position: &usize| (velocity[material.rows[*position]].abs() <= f64::from(SLOW_SHARE) * top) == is_slow;
+        let positions: Vec<usize> = (0..material.rows.len()).filter(counts).collect();
+        let pick = |values: &[f64]| -> Vec<f64> {
+            positions.iter().map(|&position| values[material.rows[position]]).collect()
+        };
+        let labels: Vec<usize> = positions.iter().map(|&position| material.labels[position]).collect();
+        error_over(&pick(&left), &pick(velocity), samples.acceleration.as_deref().map(pick).as_deref(), &labels, top)
+            as f32
+    };
+    Ok(LawError { slow: over(true), sliding: over(false) })
+}
+
+/// Root mean square of the error in a residual; velocity, acceleration and block of each row, top speed.
+fn error_over(left: &[f64], velocity: &[f64], acceleration: Option<&[f64]>, labels: &[usize], top: f64) -> f64 {
+    if left.is_empty() {
+        return 0.0;
+    }
+    let hats = |counts: &dyn Fn(usize) -> bool| {
+        let mut columns = vec![Vec::with_capacity(left.len()); KNOTS];
+        for (row, velocity) in velocity.iter().enumerate() {
+            let sign = if counts(row) { velocity.signum() } else { 0.0 };
+            let hats = speed_hats(velocity.abs() / top.max(f64::MIN_POSITIVE), KNOTS);
+            columns.iter_mut().zip(hats).for_each(|(column, hat)| column.push(sign * hat));
+        }
+        columns
+    };
+    let curve = hats(&|_| true);
+    let columns = match acceleration {
+        Some(acceleration) => {
+            let speeds_up = |row: usize| acceleration[row] * velocity[row] > 0.0;
+            [hats(&speeds_up), hats(&|row| !speeds_up(row))].concat()
+        }
+        None => curve.clone(),
+    };
+    let blocks = runs_of(labels);
+    let energy = held_out_energy(&columns, left, &blocks) + curve_variance(&curve, left, &blocks);
+    (energy / left.len() as f64).sqrt()
+}
+
+/// Runs of positions with one label.
+fn runs_of(labels: &[usize]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for run in labels.chunk_by(|a, b| a == b) {
+        let begin = runs.last().map_or(0, |last| last.end);
+        runs.push(begin..begin + run.len());
+    }
+    runs
+}
+
+/// Energy that columns, fitted to the blocks of the other folds, explain of a target in each fold; at least 0.
+fn held_out_energy(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> f64 {
+    let fold = |fold: usize| {
+        let runs: Vec<Range<usize>> = blocks.iter().skip(fold).step_by(FOLDS).cloned().collect();
+        let moment = DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, &runs)));
+        (gram(columns, &runs), moment, rows_in(&runs))
+    };
+    let folds: Vec<(DMatrix<f64>, DVector<f64>, usize)> = (0..FOLDS).map(fold).filter(|(.., rows)| *rows > 0).collect();
+    let width = columns.len();
+    let mut explained = 0.0;
+    for (index, (gram, moment, _)) in folds.iter().enumerate() {
+        let mut normal = DMatrix::identity(width, width) * ROWS_WITHOUT_ERROR;
+        let mut right = DVector::zeros(width);
+        for (_, (gram, moment, _)) in folds.iter().enumerate().filter(|(other, _)| *other != index) {
+            normal += gram;
+            right += moment;
+        }
+        let Some(coefficients) = solve_symmetric(&normal, &right) else { continue };
+        explained += 2.0 * coefficients.dot(moment) - (gram * &coefficients).dot(&coefficients);
+    }
+    explained.max(0.0)
+}
+
+/// Energy that noise alone gives a curve which is fitted to a target: the trace of its covariance, noise correlated within blocks.
+fn curve_variance(curve: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> f64 {
+    let all = 0..target.len();
+    (least_squares(curve, target, blocks).covariance * gram(curve, std::slice::from_ref(&all))).trace().max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::random::normal;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    /// Columns, blocks and noise of so many rows.
+    fn swinging(rows: usize) -> (Vec<Vec<f64>>, Vec<Range<usize>>, Vec<f64>) {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let velocity: Vec<f64> = (0..rows).map(|i| (0.013 * i as f64).sin()).collect();
+        let column =
+            |j: usize| velocity.iter().map(|v| v.signum() * speed_hats(v.abs(), KNOTS).nth(j).unwrap()).collect();
+        let blocks = (0..rows / 100).map(|block| 100 * block..100 * block + 100).collect();
+        ((0..KNOTS).map(column).collect(), blocks, (0..rows).map(|_| normal(&mut random)).collect())
+    }
+
+    #[test]
+    fn noise_alone_is_hardly_an_error_and_the_less_so_the_longer() {
+        let share = |rows: usize| {
+            let (columns, blocks, noise) = swinging(rows);
+            let of_noise = dot(&noise, &noise, &blocks);
+            [held_out_energy(&columns, &noise, &blocks), curve_variance(&columns, &noise, &blocks)]
+                .map(|e| e / of_noise)
+        };
+        let [short, long] = [2000, 20_000].map(share);
+        assert!(short[0] < 0.005 && long[0] < 0.001, "{short:?} {long:?}");
+        // The expectation is one row for each coefficient.
+        assert!((short[1] * 2000.0 / KNOTS as f64 - 1.0).abs() < 0.5 && long[1] < 0.2 * short[1], "{short:?} {long:?}");
+    }
+
+    #[test]
+    fn an_error_below_the_noise_comes_out() {
+        let (columns, blocks, noise) = swinging(20_000);
+        let wrong: Vec<f64> = columns[0].iter().chain(&columns[1]).map(|hat| 0.8 * hat).take(20_000).collect();
+        let target: Vec<f64> = noise.iter().zip(&wrong).map(|(noise, wrong)| noise + wrong).collect();
+        let found = held_out_energy(&columns, &target, &blocks) / dot(&wrong, &wrong, &blocks);
+        assert!((0.7..1.1).contains(&found), "{found}");
+    }
+}
