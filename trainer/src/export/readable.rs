@@ -25,6 +25,7 @@ pub fn readable(bytes: &[u8], image: &Image<CELLS>) -> String {
         "trainer_version": provenance.trainer_version.as_str(),
         "recordings_hash": format!("{:016x}", provenance.recordings_hash),
         "seed": provenance.seed,
+        "law_error": { "slow": f64::from(provenance.law_error.slow), "sliding": f64::from(provenance.law_error.sliding) },
         "bytes": bytes.len(),
         "crc32": image_crc32(bytes).unwrap_or(0),
         "inputs": inputs,

@@ -2,6 +2,8 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 mod curvature_prior;
+#[cfg(test)]
+mod relaxation_tests;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
