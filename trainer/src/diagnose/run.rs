@@ -152,18 +152,17 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
     polish(workbench, &mut accepted, &noise);
     // In this order: what is set aside later is weighed beside what stays.
-    let discarded = Discarded {
+    let mut discarded = Discarded {
         withdrawn: withdraw_unproven(workbench, &settings, &mut accepted),
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
     };
-    if !discarded.is_empty() {
-        polish(workbench, &mut accepted, &noise);
-    }
-    let mut discarded = discarded;
     if comparison.reference.as_ref().is_some_and(|reference| reference.is_fitted) {
         discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
+    }
+    if !discarded.is_empty() {
+        polish(workbench, &mut accepted, &noise);
     }
     let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
     let proof = prove(workbench, &baseline, &improved);

@@ -4,8 +4,8 @@ use super::data::gather::Material;
 use super::model::HostModel;
 use super::predict::predict;
 use crate::error::Result;
-use crate::numerics::hat_functions::speed_hats;
-use crate::numerics::least_squares::{dot, gram, rows_in, solve_symmetric};
+use crate::numerics::hat_functions::law_error_hats;
+use crate::numerics::least_squares::{dot, gram, solve_symmetric};
 use crate::numerics::regression::least_squares;
 use crate::samples::top_speed;
 use frikan_shared::model::{LawError, SLOW_SHARE};
@@ -13,8 +13,6 @@ use frikan_shared::units::Quantity;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Hats over speed by which the error is described: the finest curve that a diagnosis learns of a simulation has twice as many.
-const KNOTS: usize = 17;
 /// Groups of blocks that are held out in turn: tenfold cross-validation (Stone 1974; Kohavi 1995 for the ten).
 const FOLDS: usize = 10;
 /// Rows without an error that each hat is given, so that one which few rows fall under says nothing.
@@ -52,27 +50,14 @@ fn error_over(left: &[f64], velocity: &[f64], acceleration: Option<&[f64]>, labe
     if left.is_empty() {
         return 0.0;
     }
-    let hats = |counts: &dyn Fn(usize) -> bool| {
-        let mut columns = vec![Vec::with_capacity(left.len()); KNOTS];
-        for (row, velocity) in velocity.iter().enumerate() {
-            let sign = if counts(row) { velocity.signum() } else { 0.0 };
-            let hats = speed_hats(velocity.abs() / top.max(f64::MIN_POSITIVE), KNOTS);
-            columns.iter_mut().zip(hats).for_each(|(column, hat)| column.push(sign * hat));
-        }
+    let hats = |acceleration: Option<&[f64]>| {
+        let mut columns = law_error_hats(velocity, acceleration, top);
         // A hat that no row falls under has no coefficient.
         columns.retain(|column| column.iter().any(|hat| *hat != 0.0));
         columns
     };
-    let curve = hats(&|_| true);
-    let columns = match acceleration {
-        Some(acceleration) => {
-            let speeds_up = |row: usize| acceleration[row] * velocity[row] > 0.0;
-            [hats(&speeds_up), hats(&|row| !speeds_up(row))].concat()
-        }
-        None => curve.clone(),
-    };
     let blocks = runs_of(labels);
-    let energy = held_out_energy(&columns, left, &blocks) + curve_variance(&curve, left, &blocks);
+    let energy = held_out_energy(&hats(acceleration), left, &blocks) + curve_variance(&hats(None), left, &blocks);
     (energy / left.len() as f64).sqrt()
 }
 
@@ -88,18 +73,18 @@ fn runs_of(labels: &[usize]) -> Vec<Range<usize>> {
 
 /// Energy that columns, fitted to the blocks of the other folds, explain of a target in each fold; at least 0.
 fn held_out_energy(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> f64 {
-    let fold = |fold: usize| {
-        let runs: Vec<Range<usize>> = blocks.iter().skip(fold).step_by(FOLDS).cloned().collect();
+    let fold = |fold: usize| blocks.iter().skip(fold).step_by(FOLDS).cloned().collect::<Vec<_>>();
+    let sums = |runs: Vec<Range<usize>>| {
         let moment = DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, &runs)));
-        (gram(columns, &runs), moment, rows_in(&runs))
+        (gram(columns, &runs), moment)
     };
-    let folds: Vec<(DMatrix<f64>, DVector<f64>, usize)> = (0..FOLDS).map(fold).filter(|(.., rows)| *rows > 0).collect();
+    let folds: Vec<_> = (0..FOLDS.min(blocks.len())).map(fold).map(sums).collect();
     let width = columns.len();
     let mut explained = 0.0;
-    for (index, (gram, moment, _)) in folds.iter().enumerate() {
+    for (index, (gram, moment)) in folds.iter().enumerate() {
         let mut normal = DMatrix::identity(width, width) * ROWS_WITHOUT_ERROR;
         let mut right = DVector::zeros(width);
-        for (_, (gram, moment, _)) in folds.iter().enumerate().filter(|(other, _)| *other != index) {
+        for (_, (gram, moment)) in folds.iter().enumerate().filter(|(other, _)| *other != index) {
             normal += gram;
             right += moment;
         }
@@ -126,10 +111,8 @@ mod tests {
     fn swinging(rows: usize) -> (Vec<Vec<f64>>, Vec<Range<usize>>, Vec<f64>) {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let velocity: Vec<f64> = (0..rows).map(|i| (0.013 * i as f64).sin()).collect();
-        let column =
-            |j: usize| velocity.iter().map(|v| v.signum() * speed_hats(v.abs(), KNOTS).nth(j).unwrap()).collect();
         let blocks = (0..rows / 100).map(|block| 100 * block..100 * block + 100).collect();
-        ((0..KNOTS).map(column).collect(), blocks, (0..rows).map(|_| normal(&mut random)).collect())
+        (law_error_hats(&velocity, None, 1.0), blocks, (0..rows).map(|_| normal(&mut random)).collect())
     }
 
     #[test]
@@ -142,8 +125,8 @@ mod tests {
         };
         let [short, long] = [2000, 20_000].map(share);
         assert!(short[0] < 0.005 && long[0] < 0.001, "{short:?} {long:?}");
-        // The expectation is one row for each coefficient.
-        assert!((short[1] * 2000.0 / KNOTS as f64 - 1.0).abs() < 0.5 && long[1] < 0.2 * short[1], "{short:?} {long:?}");
+        // The expectation is one row for each of the seventeen coefficients.
+        assert!((short[1] * 2000.0 / 17.0 - 1.0).abs() < 0.5 && long[1] < 0.2 * short[1], "{short:?} {long:?}");
     }
 
     #[test]

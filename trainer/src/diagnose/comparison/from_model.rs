@@ -3,7 +3,7 @@
 use crate::diagnose::comparison::columns::{BaseKind, friction_basis};
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::error::{Error, Result, codes};
-use crate::numerics::hat_functions::speed_hats;
+use crate::numerics::hat_functions::law_error_hats;
 use crate::numerics::least_squares::{dot, project_out};
 use crate::physics::JointState;
 use crate::samples::blocks::rests;
@@ -103,9 +103,6 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
     friction
 }
 
-/// Hats over speed by which the error of a law is described.
-const ERROR_KNOTS: usize = 17;
-
 /// Torque of each direction in which the law is not sure of itself, at one standard deviation: a hat over speed, of its own where the
 /// joint speeds up and where it slows down. None where the image does not say how wrong its law is.
 pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, state: &JointState) -> Vec<Vec<f64>> {
@@ -114,13 +111,13 @@ pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, st
     }
     let of_velocity = model.inputs.iter().find(|input| input.quantity == Quantity::Velocity);
     let top = of_velocity.map_or(state.top_speed(), |input| f64::from(input.low.abs().max(input.high.abs())));
-    let mut directions = vec![vec![0.0; state.len()]; 2 * ERROR_KNOTS];
-    for i in 0..state.len() {
-        let share = state.velocity[i].abs() / top.max(f64::MIN_POSITIVE);
-        let deviation = f64::from(if share <= f64::from(SLOW_SHARE) { error.slow } else { error.sliding });
-        let speeds_up = state.acceleration[i] * state.velocity[i] > 0.0;
-        let own = directions.iter_mut().skip(if speeds_up { 0 } else { ERROR_KNOTS });
-        own.zip(speed_hats(share, ERROR_KNOTS)).for_each(|(column, hat)| column[i] = deviation * hat * state.sign[i]);
+    let mut directions = law_error_hats(&state.velocity, Some(&state.acceleration), top);
+    let deviation = state.map(|i| {
+        let is_slow = state.velocity[i].abs() <= f64::from(SLOW_SHARE) * top;
+        f64::from(if is_slow { error.slow } else { error.sliding })
+    });
+    for direction in &mut directions {
+        direction.iter_mut().zip(&deviation).for_each(|(hat, deviation)| *hat *= deviation);
     }
     directions
 }
