@@ -41,7 +41,7 @@ pub(crate) fn finding(
     let nearest = nearest(workbench, &fitted, all, index);
     Finding {
         effect,
-        probability: probability(found),
+        probability: probability(found, index == 0),
         alternatives: alternatives(found),
         action: effect.action(),
         equation,
