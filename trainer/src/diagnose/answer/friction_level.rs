@@ -89,14 +89,22 @@ struct Change {
 }
 
 impl Change {
-    /// From what a refit with the level as given leaves on the open rows. `None` where the rows do not tell the two apart.
+    /// From what a refit with the level as given leaves on the open rows where the joint slides. `None` where these do not tell the two
+    /// apart.
     fn of(workbench: &Workbench, given: &Refit) -> Option<Self> {
         let prepared = workbench.prepared;
         let columns = prepared.filtered_all(&[prepared.state.sign.clone(), prepared.state.velocity.clone()]);
-        let left = rest(workbench, given);
-        let coefficients = least_squares(&columns, &left, &prepared.open_runs())?;
-        let left = residual(&columns, &left, &coefficients);
-        let scatter = covariance::of_blocks(&columns, &left, &prepared.open_blocks())?;
+        let sliding = SLIDING_SPEED_SHARE * prepared.state.top_speed();
+        let slides: Vec<bool> = prepared.rows.iter().map(|&i| prepared.state.velocity[i].abs() >= sliding).collect();
+        // What is wrong near rest is a matter of the curve and not of its level.
+        let where_it_slides = |column: &Vec<f64>| -> Vec<f64> {
+            column.iter().zip(&slides).map(|(value, slides)| if *slides { *value } else { 0.0 }).collect()
+        };
+        let seen: Vec<Vec<f64>> = columns.iter().map(where_it_slides).collect();
+        let left = where_it_slides(&rest(workbench, given));
+        let coefficients = least_squares(&seen, &left, &prepared.open_runs())?;
+        let left = residual(&seen, &left, &coefficients);
+        let scatter = covariance::of_blocks(&seen, &left, &prepared.open_blocks())?;
         let deviation = (0..columns.len()).map(|i| scatter[(i, i)].max(0.0).sqrt()).collect();
         Some(Self { torque: weighted(&columns, &coefficients), coefficients, deviation })
     }
