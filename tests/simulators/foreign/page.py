@@ -18,7 +18,7 @@ def share(hits, of):
         return "-"
     z, p = 1.96, hits / of
     middle, half = (p + z * z / (2 * of)) / (1 + z * z / of), z * math.sqrt(p * (1 - p) / of + z * z / (4 * of * of)) / (1 + z * z / of)
-    return f"{hits}/{of} = {100 * p:.1f} % ({100 * (middle - half):.1f}-{100 * (middle + half):.1f})"
+    return f"{hits}/{of} = {100 * p:.1f} % ({100 * max(middle - half, 0.0):.1f}-{100 * (middle + half):.1f})"
 
 
 def count(results, key):
