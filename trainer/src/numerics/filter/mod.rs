@@ -2,7 +2,7 @@
 //!
 //! There are two, because `fit` and `diagnose` ask for different things. A [`gaussian`] has the velocity and the acceleration as
 //! convolutions with its own derivatives and no side lobes: a stick-slip edge does not ring through the learned curve. Its
-//! transition is slow. A [`windowed_sinc`] keeps the shape of what is below the cut-off, so that an effect of known frequency
+//! transition is slow. A `windowed_sinc` keeps the shape of what is below the cut-off, so that an effect of known frequency
 //! (gear teeth, an impact, a delay) keeps its amplitude and the noise above it is gone.
 
 pub mod gaussian;
