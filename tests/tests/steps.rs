@@ -20,6 +20,18 @@ fn every_law_and_every_effect_agree_to_the_bit() {
     }
 }
 
+/// A drive that starts with limits that are refused puts out no position.
+#[test]
+fn a_sequence_may_begin_anywhere() {
+    const SEGMENT: usize = 250;
+    for (name, model) in with_every_effect() {
+        for calls in sequence(&model, 40 * SEGMENT).chunks(SEGMENT) {
+            let comparison = compare(&model, calls);
+            assert!(comparison.identical(), "{name}: {comparison:?}");
+        }
+    }
+}
+
 /// A place for each kind of effect; a kind that is new has none, and this does not compile.
 fn kind(effect: &Effect) -> usize {
     match effect {

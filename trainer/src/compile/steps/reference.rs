@@ -23,6 +23,8 @@ pub struct Reference<'a, const CELLS: usize, E> {
     position: Option<f32>,
     /// The limits in force: gain, torque, slew.
     limits: [f32; 3],
+    /// Largest position that is put out: none before limits are in force.
+    position_limit: f32,
     /// What was put out last.
     torque: f32,
 }
@@ -31,7 +33,8 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
     /// A compensator at its start.
     #[must_use]
     pub fn new(model: &'a Model<CELLS>, effect: E) -> Self {
-        Self { model, effect, memories: vec![None; model.effects.len()], position: None, limits: [0.0; 3], torque: 0.0 }
+        let memories = vec![None; model.effects.len()];
+        Self { model, effect, memories, position: None, limits: [0.0; 3], position_limit: 0.0, torque: 0.0 }
     }
 
     /// The answer to a call.
@@ -48,6 +51,7 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
         let [gain, torque, slew] = call.limits;
         if call.limits.iter().all(|limit| *limit >= 0.0 && limit.is_finite()) && slew > 0.0 {
             self.limits = [gain, torque, slew].map(f32::abs);
+            self.position_limit = POSITION_LIMIT;
         }
         let [gain, most, slew] = self.limits;
         let channels = channels(self.model, &call.measurement);
@@ -62,7 +66,7 @@ impl<'a, const CELLS: usize, E: Fn(&Effect, &mut Memory, &Seen<'_>) -> Added> Re
         let wanted = (gain * friction.torque).clamp(-most, most);
         let change = wanted - self.torque;
         self.torque = wanted - (change - change.clamp(-reach, reach));
-        Answer::new(self.torque, friction.position.clamp(-POSITION_LIMIT, POSITION_LIMIT), true)
+        Answer::new(self.torque, friction.position.clamp(-self.position_limit, self.position_limit), true)
     }
 
     /// Law and effects of one sample.
