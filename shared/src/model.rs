@@ -9,7 +9,7 @@ use crate::integer_table::IntegerTable;
 use crate::network::Network;
 use crate::pool::Pool;
 use crate::table::{Geometric, Table, Uniform};
-use crate::units::Unit;
+use crate::units::{Quantity, Unit};
 
 /// Longest joint name, in bytes.
 pub const JOINT_NAME_BYTES: usize = 32;
@@ -88,14 +88,14 @@ pub struct Provenance {
 /// finite and at least 0; 0 where it was not determined.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct LawError {
-    /// Up to [`SLOW_SHARE`] of the largest velocity of the model's range.
+    /// Up to [`SLOW_SHARE`] of [`Model::top_speed`].
     pub slow: f32,
     /// Above it.
     pub sliding: f32,
 }
 
-/// Share of the largest velocity of a model's range up to which friction may be that of break-away.
-pub const SLOW_SHARE: f32 = 0.1;
+/// Share of the top speed up to which friction may be that of break-away.
+pub const SLOW_SHARE: f64 = 0.1;
 
 /// A friction model with room for `CELLS` cells.
 ///
@@ -118,4 +118,13 @@ pub struct Model<const CELLS: usize> {
     pub rigid_body: RigidBody,
     /// Correction terms, added in their order.
     pub effects: heapless::Vec<Effect, MAX_EFFECTS>,
+}
+
+impl<const CELLS: usize> Model<CELLS> {
+    /// Largest speed within the range of the velocity, in its unit; `None` where the model does not read it.
+    #[must_use]
+    pub fn top_speed(&self) -> Option<f32> {
+        let velocity = self.inputs.iter().find(|input| input.quantity == Quantity::Velocity)?;
+        Some(velocity.low.abs().max(velocity.high.abs()))
+    }
 }

@@ -50,10 +50,10 @@ fn encoded<const CELLS: usize>(image: &Image<CELLS>) -> Vec<u8> {
     encode(image, &mut buffer).unwrap().to_vec()
 }
 
-/// The bytes of a model that validation would refuse, with a right checksum.
-fn forged(model: &Pool) -> Vec<u8> {
+/// The bytes of a model or provenance that decoding would refuse, with a right checksum.
+fn forged(model: &Pool, provenance: &Provenance) -> Vec<u8> {
     let mut payload = [0; 8192];
-    let provenance = postcard::to_slice(&Provenance::default(), &mut payload).unwrap().to_vec();
+    let provenance = postcard::to_slice(provenance, &mut payload).unwrap().to_vec();
     let mut bytes = Vec::new();
     let model_bytes = postcard::to_slice(model, &mut payload).unwrap();
     bytes.extend(MAGIC);
@@ -65,6 +65,17 @@ fn forged(model: &Pool) -> Vec<u8> {
     bytes.extend(provenance);
     bytes.extend(&*model_bytes);
     bytes
+}
+
+#[test]
+fn an_error_of_the_law_that_is_none_is_refused() {
+    let model = table_image(Symmetry::Odd).model;
+    for bad in [f32::NAN, f32::INFINITY, -0.5] {
+        for law_error in [LawError { slow: bad, sliding: 0.0 }, LawError { slow: 0.0, sliding: bad }] {
+            let provenance = Provenance { law_error, ..Provenance::default() };
+            assert_eq!(decode::<64>(&forged(&model, &provenance)).unwrap_err(), ImageError::Malformed, "{law_error:?}");
+        }
+    }
 }
 
 #[test]
@@ -125,11 +136,11 @@ fn every_failure_has_its_error() {
 #[test]
 fn models_that_cannot_be_evaluated_are_refused() {
     let good = table_image(Symmetry::Odd).model;
-    assert!(decode::<64>(&forged(&good)).is_ok());
+    assert!(decode::<64>(&forged(&good, &Provenance::default())).is_ok());
     let refused = |change: &dyn Fn(&mut Pool), fault: InvalidModel| {
         let mut model = good.clone();
         change(&mut model);
-        assert_eq!(decode::<64>(&forged(&model)).unwrap_err(), ImageError::InvalidModel(fault));
+        assert_eq!(decode::<64>(&forged(&model, &Provenance::default())).unwrap_err(), ImageError::InvalidModel(fault));
     };
     refused(&|model| model.inputs.clear(), InvalidModel::NoInput);
     refused(&|model| model.inputs[0].low = 3.0, InvalidModel::InputRange);

@@ -247,10 +247,10 @@ fn improved_image(
     comparison: &Comparison,
     compared: &Compared,
 ) -> Result<Written> {
-    let origin = match compared {
-        Compared::Itself(body) => Origin::Recording(**body),
-        Compared::Simulation(law) => Origin::Simulation(law),
-        Compared::Model(image) => Origin::Model(&image.model),
+    let (origin, law_error) = match compared {
+        Compared::Itself(body) => (Origin::Recording(**body), LawError::default()),
+        Compared::Simulation(law) => (Origin::Simulation(law), LawError::default()),
+        Compared::Model(image) => (Origin::Model(&image.model), image.provenance.law_error),
     };
     let unit = match units(&recordings[0]).actuator {
         "N" => Unit::Newton,
@@ -260,10 +260,6 @@ fn improved_image(
     let improved = improve(diagnosis, comparison, origin, unit, arguments.target.unwrap_or_default())
         .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
     let name = joint.name.as_deref().unwrap_or_default();
-    let law_error = match compared {
-        Compared::Model(image) => image.provenance.law_error,
-        Compared::Itself(_) | Compared::Simulation(_) => LawError::default(),
-    };
     let provenance = fit::model::provenance(name, recordings, arguments.seed, law_error);
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.

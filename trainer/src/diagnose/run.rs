@@ -153,12 +153,12 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     polish(workbench, &mut accepted, &noise);
     // In this order: what is set aside later is weighed beside what stays.
     let mut discarded = Discarded {
-        withdrawn: withdraw_unproven(workbench, &settings, &mut accepted),
+        withdrawn: withdraw_unproven(workbench, &settings, &baseline, &mut accepted),
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
     };
-    if comparison.reference.as_ref().is_some_and(|reference| reference.is_fitted) {
+    if comparison.is_with_fitted_model() {
         discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
     }
     if !discarded.is_empty() {

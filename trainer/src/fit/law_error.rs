@@ -5,11 +5,10 @@ use super::model::HostModel;
 use super::predict::predict;
 use crate::error::Result;
 use crate::numerics::hat_functions::law_error_hats;
-use crate::numerics::least_squares::{dot, gram, solve_symmetric};
+use crate::numerics::least_squares::{gram, moments, solve_symmetric};
 use crate::numerics::regression::least_squares;
 use crate::samples::top_speed;
 use frikan_shared::model::{LawError, SLOW_SHARE};
-use frikan_shared::units::Quantity;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -29,11 +28,9 @@ pub(super) fn law_error(model: &HostModel, material: &Material) -> Result<LawErr
     let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
     let left: Vec<f64> = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
     let velocity = samples.velocity.as_deref().unwrap_or_default();
-    let of_velocity = model.inputs.iter().find(|input| input.quantity == Quantity::Velocity);
-    let top = of_velocity.map_or(top_speed(velocity), |input| f64::from(input.low.abs().max(input.high.abs())));
+    let top = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
     let over = |is_slow: bool| {
-        let counts =
-            |position: &usize| (velocity[material.rows[*position]].abs() <= f64::from(SLOW_SHARE) * top) == is_slow;
+        let counts = |position: &usize| (velocity[material.rows[*position]].abs() <= SLOW_SHARE * top) == is_slow;
         let positions: Vec<usize> = (0..material.rows.len()).filter(counts).collect();
         let pick = |values: &[f64]| -> Vec<f64> {
             positions.iter().map(|&position| values[material.rows[position]]).collect()
@@ -50,12 +47,7 @@ fn error_over(left: &[f64], velocity: &[f64], acceleration: Option<&[f64]>, labe
     if left.is_empty() {
         return 0.0;
     }
-    let hats = |acceleration: Option<&[f64]>| {
-        let mut columns = law_error_hats(velocity, acceleration, top);
-        // A hat that no row falls under has no coefficient.
-        columns.retain(|column| column.iter().any(|hat| *hat != 0.0));
-        columns
-    };
+    let hats = |acceleration: Option<&[f64]>| law_error_hats(velocity, acceleration, top);
     let blocks = runs_of(labels);
     let energy = held_out_energy(&hats(acceleration), left, &blocks) + curve_variance(&hats(None), left, &blocks);
     (energy / left.len() as f64).sqrt()
@@ -74,10 +66,7 @@ fn runs_of(labels: &[usize]) -> Vec<Range<usize>> {
 /// Energy that columns, fitted to the blocks of the other folds, explain of a target in each fold; at least 0.
 fn held_out_energy(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> f64 {
     let fold = |fold: usize| blocks.iter().skip(fold).step_by(FOLDS).cloned().collect::<Vec<_>>();
-    let sums = |runs: Vec<Range<usize>>| {
-        let moment = DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, &runs)));
-        (gram(columns, &runs), moment)
-    };
+    let sums = |runs: Vec<Range<usize>>| (gram(columns, &runs), moments(columns, target, &runs));
     let folds: Vec<_> = (0..FOLDS.min(blocks.len())).map(fold).map(sums).collect();
     let width = columns.len();
     let mut explained = 0.0;
@@ -103,6 +92,7 @@ fn curve_variance(curve: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::least_squares::dot;
     use crate::numerics::random::normal;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;

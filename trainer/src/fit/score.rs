@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::Recording;
 use crate::samples::{Samples, top_speed};
+use frikan_shared::model::SLOW_SHARE;
 
 /// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
 const COMPARISON_RATE_HZ: f64 = 100.0;
@@ -15,8 +16,6 @@ const COMPARISON_SIGMA_S: f64 = 0.2415 / (0.5 * COMPARISON_RATE_HZ);
 
 /// Below this share of the top speed a row is at rest: friction is any value within break-away there.
 const REST_SHARE: f64 = 0.01;
-/// Up to this share of the top speed friction may be that of break-away.
-const SLOW_SHARE: f64 = 0.1;
 
 /// What a model makes of a recording, and how well it agrees.
 ///

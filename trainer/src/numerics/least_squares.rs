@@ -37,6 +37,11 @@ pub(crate) fn gram(columns: &[Vec<f64>], runs: &[Range<usize>]) -> DMatrix<f64> 
     gram
 }
 
+/// Inner products of columns with a target over runs: the right side of the normal equations.
+pub(crate) fn moments(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> DVector<f64> {
+    DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, runs)))
+}
+
 /// A symmetric positive matrix, factored after scaling.
 pub(crate) struct Factored {
     factor: Cholesky<f64, Dyn>,
@@ -100,8 +105,8 @@ pub(crate) fn invert_symmetric(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 
 /// Coefficients of the least-squares fit of `target` by `columns` over runs; `None` where it is singular.
 pub(crate) fn least_squares(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<Vec<f64>> {
-    let right = DVector::from_iterator(columns.len(), columns.iter().map(|c| dot(c, target, runs)));
-    solve_symmetric(&gram(columns, runs), &right).map(|solution| solution.iter().copied().collect())
+    solve_symmetric(&gram(columns, runs), &moments(columns, target, runs))
+        .map(|solution| solution.iter().copied().collect())
 }
 
 /// What a fit leaves: target less the weighted columns.

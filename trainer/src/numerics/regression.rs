@@ -47,7 +47,9 @@ impl LinearFit {
 #[must_use]
 pub fn least_squares(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> LinearFit {
     let width = columns.len();
-    let scales: Vec<f64> = columns.iter().map(|column| norm(column).max(f64::MIN_POSITIVE)).collect();
+    // A column of zeros has no direction: its coefficient and its covariances are 0.
+    let scales: Vec<f64> =
+        columns.iter().map(|column| Some(norm(column)).filter(|n| *n > 0.0).unwrap_or(1.0)).collect();
     let gram = DMatrix::from_fn(width, width, |i, j| dot(&columns[i], &columns[j]) / (scales[i] * scales[j]));
     let moment = DVector::from_fn(width, |i, _| dot(&columns[i], target) / scales[i]);
     let (inverse, rank_deficiency) = pseudo_inverse(gram);
@@ -104,6 +106,17 @@ mod tests {
         assert!((fit.coefficients[0] / 2e-6 - 1.0).abs() < 1e-9 && (fit.coefficients[1] / -3e6 - 1.0).abs() < 1e-9);
         assert_eq!(fit.rank_deficiency, 0);
         assert!(fit.rmse < 1e-9);
+    }
+
+    #[test]
+    fn a_column_of_zeros_changes_nothing() {
+        let a: Vec<f64> = (0..50).map(|i| (f64::from(i) * 0.3).sin()).collect();
+        let target: Vec<f64> = a.iter().enumerate().map(|(i, x)| 4.0 * x + (i as f64).cos()).collect();
+        let fit = least_squares(&[vec![0.0; 50], a.clone()], &target, &[0..25, 25..50]);
+        let alone = least_squares(&[a], &target, &[0..25, 25..50]);
+        assert_eq!((fit.coefficients[0], fit.standard_error(0), fit.rank_deficiency), (0.0, 0.0, 1));
+        assert!((fit.coefficients[1] / alone.coefficients[0] - 1.0).abs() < 1e-12);
+        assert!((fit.standard_error(1) / alone.standard_error(0) - 1.0).abs() < 1e-12);
     }
 
     #[test]

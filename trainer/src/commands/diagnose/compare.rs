@@ -61,9 +61,8 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
 
 /// A model at the states of a recording, with the error that its law has by the image.
 fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> Result<Reference> {
-    let mut reference = from_model::at(&image.model, state, given)?;
-    reference.uncertainty = from_model::uncertainty(&image.model, image.provenance.law_error, state);
-    Ok(reference)
+    let uncertainty = from_model::uncertainty(&image.model, image.provenance.law_error, state);
+    Ok(Reference { uncertainty, ..from_model::at(&image.model, state, given)? })
 }
 
 /// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.

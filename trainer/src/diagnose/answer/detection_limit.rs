@@ -25,7 +25,7 @@ pub(crate) fn detection_limits(workbench: &Workbench, table: &[Scored], refit: &
             let first = columns.first()?;
             // The statistic of the column itself as target: its non-centrality per squared amplitude.
             let white = workbench.whitened(&columns[..1], &refit.noise);
-            let visible = uncertainty.trust(&white[0]) * bench.visible_energy(&white[0])?;
+            let visible = uncertainty.trust(&white, &[1.0]) * bench.visible_energy(&white[0])?;
             let amplitude = (NONCENTRALITY_AT_90_PERCENT_POWER / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
             Some(DetectionLimit { effect, torque_rms: (amplitude * rms).max(least) })

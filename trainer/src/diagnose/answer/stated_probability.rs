@@ -49,12 +49,8 @@ const SELDOM_CONFIRMED: f64 = 0.5;
 
 /// Probability that the named effect is the true one, by its margin and its rivals; `is_first` where it was found before all others.
 pub(crate) fn probability(found: &Accepted, is_first: bool) -> f64 {
-    let most = match found.effect() {
-        EffectId::TransientEvent | EffectId::Unknown => SELDOM_CONFIRMED,
-        _ if is_first => 1.0,
-        _ => SELDOM_CONFIRMED,
-    };
-    by_rivals(found).min(most)
+    let is_seldom_true = !is_first || matches!(found.effect(), EffectId::TransientEvent | EffectId::Unknown);
+    by_rivals(found).min(if is_seldom_true { SELDOM_CONFIRMED } else { 1.0 })
 }
 
 /// How often a name with this margin and these rivals is right in the suite.

@@ -51,7 +51,7 @@ impl Base {
         let target = prepared.filtered(&prepared.friction_torque);
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, comparison, &raw);
-        if comparison.reference.as_ref().is_some_and(|reference| reference.is_fitted) {
+        if comparison.is_with_fitted_model() {
             // A fitted law is a function of the velocity alone, whatever solver made the recording that it was fitted to.
             let column =
                 |time| prepared.filtered(&relaxation::column(&prepared.state, prepared.state.sign_velocity, time));

@@ -109,11 +109,10 @@ pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, st
     if error == LawError::default() {
         return Vec::new();
     }
-    let of_velocity = model.inputs.iter().find(|input| input.quantity == Quantity::Velocity);
-    let top = of_velocity.map_or(state.top_speed(), |input| f64::from(input.low.abs().max(input.high.abs())));
+    let top = model.top_speed().map_or_else(|| state.top_speed(), f64::from);
     let mut directions = law_error_hats(&state.velocity, Some(&state.acceleration), top);
     let deviation = state.map(|i| {
-        let is_slow = state.velocity[i].abs() <= f64::from(SLOW_SHARE) * top;
+        let is_slow = state.velocity[i].abs() <= SLOW_SHARE * top;
         f64::from(if is_slow { error.slow } else { error.sliding })
     });
     for direction in &mut directions {

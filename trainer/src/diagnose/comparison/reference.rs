@@ -72,6 +72,11 @@ impl Comparison {
         }
     }
 
+    /// Whether it is with a model that was fitted to another recording.
+    pub(crate) fn is_with_fitted_model(&self) -> bool {
+        self.reference.as_ref().is_some_and(|reference| reference.is_fitted)
+    }
+
     /// States and rows behind the filter that the recording asks for.
     pub fn prepare(&self, lock: Lock) -> Prepared {
         Prepared::new(&self.signals, self.known(), lock)

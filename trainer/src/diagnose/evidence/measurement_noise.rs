@@ -8,12 +8,11 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::{Prepared, identified_inertia};
-use crate::numerics::least_squares::{dot, gram, orthonormal, project_out, solve_symmetric};
+use crate::numerics::least_squares::{gram, moments, orthonormal, project_out, solve_symmetric};
 use crate::numerics::random::{normal, uniform};
 use crate::numerics::statistics::DEVIATION_PER_MEDIAN;
 use crate::numerics::statistics::quantile;
 use crate::physics::JointState;
-use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::ops::Range;
@@ -114,10 +113,7 @@ impl NoiseBeside<'_> {
         let change = |(more, column): (&Vec<f64>, &Vec<f64>)| more.iter().zip(column).map(|(m, c)| m - c).collect();
         let changes: Vec<Vec<f64>> = with_more.iter().zip(&columns).map(change).collect();
         let (columns, changes) = (free(&columns), free(&changes));
-        let along = |columns: &[Vec<f64>], target: &[f64]| {
-            DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target, runs)))
-        };
-        let (asked_for, by_grain) = (along(&columns, &bench.target), along(&changes, left));
+        let (asked_for, by_grain) = (moments(&columns, &bench.target, runs), moments(&changes, left, runs));
         let Some(coefficients) = solve_symmetric(&gram(&columns, runs), &asked_for) else { return 1.0 };
         let share = coefficients.dot(&by_grain) / coefficients.dot(&asked_for).max(f64::MIN_POSITIVE);
         (1.0 - share).clamp(0.0, 1.0).powi(2)

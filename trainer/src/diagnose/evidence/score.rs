@@ -1,7 +1,7 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
 use crate::numerics::least_squares::{
-    Factored, dot, gram, orthonormal, project_out, ridged_gram, rows_in, solve_symmetric, unit_diagonal,
+    Factored, dot, gram, moments, orthonormal, project_out, ridged_gram, rows_in, solve_symmetric, unit_diagonal,
 };
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -65,7 +65,7 @@ impl Bench {
             .iter()
             .map(|runs| BlockSums {
                 base: gram(&base, runs),
-                base_target: DVector::from_iterator(base.len(), base.iter().map(|c| dot(c, &target, runs))),
+                base_target: moments(&base, &target, runs),
                 target: dot(&target, &target, runs),
                 rows: rows_in(runs) as f64,
             })
@@ -186,7 +186,7 @@ impl Bench {
     /// Energy of a whitened column that the base cannot hold: the non-centrality of unit amplitude.
     pub fn visible_energy(&self, column: &[f64]) -> Option<f64> {
         let runs = self.runs();
-        let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, column, &runs)));
+        let right = moments(&self.base, column, &runs);
         let normal = self.sums.iter().fold(DMatrix::zeros(self.base.len(), self.base.len()), |sum, s| sum + &s.base);
         let energy = dot(column, column, &runs) - explained(&normal, &right)?;
         (energy > 0.0).then_some(energy)
@@ -196,8 +196,7 @@ impl Bench {
     pub fn solve(&self, ridge: &[f64]) -> Option<Vec<f64>> {
         let runs = self.runs();
         let normal = ridged_gram(&self.base, ridge, &runs);
-        let right = DVector::from_iterator(self.base.len(), self.base.iter().map(|c| dot(c, &self.target, &runs)));
-        Some(solve_symmetric(&normal, &right)?.iter().copied().collect())
+        Some(solve_symmetric(&normal, &moments(&self.base, &self.target, &runs))?.iter().copied().collect())
     }
 }
 

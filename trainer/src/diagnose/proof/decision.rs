@@ -14,7 +14,7 @@ const LARGEST_LOCKED_WEIGHT: f64 = 0.9;
 
 /// Deviations of the locked rows above which they show an effect by themselves: 5 % of what is not there (one-sided). Of an effect that
 /// they are not expected to show so clearly the open rows have to be as sure as of what no locked rows can confirm.
-pub(crate) const SHOWN_DEVIATIONS: f64 = 1.645;
+pub(super) const SHOWN_DEVIATIONS: f64 = 1.645;
 
 /// Error of the locked rows with a one-off event over that without, above which the event is refused. Chosen by
 /// judgement: they may hold the rest of the event, so that a tenth is no sign against it; larger lets an event distort

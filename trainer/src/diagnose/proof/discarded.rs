@@ -3,7 +3,7 @@
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{SHOWN_DEVIATIONS, is_carried, is_worse_by_an_event};
-use crate::diagnose::proof::locked_rows::{prove, prove_alone, rest};
+use crate::diagnose::proof::locked_rows::{Proof, prove, prove_alone, rest};
 use crate::diagnose::proof::refit::{Refit, refit};
 use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
@@ -74,6 +74,7 @@ pub(crate) fn torque_beside_rigid_body(workbench: &Workbench) -> f64 {
 pub(crate) fn withdraw_unproven(
     workbench: &Workbench,
     settings: &Settings,
+    baseline: &Refit,
     accepted: &mut Vec<Accepted>,
 ) -> Vec<EffectId> {
     let mut withdrawn = Vec::new();
@@ -91,7 +92,10 @@ pub(crate) fn withdraw_unproven(
         let Some((weakest, _)) = unproven.min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         withdrawn.push(accepted.remove(weakest).effect());
     }
-    if !lowers_the_locked_error(workbench, accepted) {
+    // Rows that could not show it do not speak against it.
+    let lowers_the_error =
+        |proof: Proof| proof.expected_deviations < SHOWN_DEVIATIONS || proof.improved_rmse < proof.baseline_rmse;
+    if !proof_of_all(workbench, baseline, accepted).is_none_or(lowers_the_error) {
         withdrawn.extend(take_what_repeats(accepted));
     }
     withdrawn
@@ -104,9 +108,7 @@ pub(crate) fn withdraw_without_shown_gain(
     baseline: &Refit,
     accepted: &mut Vec<Accepted>,
 ) -> Vec<EffectId> {
-    let improved = refit(workbench, accepted);
-    let proof = improved.and_then(|improved| prove(workbench, baseline, &improved));
-    if proof.is_none_or(|proof| proof.shows_gain()) {
+    if proof_of_all(workbench, baseline, accepted).is_none_or(|proof| proof.shows_gain()) {
         return Vec::new();
     }
     take_what_repeats(accepted).collect()
@@ -120,11 +122,9 @@ fn take_what_repeats(accepted: &mut Vec<Accepted>) -> impl Iterator<Item = Effec
     accepted.extract_if(.., move |found| !stays(found)).map(|found| found.effect())
 }
 
-/// Whether the error on the locked rows falls with all that was accepted; true where these rows could not show it.
-fn lowers_the_locked_error(workbench: &Workbench, accepted: &[Accepted]) -> bool {
-    let [baseline, improved] = [&[][..], accepted].map(|effects| refit(workbench, effects));
-    let proof = baseline.zip(improved).and_then(|(baseline, improved)| prove(workbench, &baseline, &improved));
-    proof.is_none_or(|proof| proof.expected_deviations < SHOWN_DEVIATIONS || proof.improved_rmse < proof.baseline_rmse)
+/// The proof of all that was accepted. `None` where nothing is locked.
+fn proof_of_all(workbench: &Workbench, baseline: &Refit, accepted: &[Accepted]) -> Option<Proof> {
+    prove(workbench, baseline, &refit(workbench, accepted)?)
 }
 
 /// What one effect explains beside all the others.

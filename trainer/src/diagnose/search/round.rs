@@ -11,7 +11,7 @@ use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_squar
 use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::setup::Search;
 use crate::diagnose::search::thresholds::Settings;
-use crate::numerics::least_squares::{orthonormal, project_out, weighted};
+use crate::numerics::least_squares::{orthonormal, project_out};
 use crate::physics::{EffectId, Shape};
 use rayon::prelude::*;
 
@@ -155,7 +155,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.workbench.scanned_beyond(index);
                 let trust = |variant: &Variant, evidence: &VariantEvidence| {
-                    self.law_uncertainty.trust(&weighted(&self.white[variant.columns.clone()], &evidence.coefficients))
+                    self.law_uncertainty.trust(&self.white[variant.columns.clone()], &evidence.coefficients)
                 };
                 // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&admissible);
@@ -240,7 +240,7 @@ impl<'s, 'a> Round<'s, 'a> {
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.workbench.grid_size(scored.group);
             let Some(refined) = weigh(&shape) else { return };
-            let trust = self.law_uncertainty.trust(&weighted(&white(&shape), &refined.coefficients));
+            let trust = self.law_uncertainty.trust(&white(&shape), &refined.coefficients);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[Some(refined)], rows, grid) {
                 let score = trust * score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
