@@ -1,4 +1,4 @@
-"""The elbow of joints.py in Drake; see tests/tests/simulators.rs.
+"""The elbow of pairs.py in Drake; see tests/tests/simulators.rs.
 
     drake_pair.py write FOLDER   writes elbow.urdf and elbow.sdf
     drake_pair.py run FOLDER     loads patched.urdf, patched.sdf and friction.py, and prints what Drake has of them, as JSON
@@ -16,7 +16,8 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Adder, Demultiplexer
 
-from joints import ELBOW, STEP, errors, real, reference
+from joints import STEP, errors, real, reference
+from pairs import ELBOW
 
 FRESH_SECONDS = 5
 # Time step of the plant, s: the table of friction is evaluated once a step and steep through zero.

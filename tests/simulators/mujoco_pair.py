@@ -10,7 +10,8 @@ from pathlib import Path
 
 import mujoco
 
-from joints import PAIRS, best, errors, real, simulate, with_attributes, write
+from joints import best, errors, real, simulate, with_attributes, write
+from pairs import PAIRS
 
 SECONDS = 60
 FRESH_SECONDS = 20
