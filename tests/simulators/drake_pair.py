@@ -1,4 +1,4 @@
-"""The elbow of pairs.py in Drake; see tests/tests/simulators.rs.
+"""The elbow of pairs.py in Drake; see tests/tests/simulators.
 
     drake_pair.py write FOLDER   writes elbow.urdf and elbow.sdf
     drake_pair.py run FOLDER     loads patched.urdf, patched.sdf and friction.py, and prints what Drake has of them, as JSON

@@ -1,4 +1,4 @@
-"""An exported co-simulation unit in FMPy; see tests/tests/simulators.rs.
+"""An exported co-simulation unit in FMPy; see tests/tests/simulators.
 
     fmu_unit.py UNIT.fmu INPUTS.csv    validates the unit, steps it through the rows in steps of a millisecond, goes back to a kept state,
                                        compiles its sources as a part of a tool, and prints what came out as JSON

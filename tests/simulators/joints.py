@@ -40,14 +40,15 @@ class Pair:
     noise: float  # of the recorded torque, N m or N
     linear: bool = False
     columns: tuple = ("qpos", "qvel", "torque")
-    # Other joints that move, and the columns of their positions and velocities.
+    # A torque sensor behind the gear, and other joints that move, with the columns that they are recorded in.
+    torque_sensor: bool = False
     others: tuple = ()
-    other_columns: tuple = ()
+    more_columns: tuple = ()
     # What an actuator of the simulator can have of the truth beside, and the attributes of the joint that it replaces.
     actuator: str = ""
     beside_actuator: dict = field(default_factory=dict)
-    # Whether the nearest constant friction is not that of the truth: part of it hangs on what the simulator's friction does not know.
-    averaged: bool = False
+    # Whether friction hangs on the transmitted torque, of which a simulator's friction can have the mean only.
+    of_load: bool = False
 
     @property
     def drives(self):
@@ -71,8 +72,8 @@ def references(pair, seed, t):
 
 
 def simulate(pair, model, seed, seconds, friction=None):
-    """Rows of time, position, velocity and actuator torque under the command of `seed`, one a step of the controller; then position and
-    velocity of the other joints. With a `friction`, that acts in the joint too, and its torque is the last column.
+    """Rows of time, position, velocity, actuator torque, torque transmitted to the link and friction under the command of `seed`, one a
+    step of the controller; then position and velocity of the other joints. A `friction` acts beside that of the model.
     """
     substeps = SUBSTEPS if friction else 1
     model.opt.timestep = STEP / substeps
@@ -84,7 +85,8 @@ def simulate(pair, model, seed, seconds, friction=None):
     commands = references(pair, seed, np.arange(steps) * STEP)
     for place, (position, velocity) in zip(dofs, commands):
         data.qpos[place], data.qvel[place] = position[0], velocity[0]
-    rows = np.empty((steps, 2 + 2 * len(dofs) + bool(friction)))
+    rows = np.empty((steps, 4 + 2 * len(dofs)))
+    transmitted = 0.0
     for step in range(steps):
         state = [(data.qpos[place], data.qvel[place]) for place in dofs]
         for drive, control, (q, v), (position, velocity) in zip(pair.drives, controls, state, commands):
@@ -94,15 +96,14 @@ def simulate(pair, model, seed, seconds, friction=None):
                 data.ctrl[control] = position[step]
         for substep in range(substeps):
             if friction:
-                # What motor and friction leave after the rotor.
-                transmitted = data.qfrc_actuator[dof] + data.qfrc_applied[dof] - armature * data.qacc[dof]
                 data.qfrc_applied[dof] = -friction(data.qpos[dof], data.qvel[dof], transmitted, STEP / substeps)
             mujoco.mj_step(model, data)
+            lost = -(data.qfrc_applied[dof] + data.qfrc_passive[dof] + data.qfrc_constraint[dof])
+            transmitted = data.qfrc_actuator[dof] - lost - armature * data.qacc[dof]
             if substep == 0:
                 own, *others = state
                 torque = data.actuator_force[controls[0]]
-                applied = [-data.qfrc_applied[dof]] if friction else []
-                rows[step] = [step * STEP, *own, torque, *(value for other in others for value in other), *applied]
+                rows[step] = [step * STEP, *own, torque, transmitted, lost, *(value for other in others for value in other)]
     return rows
 
 
@@ -114,13 +115,13 @@ def real(pair, seed, seconds):
 
 def best(pair, seed, seconds):
     """The simulation with all of the truth that the simulator can have on the motion of `seed`."""
-    beside = nearest_friction(real(pair, seed, seconds)) if pair.averaged else pair.beside_actuator
+    beside = nearest_friction(real(pair, seed, seconds)) if pair.of_load else pair.beside_actuator
     return with_attributes(pair, {**pair.truth, **beside}, pair.actuator)
 
 
 def nearest_friction(rows):
     """Coulomb and viscous friction nearest to the real one."""
-    velocity, friction = rows[:, 2], rows[:, -1]
+    velocity, friction = rows[:, 2], rows[:, 5]
     (coulomb, viscous), *_ = np.linalg.lstsq(np.stack((np.sign(velocity), velocity), axis=1), friction)
     return {"frictionloss": float(coulomb), "damping": float(viscous)}
 
@@ -133,16 +134,21 @@ def with_attributes(pair, attributes, actuator=""):
 
 
 def set_attributes(joint, attributes):
-    """Sets attributes of a joint; of those in powers of the velocity the first."""
+    """Sets attributes of a joint; of those in powers of the velocity the first ones."""
     for name, value in attributes.items():
-        setattr(joint, name, value if np.isscalar(getattr(joint, name)) else np.resize([value, 0.0, 0.0], len(getattr(joint, name))))
+        powers = np.size(getattr(joint, name))
+        padded = np.append(value, np.zeros(powers))[:powers]
+        setattr(joint, name, padded if powers > 1 else float(padded[0]))
 
 
 def write(pair, rows, path, noise, seed):
-    """A recording every few steps, its torque with noise."""
-    header = ("time_s",) + pair.columns + pair.other_columns
-    rows = rows[::LOG_EVERY, : len(header)].copy()
-    rows[:, 3] += noise * np.random.default_rng(seed).standard_normal(len(rows))
+    """A recording every few steps, with noise of the torques."""
+    header = ("time_s",) + pair.columns + pair.more_columns
+    torques = [3, 4] if pair.torque_sensor else [3]
+    rows = rows[::LOG_EVERY, [0, 1, 2, *torques, *range(6, rows.shape[1])]]
+    rng = np.random.default_rng(seed)
+    for column in torques:
+        rows[:, column] += noise * rng.standard_normal(len(rows))
     np.savetxt(path, rows, delimiter=",", header=",".join(header), comments="", fmt="%.9g")
 
 

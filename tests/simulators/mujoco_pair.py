@@ -1,20 +1,24 @@
-"""Logs a joint of MuJoCo and its simulation, or simulates a patched model; see tests/tests/simulators.rs.
+"""Logs a joint of MuJoCo and its simulation, or simulates a patched model; see tests/tests/simulators.
 
     mujoco_pair.py log PAIR FOLDER              writes model.xml, joint.toml, real.csv and simulated.csv
     mujoco_pair.py compare PAIR FOLDER MODEL... torque and position errors on a fresh motion, as JSON
 """
 
+import contextlib
 import json
 import sys
 from pathlib import Path
 
 import mujoco
 
+import sysid
 from joints import best, errors, real, simulate, with_attributes, write
 from pairs import PAIRS
 
 SECONDS = 60
 FRESH_SECONDS = 20
+# Of the recorded and the fresh motion.
+SEED, FRESH_SEED = 1, 2
 
 
 def joint_toml(pair):
@@ -30,19 +34,25 @@ def joint_toml(pair):
 def log(pair, folder):
     (folder / "model.xml").write_text(pair.model)
     (folder / "joint.toml").write_text(joint_toml(pair))
-    write(pair, real(pair, 1, SECONDS), folder / "real.csv", pair.noise, 1)
-    simulation = simulate(pair, mujoco.MjModel.from_xml_string(pair.model), 1, SECONDS)
-    write(pair, simulation, folder / "simulated.csv", 0.0, 1)
+    write(pair, real(pair, SEED, SECONDS), folder / "real.csv", pair.noise, SEED)
+    simulation = simulate(pair, mujoco.MjModel.from_xml_string(pair.model), SEED, SECONDS)
+    write(pair, simulation, folder / "simulated.csv", 0.0, SEED)
 
 
-def compare(pair, models):
-    fresh = real(pair, 2, FRESH_SECONDS)
-    references = {"true_attributes": with_attributes(pair, pair.truth), "true_model": best(pair)}
-    result = {name: errors(fresh, simulate(pair, model, 2, FRESH_SECONDS)) for name, model in references.items()}
-    for path in models:
-        model = mujoco.MjModel.from_xml_path(str(path))
-        result[path.name] = errors(fresh, simulate(pair, model, 2, FRESH_SECONDS))
-        result[path.name]["controls"] = int(model.nu)
+def compare(pair, folder, models):
+    fresh = real(pair, FRESH_SEED, FRESH_SECONDS)
+    with contextlib.redirect_stdout(sys.stderr):
+        fitted = sysid.fitted(pair, folder / "real.csv", SEED)
+    compared = {
+        "true_attributes": with_attributes(pair, pair.truth),
+        "true_model": best(pair, SEED, SECONDS),
+        "sysid": with_attributes(pair, fitted),
+        **{model: mujoco.MjModel.from_xml_path(str(folder / model)) for model in models},
+    }
+    result = {name: errors(fresh, simulate(pair, model, FRESH_SEED, FRESH_SECONDS)) for name, model in compared.items()}
+    for name, model in compared.items():
+        result[name]["controls"] = int(model.nu)
+    result["sysid"]["fitted"] = {name: value.tolist() for name, value in fitted.items()}
     print(json.dumps(result))
 
 
@@ -51,4 +61,4 @@ if __name__ == "__main__":
     if command == "log":
         log(PAIRS[pair], Path(folder))
     else:
-        compare(PAIRS[pair], [Path(folder) / model for model in models])
+        compare(PAIRS[pair], Path(folder), models)

@@ -136,7 +136,9 @@ GEAR = Pair(
     gains=(300.0, 25.0),
     amplitudes=(0.8, 0.3, 0.08),
     noise=0.05,
-    averaged=True,
+    torque_sensor=True,
+    more_columns=("load_torque_Nm",),
+    of_load=True,
 )
 
 ARM = Pair(
@@ -150,7 +152,7 @@ ARM = Pair(
     noise=0.03,
     columns=("q2", "dq2", "tau2"),
     others=(Drive("shoulder", "shoulder_drive", (300.0, 25.0), (0.5, 0.2, 0.05)),),
-    other_columns=("q1", "dq1"),
+    more_columns=("q1", "dq1"),
     # Bristles of 0.2 rad a time step on 0.166 kg m2, half critically damped.
     actuator=lugre("elbow", 6640, 33.2, 1.5, 2.2, 0.1),
     beside_actuator={"frictionloss": 0.0},

@@ -1,4 +1,4 @@
-"""A stage with a joint and an exported layer over it, in OpenUSD; see tests/tests/simulators.rs.
+"""A stage with a joint and an exported layer over it, in OpenUSD; see tests/tests/simulators.
 
     usd_joint.py write STAGE         writes a stage with a revolute joint /robot/elbow
     usd_joint.py read LAYER PRIM     prints what the composed stage says of the joint, as JSON
