@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use frikan_trainer::diagnose::{Lock, Options, Signals};
 use frikan_trainer::error::Result;
 use frikan_trainer::joint::Joint;
-use frikan_trainer::recording::{self, Omission};
+use frikan_trainer::recording::{self, Omission, Quantity};
 
 /// Longest stretch of a file that is diagnosed, s.
 const LONGEST_S: f64 = 60.0;
@@ -82,7 +82,7 @@ impl Real {
 
 fn first_minute(file: &Path, joint: &Joint) -> Result<Signals> {
     let recording = recording::load(file, joint)?;
-    let time = recording.named("time_s").map_or(&[][..], |channel| &channel.values);
+    let time = recording.values(Quantity::Time).unwrap_or_default();
     let kept: Vec<usize> = (0..time.len()).filter(|row| time[*row] - time[0] <= LONGEST_S).collect();
     Signals::of(&recording.clone().with_rows(&kept, Omission::Interrupted), joint)
 }
