@@ -123,3 +123,21 @@ impl Real {
         Ok(Added { recording: self.name.clone(), effect, share, before: before.clone(), after })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(sets: &[&[&'static str]]) -> Found {
+        Found { sets: sets.iter().map(|set| set.to_vec()).collect(), minor: Vec::new() }
+    }
+
+    #[test]
+    fn a_finding_from_before_accounts_for_one_name_of_its_set() {
+        let before = found(&[&["spring", "gravity_error"], &["unknown"]]);
+        let after = found(&[&["gravity_error"], &["spring"], &["unknown", "stribeck"], &["contact"]]);
+        let added = Added { recording: String::new(), effect: "stribeck", share: 0.05, before, after };
+        assert!(added.is_found());
+        assert_eq!(added.surplus(), ["spring", "contact"]);
+    }
+}
