@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use frikan_tests::concealed::page;
-use frikan_tests::concealed::semi_real::{self, Added, Found, Real, SHARES, listed};
+use frikan_tests::concealed::semi_real::{self, ADDED, Added, ByItself, Found, Real, SHARES, listed};
 use frikan_tests::recordings_folder;
 use rayon::prelude::*;
 
@@ -37,9 +37,15 @@ fn main() -> std::io::Result<()> {
             Err(reason) => refused.push((name, reason)),
         }
     }
+    let by_itself = reals.par_iter().map(|(real, before)| {
+        let why = |effect: &'static str| real.refuses(effect, before).map(|why| (effect, why));
+        let left_out = ADDED.into_iter().filter_map(why).collect();
+        ByItself { name: real.name.clone(), told: before.told(), left_out }
+    });
+    let by_itself: Vec<ByItself> = by_itself.collect();
     let mut jobs = Vec::new();
-    for (real, before) in &reals {
-        for effect in real.can_have().filter(|effect| !before.holds(effect)) {
+    for ((real, before), ByItself { left_out, .. }) in reals.iter().zip(&by_itself) {
+        for effect in ADDED.into_iter().filter(|effect| left_out.iter().all(|(left, _)| left != effect)) {
             jobs.extend(arguments.shares.iter().map(|share| (real, before, effect, *share)));
         }
     }
@@ -47,7 +53,6 @@ fn main() -> std::io::Result<()> {
         real.add(effect, *share, before).map_err(|error| format!("{} with {effect}: {error}", real.name))
     });
     let added: Vec<Added> = results.into_iter().filter_map(|one| one.map_err(|e| eprintln!("{e}")).ok()).collect();
-    let by_itself: Vec<_> = reals.iter().map(|(real, before)| (real.name.clone(), before.told())).collect();
     let text = semi_real::page(&page::command("real-additions"), &added, &by_itself, &refused);
     page::put(&text, arguments.output.as_deref())
 }

@@ -5,17 +5,24 @@ mod page;
 mod recordings;
 mod shapes;
 
-pub use page::page;
+pub use page::{ByItself, page};
 pub use recordings::{Real, listed};
 pub use shapes::ADDED;
 
 use super::set_of;
 use frikan_trainer::diagnose::{BaseKind, Diagnosis, Signals, diagnose, strength};
 use frikan_trainer::physics::EffectId;
-use shapes::torque;
 
 /// Parts of the recorded torque, root mean square, that an effect is given beyond what Coulomb and viscous friction absorb.
 pub const SHARES: [f64; 3] = [0.02, 0.05, 0.10];
+
+/// Most of an added torque over the part that friction does not absorb (root mean squares): what is absorbed but for less would be an
+/// added torque out of all proportion to its share. Chosen by judgement.
+const MOST_ABSORBED: f64 = 3.0;
+
+/// Effects whose torque is a part of that of others (preload of a spring, Coulomb friction of one direction): where one of those is
+/// there already, it grows and nothing new is to be seen.
+const PARTS_OF_OTHERS: [(&str, [&str; 2]); 1] = [("torque_offset", ["spring", "direction_asymmetry"])];
 
 /// Names that a finding is stated as, the likeliest first.
 pub type Set = Vec<&'static str>;
@@ -55,6 +62,11 @@ impl Added {
         self.is_found() || self.after.minor.contains(&self.effect)
     }
 
+    /// Those names of the surplus that no finding had before.
+    pub fn new_names(&self) -> Vec<&'static str> {
+        self.surplus().into_iter().filter(|name| !self.before.holds(name)).collect()
+    }
+
     /// First names of findings whose sets do not hold the effect, and that no finding without it accounts for: each of those
     /// accounts for one of the names of its set.
     pub fn surplus(&self) -> Vec<&'static str> {
@@ -73,6 +85,12 @@ impl Added {
 }
 
 impl Found {
+    /// Whether a finding takes the effect up, under its own name or as a part of another.
+    fn takes_up(&self, effect: &str) -> bool {
+        let others = PARTS_OF_OTHERS.iter().filter(|(part, _)| *part == effect).flat_map(|(_, others)| others);
+        self.holds(effect) || others.into_iter().any(|other| self.holds(other))
+    }
+
     fn of(diagnosis: &Diagnosis) -> Self {
         let sets = diagnosis.findings.iter().map(|found| set_of(found).map(EffectId::name).collect()).collect();
         let minor = diagnosis.discarded.minor.iter().map(|(effect, _)| effect.name()).collect();
@@ -103,9 +121,30 @@ impl Real {
         diagnose(&signals.clone().into(), &self.options).map(|d| Found::of(&d)).map_err(|e| e.to_string())
     }
 
-    /// Effects that can be added: without a rigid body to be wrong its inertia is part of the base.
-    pub fn can_have(&self) -> impl Iterator<Item = &'static str> {
-        ADDED.into_iter().filter(|effect| *effect != "inertia_error" || self.signals.rigid_body.is_some())
+    /// Why an effect is not added.
+    pub fn refuses(&self, effect: &str, before: &Found) -> Option<&'static str> {
+        if effect == "inertia_error" && self.signals.rigid_body.is_none() {
+            // Without a rigid body to be wrong its inertia is part of the base.
+            Some("no rigid body")
+        } else if before.takes_up(effect) {
+            Some("there already")
+        } else if self.unit(effect).is_none() {
+            Some("absorbed by friction")
+        } else {
+            None
+        }
+    }
+
+    /// Torque of an effect, of which friction leaves as much as the recorded torque (root mean squares); `None` where it leaves too little
+    /// of it.
+    fn unit(&self, effect: &str) -> Option<Vec<f64>> {
+        let torque = &self.signals.torque;
+        let shape = shapes::torque(effect, &self.signals.states());
+        let strength =
+            strength(&self.signals.clone().into(), &shape, torque, BaseKind::CoulombViscous, self.options.lock)?;
+        let amplitude = 1.0 / strength.effect_to_noise.max(f64::MIN_POSITIVE);
+        let unit: Vec<f64> = shape.iter().map(|value| amplitude * value).collect();
+        (root_mean_square(&unit) <= MOST_ABSORBED * root_mean_square(torque)).then_some(unit)
     }
 
     /// Adds an effect at a share of the torque.
@@ -113,15 +152,16 @@ impl Real {
     /// # Errors
     /// What keeps the sum from being diagnosed.
     pub fn add(&self, effect: &'static str, share: f64, before: &Found) -> Result<Added, String> {
-        let shape = torque(effect, &self.signals.states());
-        let (plain, lock) = (BaseKind::CoulombViscous, self.options.lock);
-        let one = strength(&self.signals.clone().into(), &shape, &self.signals.torque, plain, lock);
-        let amplitude = one.map_or(0.0, |s| share / s.effect_to_noise.max(f64::MIN_POSITIVE));
+        let unit = self.unit(effect).ok_or("absorbed by friction")?;
         let mut with = self.signals.clone();
-        with.torque.iter_mut().zip(&shape).for_each(|(t, s)| *t += amplitude * s);
+        with.torque.iter_mut().zip(&unit).for_each(|(t, u)| *t += share * u);
         let after = self.found_in(&with)?;
         Ok(Added { recording: self.name.clone(), effect, share, before: before.clone(), after })
     }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 #[cfg(test)]
