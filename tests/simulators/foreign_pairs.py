@@ -1,6 +1,7 @@
-"""Asks `trainer diagnose` about plants that are not ours: joints of MuJoCo, healthy or with one concealed effect.
+"""Asks `trainer diagnose` about plants that are not ours: joints of MuJoCo and Drake, healthy or with one concealed effect.
 
-    foreign_pairs.py --trainer PATH [--pairs N] [--only healthy|effects] [--model] [--seed N] [--jobs N] [--keep FOLDER] [--page FILE.md]
+    foreign_pairs.py --trainer PATH [--simulator mujoco|drake|both] [--pairs N] [--only healthy|effects] [--model] [--seed N] [--jobs N]
+                     [--keep FOLDER] [--page FILE.md]
     foreign_pairs.py --again SEED ...            the pairs of these seeds of their own, kept whatever the answer
     foreign_pairs.py --results FILE.jsonl ... --page FILE.md     the page of runs that are done
 
@@ -23,7 +24,7 @@ from foreign.answer import ask, judge, write
 from foreign.effects import EFFECTS
 from foreign.noise import KINDS
 from foreign.page import page
-from foreign.pair import Case, make, model_case
+from foreign.pair import SIMULATORS, Case, make, model_case
 
 # Root mean square of the effect over that of the noise.
 RATIOS = (1.0, 0.2)
@@ -37,16 +38,19 @@ def cases(arguments):
     kinds = list(itertools.product(EFFECTS, RATIOS))
     rng.shuffle(kinds)
     first = arguments.seed * PAIRS_A_SEED
+    simulators = list(SIMULATORS) if arguments.simulator == "both" else [arguments.simulator]
     for number in range(arguments.pairs):
         seed = first + 3 * number
         noise = KINDS[number % len(KINDS)]
+        # They alternate, the other way around from one round of all kinds to the next.
+        simulator = simulators[(number + number // len(kinds)) % len(simulators)]
         if arguments.only in (None, "effects"):
             effect, ratio = kinds[number % len(kinds)]
-            yield "effects", Case(seed, str(effect), float(ratio), str(rng.choice(KINDS)))
+            yield "effects", Case(seed, str(effect), float(ratio), str(rng.choice(KINDS)), simulator)
         if arguments.only in (None, "healthy"):
-            yield "healthy", Case(seed + 1, "none", 0.0, noise)
+            yield "healthy", Case(seed + 1, "none", 0.0, noise, simulator)
         if arguments.model:
-            yield "model", Case(seed + 2, "none", 0.0, noise)
+            yield "model", Case(seed + 2, "none", 0.0, noise, simulator)
 
 
 def solve(job):
@@ -69,6 +73,7 @@ def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trainer", type=Path)
     parser.add_argument("--pairs", type=int, default=48, help="of each group")
+    parser.add_argument("--simulator", choices=(*SIMULATORS, "both"), default="mujoco", help="both: pairs alternate")
     parser.add_argument("--only", choices=("healthy", "effects", "model"))
     parser.add_argument("--model", action="store_true", help="also models of one recording against healthy recordings of other motions")
     parser.add_argument("--seed", type=int, default=int(time.time()) % PAIRS_A_SEED)

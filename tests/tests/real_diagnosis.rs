@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use frikan_runtime::shared::model::RigidBody;
 use frikan_runtime::shared::units::Unit;
+use frikan_tests::concealed::semi_real::{Real, listed};
 use frikan_tests::recordings;
 use frikan_trainer::compile::improved::{Origin, improve};
 use frikan_trainer::compile::profile::Profile;
@@ -107,4 +108,16 @@ fn the_tribometer_slides_little_beyond_break_away() {
     println!("{:?}, R2 {before:.4} -> {after:.4} on the later half", named(&diagnosis));
     assert_eq!(diagnosis.findings[0].effect, EffectId::Presliding);
     assert!(after > 0.99);
+}
+
+/// A small part of `docs/real-additions.md`.
+#[test]
+fn what_is_added_to_the_emps_axis_is_named_and_nothing_else() {
+    let Some(folder) = recordings() else { return };
+    let axis = Real::load("emps/train", &listed(&folder)["emps/train"]).unwrap();
+    let before = axis.found().unwrap();
+    for effect in ["stribeck", "slow_drift", "presliding", "position_ripple"] {
+        let added = axis.add(effect, 0.05, &before).unwrap();
+        assert!(added.is_found() && added.surplus().is_empty(), "{effect}: {:?}", added.after.told());
+    }
 }

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .joint import ROW_PERIOD_S
+from .drive import ROW_PERIOD_S
 
 KINDS = ("white", "autoregressive", "coarse_encoder", "heavy_tails", "grows_with_torque")
 # Degrees of freedom of Student's distribution: the variance is finite, the kurtosis is not.

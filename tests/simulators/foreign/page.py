@@ -5,9 +5,8 @@ from collections import Counter
 
 from .effects import EFFECTS
 from .noise import KINDS
-from .pair import LARGEST_SHARE, LEAST_SHARE
+from .pair import LARGEST_SHARE, LEAST_SHARE, SIMULATORS
 
-FRICTIONS = ("`frictionloss`", "tanh of the velocity")
 # Lower ends of the classes of stated probability.
 CLASSES = (0.0, 0.5, 0.7, 0.85, 0.95)
 
@@ -50,8 +49,7 @@ def told(result):
         parts.append("in the simulation itself: " + ", ".join(result["in_simulation"]))
     said = "; ".join(parts) or result.get("error", "nothing").splitlines()[0]
     of = f" at {result['ratio']:g} (beside friction {result['beside_friction_Nm'] / result['noise_Nm']:.2f})" if result["ratio"] else ""
-    friction = "tanh" if result["joint"]["sign_width_rad_s"] else "frictionloss"
-    where = f"{result['effect']}{of}, {friction}, {result['noise']}, seed {result['seed']}"
+    where = f"{result['effect']}{of}, {plant(result)}, {result['noise']}, seed {result['seed']}"
     return f"* {where}: {said}; held-out ratio {interval(result.get('held_out'))}, sealed {interval(result.get('sealed'))}"
 
 
@@ -72,29 +70,64 @@ def calibration(results):
     return table(["class", "of a", "stated, mean", "true"], rows)
 
 
-def by_friction(results):
-    """Pairs whose Coulomb friction is the soft constraint of `frictionloss`, and those with a tanh of the velocity."""
-    return [[r for r in results if bool(r["joint"]["sign_width_rad_s"]) == smooth] for smooth in (False, True)]
+def simulator(result):
+    """Results of runs without a choice are of MuJoCo."""
+    return SIMULATORS[result.get("simulator", "mujoco")].TITLE
+
+
+def plant(result):
+    """Simulator and Coulomb friction: a soft constraint of the simulator, or a tanh of the velocity."""
+    return f"{simulator(result)} {'tanh' if result['joint']['sign_width_rad_s'] else 'frictionloss'}"
+
+
+def split(results, key):
+    """Results by a key: in the order of the simulators, soft constraints first."""
+    order = list(SIMULATORS)
+    ordered = sorted(results, key=lambda r: (order.index(r.get("simulator", "mujoco")), bool(r["joint"]["sign_width_rad_s"])))
+    return {name: [r for r in results if key(r) == name] for name in dict.fromkeys(map(key, ordered))}
 
 
 def of_healthy(results, title):
-    rows = []
-    for kind in (*KINDS, "all"):
-        found = [r for r in results if kind in (r["noise"], "all")]
-        rows.append([kind, *(count(part, "alarm") for part in by_friction(found))])
+    parts = split(results, plant)
+    rows = [[kind, *(count([r for r in part if kind in (r["noise"], "all")], "alarm") for part in parts.values())] for kind in (*KINDS, "all")]
     alarms = "\n".join(told(result) for result in results if result["alarm"])
     sealed = share(sum(bool(result.get("sealed")) for result in results), len(results))
     text = f"\nA sealed ratio is told in {sealed} of them. Every alarm:\n\n{alarms}\n\n"
-    return f"## {title}\n\nPairs with an exit status other than 0.\n\n" + table(["noise", *FRICTIONS], rows) + text
+    return f"## {title}\n\nPairs with an exit status other than 0.\n\n" + table(["noise", *parts], rows) + text
 
 
 def wrong_names(results):
-    """How often every wrong name is given, over friction and noise."""
-    parts = [*by_friction(results), *([r for r in results if r["noise"] == kind] for kind in KINDS)]
-    counts = [Counter(names[0] for r in part for names in r["wrong"]) for part in parts]
-    order = (counts[0] + counts[1]).most_common()
-    rows = [[name, number, *(found[name] for found in counts)] for name, number in order]
-    return table(["named", "all", *FRICTIONS, *KINDS], [*rows, ["pairs", len(results), *(len(part) for part in parts)]])
+    """How often every wrong name is given, over plant and noise."""
+    parts = {"all": results, **split(results, plant), **{kind: [r for r in results if r["noise"] == kind] for kind in KINDS}}
+    counts = [Counter(names[0] for r in part for names in r["wrong"]) for part in parts.values()]
+    rows = [[name, *(found[name] for found in counts)] for name, _ in counts[0].most_common()]
+    return table(["named", *parts], [*rows, ["pairs", *map(len, parts.values())]])
+
+
+def mistakes(results):
+    """The first wrong name of each pair that has one, or nothing, over the simulators."""
+    parts = split(results, simulator)
+    counts = [
+        Counter((r["effect"], r["wrong"][0][0] if r["wrong"] else "nothing") for r in part if r["wrong"] or not r["right"])
+        for part in (results, *parts.values())
+    ]
+    return table(["concealed", "named", "pairs", *parts], [[*pair, *(found[pair] for found in counts)] for pair, _ in counts[0].most_common()])
+
+
+def of_kinds(results, ratios):
+    """Every kind of effect over the simulators."""
+    parts = split(results, simulator)
+    rows = []
+    for kind, effect in EFFECTS.items():
+        cells = []
+        for part in parts.values():
+            found = [r for r in part if r["effect"] == kind]
+            levels = [[r["right"] for r in found if r["ratio"] == ratio] for ratio in ratios]
+            cells += [*(f"{sum(rights)}/{len(rights)}" for rights in levels), sum(bool(r["wrong"]) for r in found)]
+        size = mean_size([r for r in results if r["effect"] == kind])
+        rows.append([kind, effect.why, ", ".join(effect.names), ", ".join(effect.beside) or "-", *cells, size])
+    heads = [head for name in parts for head in (*(f"{name}: right at {ratio:g}" for ratio in ratios), "wrong names")]
+    return table(["concealed", "in the plant", "names that are right", "not counted", *heads, "mean set"], rows)
 
 
 def of_effects(results):
@@ -108,31 +141,21 @@ def of_effects(results):
 
     ratios = sorted({result["ratio"] for result in results}, reverse=True)
     overall = [
-        [f"{ratio:g}", friction, *row(found)]
-        for ratio in ratios
-        for friction, found in zip(FRICTIONS, by_friction([r for r in results if r["ratio"] == ratio]))
+        [f"{ratio:g}", name, *row([r for r in found if r["ratio"] == ratio])] for ratio in ratios for name, found in split(results, plant).items()
     ]
-    kinds = []
-    for kind, effect in EFFECTS.items():
-        found = [[r for r in results if r["effect"] == kind and r["ratio"] == ratio] for ratio in ratios]
-        rights = [f"{sum(r['right'] for r in one)}/{len(one)}" for one in found]
-        both = [r for one in found for r in one]
-        kinds.append([kind, effect.why, ", ".join(effect.names), ", ".join(effect.beside) or "-", *rights, sum(bool(r["wrong"]) for r in both), mean_size(both)])
     absent = [kind for kind in EFFECTS if not any(result["effect"] == kind for result in results)]
-    mistakes = Counter((r["effect"], r["wrong"][0][0] if r["wrong"] else "nothing") for r in results if r["wrong"] or not r["right"])
-    head = ["concealed", "in the plant", "names that are right", "not counted", *(f"right at {ratio:g}" for ratio in ratios), "wrong names", "mean set"]
     misses = "\n".join(told(result) for result in sorted(results, key=lambda r: (r["effect"], -r["ratio"])) if result["wrong"] or not result["right"])
     return (
         "## One concealed effect\n\n"
-        + table(["effect over noise", "Coulomb friction", *columns], overall)
+        + table(["effect over noise", "plant", *columns], overall)
         + "\n"
-        + table(head, kinds)
+        + of_kinds(results, ratios)
         + (f"\nNot measured in these runs: {', '.join(absent)}.\n" if absent else "")
         + "\nStated probability against frequency; names that are not counted are left out.\n\n"
         + calibration(results)
         + "\nWhat was taken for what, the first wrong name of a pair:\n\n"
-        + table(["concealed", "named", "pairs"], [[*pair, number] for pair, number in mistakes.most_common()])
-        + "\nWrong names by Coulomb friction and by noise; a pair may have several.\n\n"
+        + mistakes(results)
+        + "\nWrong names by plant and by noise; a pair may have several.\n\n"
         + wrong_names(results)
         + f"\nEvery pair with a wrong name or without the right one:\n\n{misses}\n\n"
     )
@@ -141,20 +164,22 @@ def of_effects(results):
 def page(results):
     """The page in Markdown."""
     groups = {group: [r for r in results if r["group"] == group] for group in ("healthy", "effects", "model")}
-    runs = Counter((result["group"], result["run"]) for result in results)
-    seeds = ", ".join(f"`--only {group} --seed {run}` ({number} pairs)" for (group, run), number in runs.items())
-    text = f"""# Plants that are not ours: joints of MuJoCo
+    runs = Counter((result.get("simulator", "mujoco"), result["group"], result["run"]) for result in results)
+    seeds = ", ".join(f"`--simulator {of} --only {group} --seed {run}` ({number} pairs)" for (of, group, run), number in runs.items())
+    text = f"""# Plants that are not ours: joints of MuJoCo and of Drake
 
 Made by `python tests/simulators/foreign_pairs.py --trainer target/release/trainer --keep FOLDER` (packages of `tests/simulators/requirements.txt`)
 and, from what it kept, by `foreign_pairs.py --results FOLDER/results.jsonl ... --page docs/foreign-plants.md`. Seeds are fresh at every run, here
-{seeds}; every figure below is counted by that command, and no threshold was chosen on these pairs.
-Brackets are 95 % intervals (Wilson).
+{seeds};
+every figure below is counted by that command, and no threshold was chosen on these pairs. Brackets are 95 % intervals (Wilson).
 
-A pair is a simulation and a recording of one joint (servo, elbow or shoulder under gravity, with `frictionloss`, `damping` and `armature`) for
+A pair is a simulation and a recording of one joint (servo, elbow or shoulder under gravity, with Coulomb friction, damping and rotor inertia) for
 20 to 30 s at 250 Hz, under one controller and one motion of four frequencies, half of the motions with stops. The rigid body is given in
-`joint.toml`. Coulomb friction is the soft constraint that MuJoCo makes of `frictionloss` in half of the pairs, in the others a tanh of the
-velocity, 0.01 to 0.1 rad/s wide, as other simulators have it; the same on both sides. The recorded joint is integrated at 0.25 ms, the simulation
-too where it has a tanh, else at 1 ms. The recording has one of five kinds of noise: white; autoregressive;
+`joint.toml`. Coulomb friction is the same on both sides: a tanh of the velocity, 0.01 to 0.1 rad/s wide, or ("frictionloss", half of the pairs
+of MuJoCo) the soft constraint that MuJoCo makes of it. In MuJoCo the recorded joint is integrated at 0.25 ms, the simulation too where it has a
+tanh, else at 1 ms. In Drake the recorded joint is a discrete plant of 0.25 ms, which has limits of joints and contact between bodies, and the
+simulation is integrated continuously with steps of variable length; the tanh, which Drake's joints do not have, is a generalized force beside the
+plant, and so are bristles, cogging and cubic damping. The recording has one of five kinds of noise: white; autoregressive;
 an encoder of 12 to 18 bits with its velocity differenced, beside white torque noise; Student's with three degrees of freedom; growing with the
 torque. An effect is the torque that the simulation's joint would not have needed for the recorded motion, below 20 Hz. Its root mean square is
 {100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times

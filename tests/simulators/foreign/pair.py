@@ -5,9 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import in_drake, in_mujoco
+from .drive import Log, random_motion, run
 from .effects import EFFECTS
-from .joint import REAL_SUBSTEPS, Log, Plant, random_joint, random_motion, run
+from .joint import Plant, random_joint
 from .noise import KINDS, recorded
+
+# Each has the name of its page, whether its Coulomb friction can be a soft constraint, and the mechanism that `run` drives.
+SIMULATORS = {"mujoco": in_mujoco, "drake": in_drake}
 
 # Root mean square of the effect as a share of the friction: above the default of `--least-effect`.
 LEAST_SHARE, LARGEST_SHARE = 0.04, 0.10
@@ -24,6 +29,21 @@ class Case:
     effect: str  # of `EFFECTS`, or "none"
     ratio: float  # effect over noise, root mean square; 0 without an effect
     noise: str
+    simulator: str = "mujoco"  # of `SIMULATORS`
+
+
+class Bench:
+    """Random joint of a case and its runs in the simulator of the case."""
+
+    def __init__(self, case, rng):
+        self.simulator = SIMULATORS[case.simulator]
+        self.joint = random_joint(rng, self.simulator.HAS_SOFT_CONSTRAINT)
+
+    def simulated(self, motion):
+        return run(self.simulator.Mechanism(self.joint, Plant(), real=False), self.joint, Plant(), motion)
+
+    def recorded(self, motion, plant=Plant()):
+        return run(self.simulator.Mechanism(self.joint, plant, real=True), self.joint, plant, motion)
 
 
 def rms(values):
@@ -36,11 +56,11 @@ def beside_friction(log):
     return rms(log.effect - columns @ np.linalg.lstsq(columns, log.effect, rcond=None)[0])
 
 
-def sized(joint, motion, shape, share):
+def sized(bench, motion, shape, share):
     """The log of the plant whose effect has about that share of the friction, and the size: bisection of its logarithm once it is bracketed."""
     size, low, high = 1.0, 0.0, math.inf
     for _ in range(SIZE_RUNS):
-        log = run(joint, shape(size), motion, REAL_SUBSTEPS)
+        log = bench.recorded(motion, shape(size))
         found = rms(log.effect) / rms(log.friction)
         if share / SIZE_FACTOR < found < share * SIZE_FACTOR:
             break
@@ -53,20 +73,20 @@ def sized(joint, motion, shape, share):
 def make(case):
     """Simulation, recording (rows of `HEADER`), text of joint.toml and what describes the pair."""
     rng = np.random.default_rng(case.seed)
-    joint, seconds = random_joint(rng), rng.uniform(20.0, 30.0)
-    motion = random_motion(rng, seconds)
-    simulation = run(joint, Plant(), motion, REAL_SUBSTEPS if joint.sign_width_rad_s else 1)
+    bench, seconds = Bench(case, rng), rng.uniform(20.0, 30.0)
+    joint, motion = bench.joint, random_motion(rng, seconds)
+    simulation = bench.simulated(motion)
     told = {**vars(case), "seconds": seconds, "joint": vars(joint)}
     if case.effect == "none":
-        log = run(joint, Plant(), motion, REAL_SUBSTEPS)
+        log = bench.recorded(motion)
         level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(log.friction)
     else:
         effect = EFFECTS[case.effect]
         shape, share = effect.plant(joint, motion, rng), effect.share * rng.uniform(LEAST_SHARE, LARGEST_SHARE)
         if effect.sized:
-            log, told["size"] = sized(joint, motion, shape, share)
+            log, told["size"] = sized(bench, motion, shape, share)
         else:
-            log = run(joint, shape(1.0), motion, REAL_SUBSTEPS)
+            log = bench.recorded(motion, shape(1.0))
         level = rms(log.effect) / case.ratio
         told |= {"names": list(effect.names), "beside": list(effect.beside), "effect_Nm": rms(log.effect), "beside_friction_Nm": beside_friction(log)}
     rows, noise = recorded(log, case.noise, level, rng)
@@ -77,13 +97,13 @@ def make(case):
 def model_case(case):
     """A simulated recording to fit a model to, a healthy recording of another motion, text of joint.toml and what describes the pair."""
     rng = np.random.default_rng(case.seed)
-    joint, seconds = random_joint(rng), float(np.exp(rng.uniform(np.log(12.0), np.log(120.0))))
-    fitted, other = (run(joint, Plant(), random_motion(rng, length), REAL_SUBSTEPS) for length in (seconds, rng.uniform(20.0, 30.0)))
+    bench, seconds = Bench(case, rng), float(np.exp(rng.uniform(np.log(12.0), np.log(120.0))))
+    fitted, other = (bench.recorded(random_motion(rng, length)) for length in (seconds, rng.uniform(20.0, 30.0)))
     level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(fitted.friction)
     training, _ = recorded(fitted, KINDS[rng.integers(len(KINDS))], level, rng)
     rows, noise = recorded(other, case.noise, level, rng)
-    told = {**vars(case), "fitted_s": seconds, "joint": vars(joint), "noise_Nm": level, "friction_Nm": rms(other.friction), **noise}
-    return training, rows, joint_toml(joint), told
+    told = {**vars(case), "fitted_s": seconds, "joint": vars(bench.joint), "noise_Nm": level, "friction_Nm": rms(other.friction), **noise}
+    return training, rows, joint_toml(bench.joint), told
 
 
 def as_rows(log: Log):

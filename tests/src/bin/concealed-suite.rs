@@ -2,10 +2,9 @@
 
 use clap::Parser;
 use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
-use frikan_tests::concealed::semi_real::Added;
 use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::tables::report;
-use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, page, run, semi_real};
+use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, page, run};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
@@ -43,7 +42,7 @@ struct Arguments {
     /// Non-centralities of those.
     #[arg(long, value_delimiter = ',', default_value = "80")]
     base_strengths: Vec<f64>,
-    /// Seeds of the other trajectories of the same joint; the confounded and the real recordings go with them.
+    /// Seeds of the other trajectories of the same joint; the confounded recordings go with them.
     #[arg(long, default_value_t = 0)]
     afterwards: u64,
     /// Title of the page.
@@ -69,7 +68,7 @@ fn main() -> std::io::Result<()> {
     page::put(&text, arguments.output.as_deref())
 }
 
-/// What goes beyond one recording each: other trajectories, confounded recordings with the proposed motion, real recordings.
+/// What goes beyond one recording each: other trajectories, confounded recordings with the proposed motion.
 fn beyond(arguments: &Arguments) -> String {
     const STRENGTH: f64 = 80.0;
     let seeds = arguments.first_seed..arguments.first_seed + arguments.afterwards;
@@ -81,11 +80,7 @@ fn beyond(arguments: &Arguments) -> String {
         .into_par_iter()
         .filter_map(|case| said(advised::run(&case, arguments.first_seed)).map(|advised| (case, advised)))
         .collect();
-    let real: Vec<Added> = frikan_tests::recordings().map_or(Vec::new(), |folder| {
-        let added = semi_real::RECORDINGS.into_par_iter().filter_map(|name| said(semi_real::run(&folder, name)));
-        added.flatten().collect()
-    });
-    afterwards::table(&later) + &advised::table(&confounded) + &semi_real::table(&real)
+    afterwards::table(&later) + &advised::table(&confounded)
 }
 
 /// The result, or nothing and what was wrong on standard error.
