@@ -20,8 +20,13 @@ const FEWEST_SAMPLES: usize = 100;
 /// Samples a standard deviation of the filter apart; `None` without clock or position, or where too few are left.
 pub(super) fn smooth(recording: &Recording, velocity: VelocitySource) -> Option<Samples> {
     let sigma_s = sigma_s(recording)?;
-    let preparation =
-        Preparation { sigma_s: Some(sigma_s), rate_hz: Some(1.0 / sigma_s), velocity, acceleration_noise: 0.0 };
+    let preparation = Preparation {
+        sigma_s: Some(sigma_s),
+        rate_hz: Some(1.0 / sigma_s),
+        velocity,
+        acceleration_noise: 0.0,
+        torque_delay_s: 0.0,
+    };
     let (recording, _) = without_spikes(recording);
     let samples = prepare(&recording, &preparation).ok()?;
     (samples.len() >= FEWEST_SAMPLES).then_some(samples)

@@ -3,8 +3,8 @@
 
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::checks::health::late_torque;
-use crate::diagnose::comparison::delay::LONGEST_SAMPLING_DELAY;
 use crate::physics::EffectId;
+use crate::samples::delay::LONGEST_SAMPLING_DELAY;
 
 /// Realignments after the first: the linear regressor of a delay falls short of a long one. A limit of the computing
 /// time.

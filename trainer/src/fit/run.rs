@@ -19,7 +19,7 @@ use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore};
-use super::score::trace;
+use super::score::trace_delayed;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::law::{FormFit, Law, LawData};
@@ -96,7 +96,7 @@ fn fit_once(
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;
     tell(Stage::Scoring);
-    let score = |recording: &Recording| trace(&model, recording);
+    let score = |recording: &Recording| trace_delayed(&model, recording, material.torque_delay_s);
     let train = recordings.iter().map(score).collect::<Result<Vec<_>>>()?;
     let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
 

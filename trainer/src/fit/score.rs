@@ -4,10 +4,12 @@ use super::model::HostModel;
 use super::outcome::{RestScore, Score, SplitScore, Trace};
 use super::predict::{Prediction, every_row, nothing_recorded, predict};
 use crate::error::{Error, Result};
+use crate::numerics::between_samples::between_samples;
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::Recording;
 use crate::samples::{Samples, top_speed};
 use frikan_shared::model::SLOW_SHARE;
+use std::ops::Range;
 
 /// Rate at which recordings are compared after a low-pass, Hz: that of the published figures of robot and linear axes.
 const COMPARISON_RATE_HZ: f64 = 100.0;
@@ -22,9 +24,17 @@ const REST_SHARE: f64 = 0.01;
 /// # Errors
 /// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
 pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
+    trace_delayed(model, recording, 0.0)
+}
+
+/// The same of a recording whose torque is late by `torque_delay_s` (negative where early), and the prediction with it.
+///
+/// # Errors
+/// As [`trace`].
+pub(super) fn trace_delayed(model: &HostModel, recording: &Recording, torque_delay_s: f64) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
     let rows = every_row(model, recording).map_err(in_file)?;
-    let prediction = predict(model, &rows).map_err(in_file)?;
+    let prediction = delayed(predict(model, &rows).map_err(in_file)?, &rows, torque_delay_s);
     let measured = rows.recorded.clone().ok_or_else(|| in_file(nothing_recorded()))?;
     let predicted = prediction.total();
     let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
@@ -43,13 +53,29 @@ pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
     })
 }
 
+/// A prediction as it is recorded with a delay.
+fn delayed(prediction: Prediction, rows: &Samples, delay_s: f64) -> Prediction {
+    let samples = rows.rate_hz.map_or(0.0, |rate| rate * delay_s);
+    if samples == 0.0 {
+        return prediction;
+    }
+    let late = |series: Vec<f64>| -> Vec<f64> {
+        let segment = |segment: &Range<usize>| {
+            let series = &series[segment.clone()];
+            (0..series.len()).map(|i| between_samples(series, i as f64 - samples)).collect::<Vec<f64>>()
+        };
+        rows.segments.iter().flat_map(segment).collect()
+    };
+    Prediction { friction: late(prediction.friction), rigid_body: late(prediction.rigid_body) }
+}
+
 /// A column of a recording's rows after a zero-phase low-pass, at the rate of comparison and without the ends that the
 /// filter does not reach; as it is where the recording is not faster.
 fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
     let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
     let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
     let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
-    let segment = |range: &std::ops::Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
+    let segment = |range: &Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
     let long_enough = rows.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
     long_enough.flat_map(segment).collect()
 }

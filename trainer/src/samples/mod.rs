@@ -5,6 +5,7 @@
 
 mod bending;
 pub mod blocks;
+pub(crate) mod delay;
 mod even;
 mod grid;
 pub mod hold_out;

@@ -53,6 +53,8 @@ pub struct Preparation {
     pub velocity: VelocitySource,
     /// Noise of the acceleration that passes the filter, rad/s2 or m/s2, that of the motion being white.
     pub acceleration_noise: f64,
+    /// Time by which the torque of the actuator was recorded late, s (negative where early): it is put back.
+    pub torque_delay_s: f64,
 }
 
 impl Preparation {
@@ -99,7 +101,13 @@ impl Preparation {
     }
 
     fn unfiltered() -> Self {
-        Self { sigma_s: None, rate_hz: None, velocity: VelocitySource::Recorded, acceleration_noise: 0.0 }
+        Self {
+            sigma_s: None,
+            rate_hz: None,
+            velocity: VelocitySource::Recorded,
+            acceleration_noise: 0.0,
+            torque_delay_s: 0.0,
+        }
     }
 
     fn with_rate(mut self, request: &Request) -> Self {
@@ -127,7 +135,13 @@ impl fmt::Display for Preparation {
             "every channel through one zero-phase Gaussian, sigma {:.2} ms (half power at {cutoff_hz:.1} Hz); {source}; \
              uneven time stamps linearly interpolated to a uniform grid",
             1e3 * sigma_s,
-        )
+        )?;
+        let delay_ms = 1e3 * self.torque_delay_s;
+        match delay_ms {
+            0.0 => Ok(()),
+            _ if delay_ms > 0.0 => write!(f, "; torque recorded {delay_ms:.3} ms late and put back"),
+            _ => write!(f, "; torque recorded {:.3} ms early and put back", -delay_ms),
+        }
     }
 }
 
@@ -160,7 +174,13 @@ fn candidates(motions: &[Motion], request: &Request) -> Vec<Preparation> {
         let widths = request.sigma_s.map_or_else(|| width::ladder(shortest, longest), |sigma| vec![sigma]);
         let preparation = |sigma_s| {
             let noise = motions.iter().map(|motion| motion.acceleration_noise(velocity, sigma_s)).fold(0.0, f64::max);
-            Preparation { sigma_s: Some(sigma_s), rate_hz: request.rate_hz, velocity, acceleration_noise: noise }
+            Preparation {
+                sigma_s: Some(sigma_s),
+                rate_hz: request.rate_hz,
+                velocity,
+                acceleration_noise: noise,
+                torque_delay_s: 0.0,
+            }
         };
         candidates.extend(widths.into_iter().map(|sigma_s| preparation(sigma_s).with_rate(request)));
     }

@@ -23,6 +23,7 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
     let grid = Grid::of(recording, time);
     let filter = GaussianFilter::new(sigma_s, grid.period_s);
     let stride = preparation.stride(grid.period_s);
+    let torque_filter = filter.advanced_by(preparation.torque_delay_s);
     let window = 2 * filter.half_width() + 1;
     let usable: Vec<&Segment> = grid.segments.iter().filter(|segment| segment.points >= window).collect();
     if usable.is_empty() {
@@ -37,7 +38,9 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
         let count = (segment.points - window) / stride + 1;
         let first = filter.half_width();
         samples.time.extend((0..count).map(|i| segment.start_s + (first + i * stride) as f64 * grid.period_s));
-        extend(&mut samples, recording, preparation, |channel, order| filter.apply(&on_grid(channel), order, stride));
+        let motion = |channel: &[f64], order| filter.apply(&on_grid(channel), order, stride);
+        let torque = |channel: &[f64]| torque_filter.apply(&on_grid(channel), Order::Smooth, stride);
+        extend(&mut samples, recording, preparation, motion, torque);
         if let Some(channel) = target(recording) {
             let unfiltered = on_grid(channel);
             samples.recorded.get_or_insert_default().extend((0..count).map(|i| unfiltered[first + i * stride]));
@@ -68,7 +71,7 @@ pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Re
             if grid.resampled { interpolate(&nodes, &filtered, &time[rows.clone()]) } else { filtered }
         };
         samples.time.extend(&time[rows.clone()]);
-        extend(&mut samples, recording, preparation, at_rows);
+        extend(&mut samples, recording, preparation, at_rows, |channel| at_rows(channel, Order::Smooth));
         samples.segments.push(rows);
     }
     samples.recorded = target(recording).map(<[f64]>::to_vec);
@@ -82,12 +85,13 @@ fn target(recording: &Recording) -> Option<&[f64]> {
     recording.separated_friction().or_else(|| recording.actuator()).map(|channel| channel.values.as_slice())
 }
 
-/// Appends one segment of every channel, filtered by `apply`.
+/// Appends one segment of every channel, filtered by `apply`, that of the actuator by `apply_to_actuator`.
 fn extend(
     samples: &mut Samples,
     recording: &Recording,
     preparation: &Preparation,
     apply: impl Fn(&[f64], Order) -> Vec<f64>,
+    apply_to_actuator: impl Fn(&[f64]) -> Vec<f64>,
 ) {
     let grow = |list: &mut Option<Vec<f64>>, source: Option<&[f64]>, order| {
         if let Some(channel) = source {
@@ -107,7 +111,9 @@ fn extend(
             grow(&mut samples.acceleration, recorded_velocity, Order::First);
         }
     }
-    grow(&mut samples.actuator, recording.actuator().map(|c| c.values.as_slice()), Order::Smooth);
+    if let Some(channel) = recording.actuator() {
+        samples.actuator.get_or_insert_default().extend(apply_to_actuator(&channel.values));
+    }
     grow(&mut samples.rigid_body, recording.values(Quantity::RigidBodyTorque), Order::Smooth);
     grow(&mut samples.friction, recording.separated_friction().map(|c| c.values.as_slice()), Order::Smooth);
     for (name, values) in named_channels(recording) {

@@ -261,6 +261,7 @@ fn range(values: &[f64]) -> f64 {
     highest - lowest
 }
 
-fn even_blocks(length: usize, count: usize) -> Vec<Range<usize>> {
+/// Blocks of nearly the same length.
+pub(super) fn even_blocks(length: usize, count: usize) -> Vec<Range<usize>> {
     (0..count).map(|k| k * length / count..(k + 1) * length / count).filter(|block| !block.is_empty()).collect()
 }

@@ -1,13 +1,14 @@
 //! The model already fitted, as columns: every parameter that may move when an effect is added, and the nuisances.
 
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, friction_basis, raw_columns};
-use crate::diagnose::comparison::delay::{LONGEST_SAMPLING_DELAY, position_error_energy};
+use crate::diagnose::comparison::delay::position_error_energy;
 use crate::diagnose::comparison::reference::{Comparison, tabulated_velocities};
 use crate::diagnose::comparison::relaxation::{self, relaxation_time};
 use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
 use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
 use crate::physics::EffectId;
+use crate::samples::delay::LONGEST_SAMPLING_DELAY;
 
 /// A fitted base model: columns at the working rows behind the common filter.
 #[derive(Clone, Debug)]

@@ -7,9 +7,6 @@ use crate::diagnose::preparation::position_error::position_error_torque;
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, orthonormal, project_out, rows_in};
 
-/// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either
-/// edge of it makes up to one, and a quarter is left for the error of the estimate. Longer hides a real misalignment.
-pub(crate) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
 /// Longest delay that is looked for, s, but at least two samples. Chosen by judgement: several periods of a field bus;
 /// longer may fit one swing of a fast motion to the next.
 const LONGEST_DELAY_S: f64 = 0.03;

@@ -8,6 +8,7 @@ use crate::fit::options::Options;
 use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::samples::blocks::{Split, blocks, correlation_time};
+use crate::samples::delay::torque_delay;
 use crate::samples::rigid_body::{Separation, TermKind, separate};
 use crate::samples::{Preparation, Request, Samples, prepare};
 
@@ -47,6 +48,8 @@ pub(in crate::fit) struct Material {
     pub(in crate::fit) labels: Vec<usize>,
     /// Noise of the acceleration in the samples, rad/s2 or m/s2.
     pub(in crate::fit) acceleration_noise: f64,
+    /// Time by which the torque was recorded late, s, negative where early; it is put back in the samples.
+    pub(in crate::fit) torque_delay_s: f64,
     /// Why nothing can be locked; `None` where something is.
     pub(in crate::fit) repeats: Option<Repetition>,
 }
@@ -59,7 +62,8 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         require_actuator(recording)?;
     }
     let request = Request { rate_hz: options.rate_hz, ..Request::default() };
-    let preparation = Preparation::plan(&borrowed, joint, &request)?;
+    let planned = Preparation::plan(&borrowed, joint, &request)?;
+    let preparation = Preparation { torque_delay_s: torque_delay(&borrowed, joint, &planned), ..planned };
     let parts = recordings.iter().map(|recording| prepare(recording, &preparation)).collect::<Result<Vec<_>>>()?;
     let samples = Samples::join(parts)?;
     let velocity = samples.require_velocity()?.to_vec();
@@ -108,6 +112,7 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         turns,
         labels,
         acceleration_noise,
+        torque_delay_s: preparation.torque_delay_s,
         repeats,
     })
 }

@@ -61,6 +61,17 @@ impl GaussianFilter {
         Self { sigma_s, period_s, smooth, first, second }
     }
 
+    /// The same filter with a low-pass that puts a signal, recorded late by `delay_s` (negative where early, shorter than the half width), back to
+    /// its time.
+    #[must_use]
+    pub fn advanced_by(&self, delay_s: f64) -> Self {
+        let (sigma, shift) = (self.sigma_s / self.period_s, delay_s / self.period_s);
+        let half = self.half_width() as i64;
+        let gauss: Vec<f64> = (-half..=half).map(|k| (-0.5 * ((k as f64 - shift) / sigma).powi(2)).exp()).collect();
+        let total: f64 = gauss.iter().sum();
+        Self { smooth: gauss.iter().map(|g| g / total).collect(), ..self.clone() }
+    }
+
     /// Samples lost at each end of a segment.
     #[must_use]
     pub fn half_width(&self) -> usize {

@@ -1,0 +1,159 @@
+//! The time by which the torque of the actuator was recorded late or early: a drive holds its torque over a sample and logs it with a position
+//! that it read at one edge of it. Left in, it reads as viscous friction: the jerk of a motion goes with its velocity.
+
+use std::ops::Range;
+
+use super::bending::BendingLaw;
+use super::prepare::prepare;
+use super::rigid_body::{even_blocks, given_torque, terms};
+use super::{Preparation, Samples, top_speed};
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::numerics::products::dot;
+use crate::numerics::regression::least_squares;
+use crate::recording::Recording;
+
+/// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either edge of it makes
+/// up to one, and a quarter is left for the error of the estimate. A longer one is no matter of the sampling and stays: `diagnose` names it.
+pub(crate) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
+/// Speed over the top speed above which a sample tells of a delay. Chosen by judgement: near reversals presliding and lag of the friction look
+/// like one; higher leaves too few samples.
+const SLIDING_SPEED_SHARE: f64 = 0.2;
+/// Parts of the samples whose gains are compared. Chosen by judgement: noise is independent between parts of a second and more.
+const PARTS: usize = 20;
+/// Gauss-Newton steps. The second corrects what a filter and a law that bends make of the first.
+const STEPS: usize = 2;
+/// Mean gain of the parts over its standard error above which a delay is put back: 99 % one-sided (2.33).
+const LEAST_T_STATISTIC: f64 = 2.33;
+
+/// The delay with which rigid body and friction, identified anew, leave least of the torque where the joint slides, s; 0 where the samples do not
+/// show one, or one longer than the sampling's own.
+pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> f64 {
+    let periods = recordings.iter().filter_map(|recording| recording.health.period_s);
+    let period = periods.fold(f64::INFINITY, f64::min);
+    if preparation.sigma_s.is_none() || !period.is_finite() {
+        return 0.0;
+    }
+    let left = |samples: f64| {
+        left_where_sliding(recordings, joint, &Preparation { torque_delay_s: samples * period, ..*preparation })
+    };
+    put_back(&left).map_or(0.0, |samples| samples * period)
+}
+
+/// The delay in samples, where the parts of what is left show one of the sampling.
+fn put_back(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<f64> {
+    let as_recorded = left(0.0).ok()?;
+    let mut samples = 0.0;
+    let mut least = as_recorded.clone();
+    for _ in 0..STEPS {
+        // What is left is nearly linear in the delay, so that its energy is a parabola.
+        let [early, late] = [left(samples - 1.0).ok()?, left(samples + 1.0).ok()?];
+        let slope: Vec<f64> = late.iter().zip(&early).map(|(late, early)| 0.5 * (late - early)).collect();
+        samples -= dot(&slope, &least) / dot(&slope, &slope).max(f64::MIN_POSITIVE);
+        if samples.abs() > LONGEST_SAMPLING_DELAY {
+            return None;
+        }
+        least = left(samples).ok()?;
+    }
+    let gain = |part: Range<usize>| {
+        let [before, after] = [&as_recorded, &least].map(|left| dot(&left[part.clone()], &left[part.clone()]));
+        before - after
+    };
+    let gains: Vec<f64> = even_blocks(least.len(), PARTS).into_iter().map(gain).collect();
+    (t_statistic(&gains) > LEAST_T_STATISTIC).then_some(samples)
+}
+
+/// Mean over its standard error.
+fn t_statistic(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean / (variance / count).sqrt()
+}
+
+/// What rigid body and friction, identified where the joint slides, leave of the torque there.
+fn left_where_sliding(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> Result<Vec<f64>> {
+    let parts = recordings.iter().map(|recording| prepare(recording, preparation)).collect::<Result<Vec<_>>>()?;
+    let samples = Samples::join(parts)?;
+    let velocity = samples.require_velocity()?;
+    let sliding = SLIDING_SPEED_SHARE * top_speed(velocity);
+    let rows: Vec<usize> = (0..velocity.len()).filter(|&i| velocity[i].abs() > sliding).collect();
+    let pick = |column: &[f64]| rows.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+    let velocity = pick(velocity);
+    let mut columns: Vec<Vec<f64>> = terms(&samples, joint).iter().map(|term| pick(&term.column)).collect();
+    columns.extend(BendingLaw::over(&velocity)?.columns(&velocity));
+    let torque = pick(samples.actuator.as_deref().unwrap_or_default());
+    let given = pick(&given_torque(&samples, joint)?);
+    let target: Vec<f64> = torque.iter().zip(&given).map(|(torque, given)| torque - given).collect();
+    Ok(least_squares(&columns, &target, &even_blocks(target.len(), PARTS)).residuals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::random::normal;
+    use crate::recording::parse;
+    use crate::samples::rigid_body::separate;
+    use crate::samples::{Request, plan};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    const PERIOD_S: f64 = 0.004;
+
+    /// A body of 0.5 kg m2 with Coulomb friction of 2 N m and viscous friction of 1.2 N m s/rad under two tones, the faster one as large as
+    /// given; its torque is recorded late.
+    fn recorded(delay_s: f64, fast_rad: f64) -> Recording {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let tones = [(0.9, 2.3), (fast_rad, 7.9)];
+        let sum = |t: f64, of: fn(f64, f64, f64) -> f64| tones.iter().map(|(a, w)| of(*a, *w, t)).sum::<f64>();
+        let mut text = String::from("time_s,position_rad,torque_Nm\n");
+        for i in 0..10_000 {
+            let t = PERIOD_S * f64::from(i);
+            let then = t - delay_s;
+            let velocity = sum(then, |a, w, t| a * w * (w * t).cos());
+            let acceleration = sum(then, |a, w, t| -a * w * w * (w * t).sin());
+            let torque =
+                0.5 * acceleration + 2.0 * (velocity / 0.002).tanh() + 1.2 * velocity + 0.1 * normal(&mut random);
+            text += &format!("{t},{},{torque}\n", sum(t, |a, w, t| a * (w * t).sin()));
+        }
+        parse("swing.csv", text.as_bytes(), &Joint::default()).unwrap()
+    }
+
+    fn planned(recording: &Recording) -> plan::Preparation {
+        plan::Preparation::plan(&[recording], &Joint::default(), &Request::default()).unwrap()
+    }
+
+    #[test]
+    fn a_torque_half_a_sample_early_is_found_and_put_back() {
+        for delay_s in [-0.5 * PERIOD_S, 0.8 * PERIOD_S] {
+            let recording = recorded(delay_s, 0.25);
+            let planned = planned(&recording);
+            let found = torque_delay(&[&recording], &Joint::default(), &planned);
+            assert!((found - delay_s).abs() < 0.05 * PERIOD_S, "{found} s, and {delay_s} s is true");
+            // Friction at 1 and 2 rad/s, from what the rigid body leaves.
+            let viscous = |torque_delay_s: f64| {
+                let samples = prepare(&recording, &Preparation { torque_delay_s, ..planned }).unwrap();
+                let friction = separate(&samples, &Joint::default()).unwrap().friction;
+                let velocity = samples.velocity.unwrap();
+                let mean_near = |speed: f64| {
+                    let near = velocity.iter().zip(&friction).filter(|(v, _)| (v.abs() - speed).abs() < 0.2);
+                    let (sum, count) =
+                        near.fold((0.0, 0.0), |(sum, count), (v, f)| (sum + f * v.signum(), count + 1.0));
+                    sum / count
+                };
+                mean_near(2.0) - mean_near(1.0)
+            };
+            let [as_recorded, put_back] = [0.0, found].map(viscous);
+            assert!((put_back - 1.2).abs() < 0.015, "{put_back} N m s/rad");
+            assert!((as_recorded - 1.2).abs() > 0.03, "{as_recorded} N m s/rad: there is nothing to put back");
+        }
+    }
+
+    #[test]
+    fn no_delay_is_put_back_where_the_motion_shows_none_or_a_long_one() {
+        for (delay_s, fast_rad) in [(0.0, 0.25), (3.0 * PERIOD_S, 0.25), (0.5 * PERIOD_S, 0.0)] {
+            let recording = recorded(delay_s, fast_rad);
+            assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), 0.0, "{delay_s} s");
+        }
+    }
+}
