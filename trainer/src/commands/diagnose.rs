@@ -249,7 +249,7 @@ fn improved_image(
 ) -> Result<Written> {
     let (origin, law_error) = match compared {
         Compared::Itself(body) => (Origin::Recording(**body), LawError::default()),
-        Compared::Simulation(law) => (Origin::Simulation(law), LawError::default()),
+        Compared::Simulation(law, given) => (Origin::Simulation(law, *given), LawError::default()),
         Compared::Model(image) => (Origin::Model(&image.model), image.provenance.law_error),
     };
     let unit = match units(&recordings[0]).actuator {

@@ -20,7 +20,7 @@ use std::path::Path;
 /// What the recording is compared with.
 pub(super) enum Compared {
     Itself(Box<RigidBody>),
-    Simulation(Box<InverseLaw>),
+    Simulation(Box<InverseLaw>, RigidBody),
     Model(Box<Image<CELLS>>),
 }
 
@@ -29,7 +29,7 @@ impl Compared {
     pub(super) fn at(&self, state: &JointState, recorded_body: bool) -> Option<Reference> {
         match self {
             Self::Itself(_) => None,
-            Self::Simulation(law) => Some(law.at(state)),
+            Self::Simulation(law, _) => Some(law.at(state)),
             Self::Model(image) => of_model(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok(),
         }
     }
@@ -44,7 +44,8 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
         let state = states(&signals, &real[0])?;
         let law = learn_simulation(&simulation, &signals)
             .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
-        Ok((Comparison::with(signals, law.at(&state)), Compared::Simulation(Box::new(law))))
+        let given = given_rigid_body(&real[0], joint)?;
+        Ok((Comparison::with(signals, law.at(&state)), Compared::Simulation(Box::new(law), given)))
     } else if let Some(path) = &arguments.model {
         let (_, image) = fit::model::load(path)?;
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
@@ -89,12 +90,13 @@ fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
     Ok(all)
 }
 
-/// The rigid body of the joint file, where it stands for the recording's own, in the unit of the actuator.
+/// The rigid body of the joint file, where it stands for the recording's own, in the unit of the actuator: then nobody else gives one.
 fn given_rigid_body(real: &Recording, joint: &Joint) -> Result<RigidBody> {
     let given = &joint.rigid_body;
     let actuator = real.actuator().filter(|_| real.channel(Quantity::RigidBodyTorque).is_none());
     let Some(actuator) = actuator.filter(|_| given.inertia_kgm2.or(given.gravity_torque_nm).is_some()) else {
-        return Ok(RigidBody::default());
+        let recorded = real.channel(Quantity::RigidBodyTorque).is_some();
+        return Ok(RigidBody { given_scale: f32::from(u8::from(recorded)), ..RigidBody::default() });
     };
     let per_torque = joint.actuator_per_torque(actuator.unit)?;
     let (gravity, phase) = (given.gravity_torque_nm.unwrap_or(0.0), given.gravity_phase_rad.unwrap_or(0.0));
@@ -102,7 +104,11 @@ fn given_rigid_body(real: &Recording, joint: &Joint) -> Result<RigidBody> {
         inertia: (per_torque * given.inertia_kgm2.unwrap_or(0.0)) as f32,
         gravity_sin: (per_torque * gravity * phase.cos()) as f32,
         gravity_cos: (per_torque * gravity * phase.sin()) as f32,
-        ..RigidBody::default()
+        offset: 0.0,
+        // Beside an inertia without gravity a recorded load stands for it.
+        given_scale: f32::from(u8::from(
+            given.gravity_torque_nm.is_none() && real.channel(Quantity::LoadTorque).is_some(),
+        )),
     })
 }
 

@@ -208,7 +208,7 @@ impl Writer<'_> {
         let is_fixed = matches!(model.law, Law::Network(_));
         terms.room =
             Room { channels: if is_fixed { terms.inputs.len() } else { MAX_INPUTS }, cells: self.target.cells };
-        if let Origin::Simulation(law) = origin {
+        if let Origin::Simulation(law, _) = origin {
             let written = |effect| write_term(&mut terms, context, effect, ", as the simulation holds it");
             remarks.extend(law.effects().map(written));
         }
@@ -230,7 +230,7 @@ impl Writer<'_> {
         let mut baseline = self.diagnosis.baseline_refit.clone();
         match self.origin {
             Origin::Model(model) => return Some(Box::new(model.clone())),
-            Origin::Simulation(_) => baseline.base.fill(0.0),
+            Origin::Simulation(..) => baseline.base.fill(0.0),
             Origin::Recording(_) => {}
         }
         self.model_of(&baseline).ok().map(|(model, _)| model)
@@ -280,9 +280,15 @@ fn rigid_body((base, refit): (BaseKind, &Refit), signals: &Signals, origin: Orig
             }
             given
         }
-        Origin::Simulation(law) => {
+        Origin::Simulation(law, given) => {
             let [inertia, offset, gravity_sin, gravity_cos, given_scale] = law.rigid_body().map(|p| p as f32);
-            RigidBody { inertia, gravity_sin, gravity_cos, offset, given_scale }
+            RigidBody {
+                inertia: inertia + given_scale * given.inertia,
+                gravity_sin: gravity_sin + given_scale * given.gravity_sin,
+                gravity_cos: gravity_cos + given_scale * given.gravity_cos,
+                offset,
+                given_scale: given_scale * given.given_scale,
+            }
         }
         Origin::Model(model) => model.rigid_body,
     }

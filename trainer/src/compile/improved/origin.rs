@@ -9,8 +9,8 @@ use frikan_shared::model::RigidBody;
 pub enum Origin<'a> {
     /// The static model of the recording itself, with the rigid body that the joint file gives.
     Recording(RigidBody),
-    /// The learned law of a simulation.
-    Simulation(&'a InverseLaw),
+    /// The learned law of a simulation, with the rigid body that the joint file gives.
+    Simulation(&'a InverseLaw, RigidBody),
     /// A fitted model.
     Model(&'a HostModel),
 }

@@ -39,7 +39,7 @@ pub(super) fn refitted_law<'a>(
     let table = |friction| law(friction, Some(Form::Table));
     let model = match origin {
         Origin::Recording(_) => return table(Box::new(move |v| sum(friction_basis(base, v, sign(v), top)))),
-        Origin::Simulation(law) => return table(Box::new(move |v| law.friction(v) + sum(vec![sign(v), v]))),
+        Origin::Simulation(law, _) => return table(Box::new(move |v| law.friction(v) + sum(vec![sign(v), v]))),
         Origin::Model(model) => model,
     };
     let mean = mean_measurement(state);

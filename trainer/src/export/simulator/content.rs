@@ -6,7 +6,7 @@ use frikan_shared::model::{Law, RigidBody};
 use frikan_shared::units::Unit;
 
 use super::form::Form;
-use super::law::{FrictionCurve, of_velocity};
+use super::law::{FrictionCurve, Load, of_velocity};
 use crate::error::{Error, Result, codes};
 use crate::figures::digits;
 use crate::fit::CELLS;
@@ -83,9 +83,20 @@ impl<'a> Content<'a> {
         })
     }
 
-    /// Identified inertia, kg m2 or kg; `None` where the image has none.
+    /// Identified inertia of link and rotor, kg m2 or kg; `None` where the image has none, or only what it adds to that of a given rigid body.
     pub(super) fn inertia(&self) -> Option<f64> {
-        Some(f64::from(self.body.inertia)).filter(|inertia| *inertia > 0.0)
+        Some(f64::from(self.body.inertia)).filter(|inertia| *inertia > 0.0 && self.body.given_scale == 0.0)
+    }
+
+    /// The same where the bodies of the simulator, of this inertia, are the rigid body that was given.
+    pub(super) fn inertia_with(&self, bodies: f64) -> Option<f64> {
+        let given = f64::from(self.body.given_scale) * bodies;
+        Some(f64::from(self.body.inertia) + given).filter(|inertia| *inertia > 0.0)
+    }
+
+    /// What the bodies lack of the identified inertia; negative where they have too much.
+    pub(super) fn armature(&self, bodies: f64) -> Option<f64> {
+        self.inertia_with(bodies).map(|inertia| inertia - bodies)
     }
 
     /// The nearest form with damping in powers of the velocity, where it is worth them.
@@ -158,7 +169,8 @@ impl<'a> Content<'a> {
 
     /// Effects of the image that no friction over velocity holds, by their names, but for those that `held` says.
     pub(super) fn left_out(&self, held: impl Fn(&Effect) -> bool) -> Vec<&'static str> {
-        let rest = self.effects.iter().filter(|effect| of_velocity(effect, 0.0).is_none() && !held(effect));
+        let rest =
+            self.effects.iter().filter(|effect| of_velocity(effect, 0.0, Load::default()).is_none() && !held(effect));
         rest.map(name).collect()
     }
 
@@ -177,6 +189,9 @@ impl<'a> Content<'a> {
         );
         if self.has_other_inputs {
             text += " Other inputs of the law stand in the middle of their trained range.";
+        }
+        if self.effects.iter().any(|effect| matches!(effect, Effect::Load { .. })) {
+            text += " Load-dependent friction stands at its mean over the trained range of the load.";
         }
         let left_out = self.left_out(held);
         if !left_out.is_empty() {

@@ -15,7 +15,7 @@ const VELOCITIES: usize = 1000;
 const RISEN: f64 = 0.9;
 
 /// Friction torque over velocity: the static law with the terms that depend on nothing but the velocity, other inputs in the middle
-/// of their trained range.
+/// of their trained range, and load-dependent friction at its mean over that of the load.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionCurve {
     /// rad/s or m/s, both directions, within the trained range.
@@ -45,9 +45,10 @@ impl FrictionCurve {
             .flat_map(|share| [-share * fastest, share * fastest])
             .filter(|velocity| (low..=high).contains(velocity))
             .collect();
+        let load = Load::of(model);
         let torque_at = |velocity: &f32| {
             at[place] = *velocity;
-            let effects = model.effects.iter().filter_map(|effect| of_velocity(effect, f64::from(*velocity)));
+            let effects = model.effects.iter().filter_map(|effect| of_velocity(effect, f64::from(*velocity), load));
             torque_per_unit * (f64::from(evaluate(model, &at)) + effects.sum::<f64>())
         };
         let mut torque: Vec<f64> = velocities.iter().map(torque_at).collect();
@@ -76,8 +77,29 @@ impl FrictionCurve {
     }
 }
 
-/// Torque of an effect that depends on nothing but the velocity, in the unit of the model; `None` for any other.
-pub(super) fn of_velocity(effect: &Effect, v: f64) -> Option<f64> {
+/// A load that takes every value of its trained range as often.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Load {
+    /// Mean of its magnitude, in the unit of the model.
+    magnitude: f64,
+    /// Mean of its square.
+    square: f64,
+}
+
+impl Load {
+    fn of(model: &HostModel) -> Self {
+        let Some(input) = model.inputs.iter().find(|input| input.quantity == Quantity::Load) else {
+            return Self::default();
+        };
+        let [low, high] = [input.low, input.high].map(f64::from);
+        // Antiderivatives of |x| and x^2 between the ends.
+        let mean = |of: &dyn Fn(f64) -> f64| (of(high) - of(low)) / (high - low);
+        Self { magnitude: mean(&|x| 0.5 * x * x.abs()), square: mean(&|x| x.powi(3) / 3.0) }
+    }
+}
+
+/// Torque of an effect that depends on nothing but the velocity, or on the load too, in the unit of the model; `None` for any other.
+pub(super) fn of_velocity(effect: &Effect, v: f64, load: Load) -> Option<f64> {
     let sign = |smoothing: &f32| (v / f64::from(*smoothing)).tanh();
     let [a, b] = match effect {
         Effect::Coulomb { coulomb, viscous, smoothing_velocity } => {
@@ -92,6 +114,11 @@ pub(super) fn of_velocity(effect: &Effect, v: f64) -> Option<f64> {
         }
         Effect::Asymmetry { coulomb, viscous, smoothing_velocity } => {
             [f64::from(*coulomb) * sign(smoothing_velocity).abs(), f64::from(*viscous) * v.abs()]
+        }
+        Effect::Load { mean, quadratic, stribeck, velocity, smoothing_velocity, .. } => {
+            let at_rest = f64::from(*stribeck) * (-(v / f64::from(*velocity)).powi(2)).exp();
+            let constant = (f64::from(*mean) + at_rest) * load.magnitude + f64::from(*quadratic) * load.square;
+            [constant * sign(smoothing_velocity), 0.0]
         }
         _ => return None,
     };

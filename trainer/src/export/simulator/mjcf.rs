@@ -61,7 +61,8 @@ pub(super) fn patched(content: &Content, file: &ModelFile, elements: Elements) -
     }
     let mut edits = Edits::of(file.text);
     let motor = Some(elements).filter(|elements| *elements == Elements::PassiveMotor);
-    let motor = motor.and_then(|_| passive_motor(content, &document));
+    let bodies = inertia_of_bodies(content, file, joint)?;
+    let motor = motor.and_then(|_| passive_motor(content, &document, content.inertia_with(bodies?)?));
     let cogging = if elements == Elements::PassiveMotor { content.cogging() } else { Vec::new() };
     let form = motor.as_ref().map_or_else(|| content.damped(), |motor| motor.form);
     let held = |effect: &Effect| match effect {
@@ -74,7 +75,7 @@ pub(super) fn patched(content: &Content, file: &ModelFile, elements: Elements) -
     edits.set_attribute(joint, "frictionloss", &plain(if motor.is_some() { 0.0 } else { form.coulomb }));
     let [a, b, c] = form.damping.map(plain);
     edits.set_attribute(joint, "damping", &if form.damping[1..] == [0.0; 2] { a } else { format!("{a} {b} {c}") });
-    if let Some(armature) = armature(content, file, (&joint, &mut remark))? {
+    if let Some(armature) = bodies.and_then(|bodies| armature(content, bodies, &mut remark)) {
         edits.set_attribute(joint, "armature", &plain(armature));
     }
     if let Some((stiffness, rest)) = content.spring() {
@@ -122,15 +123,14 @@ impl PassiveMotor {
     }
 }
 
-/// The motor where a Stribeck peak or presliding is worth one; `None` too where no inertia says how stiff its bristles may be.
-fn passive_motor(content: &Content, document: &Document) -> Option<PassiveMotor> {
+/// The motor where a Stribeck peak or presliding is worth one, its bristles as stiff as the inertia allows.
+fn passive_motor(content: &Content, document: &Document, inertia: f64) -> Option<PassiveMotor> {
     let presliding = content.presliding_stiffness();
     let form = match (content.with_stribeck(), presliding) {
         (Some(form), _) => form,
         (None, Some(_)) => content.damped(),
         (None, None) => return None,
     };
-    let inertia = content.inertia()?;
     let option = document.descendants().find(|node| node.has_tag_name("option"));
     let step = option.and_then(|node| numbers::<1>(node, "timestep").ok()?).map_or(TIME_STEP_S, |[step]| step);
     let stiffest = inertia * (BRISTLE_STEP_RAD / step).powi(2);
@@ -139,25 +139,32 @@ fn passive_motor(content: &Content, document: &Document) -> Option<PassiveMotor>
     Some(PassiveMotor { form, stiffness, damping: (stiffness * inertia).sqrt() })
 }
 
-/// What the bodies lack of the identified inertia.
-fn armature(content: &Content, file: &ModelFile, (joint, remark): (&Node, &mut String)) -> Result<Option<f64>> {
-    let Some(identified) = content.inertia() else { return Ok(None) };
+/// Inertia of the bodies about the joint, as given or as the file says it; `None` where the image has no inertia to compare it with.
+fn inertia_of_bodies(content: &Content, file: &ModelFile, joint: Node) -> Result<Option<f64>> {
+    if content.body.inertia == 0.0 && content.body.given_scale == 0.0 {
+        return Ok(None);
+    }
     let bodies = match file.inertia_of_model {
         Some(given) => given,
-        None => inertia_about(*joint).map_err(|why| {
+        None => inertia_about(joint).map_err(|why| {
             let message = format!(
                 "the inertia of the bodies about this joint cannot be read from the file ({why}): give `--inertia-of-model`, which MuJoCo works out (docs/exports.md)"
             );
-            bad_file(*joint, &message)
+            bad_file(joint, &message)
         })?,
     };
-    let lack = identified - bodies;
+    Ok(Some(bodies))
+}
+
+/// What the bodies lack of the identified inertia, told in the remark.
+fn armature(content: &Content, bodies: f64, remark: &mut String) -> Option<f64> {
+    let lack = content.armature(bodies)?;
     let unit = content.inertia_unit();
-    let _ = write!(remark, " Inertia {} {unit}, of which the bodies have {}.", digits(identified), digits(bodies));
+    let _ = write!(remark, " Inertia {} {unit}, of which the bodies have {}.", digits(bodies + lack), digits(bodies));
     if lack < 0.0 {
         let _ = write!(remark, " The bodies have {} {unit} too much, which no armature takes away.", digits(-lack));
     }
-    Ok(Some(lack.max(0.0)))
+    Some(lack.max(0.0))
 }
 
 /// Puts the motors at the end of the actuators, in the place of those of an earlier export.

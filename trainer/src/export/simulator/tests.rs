@@ -19,7 +19,7 @@ fn image_of(coulomb: f64, viscous: f64, output_unit: Unit) -> Image<CELLS> {
         inputs: heapless::Vec::from_slice(&[input]).unwrap(),
         output_unit,
         output_limit: 100.0,
-        rigid_body: RigidBody { inertia: 0.5, ..RigidBody::default() },
+        rigid_body: RigidBody { inertia: 0.5, given_scale: 0.0, ..RigidBody::default() },
         effects: heapless::Vec::new(),
     };
     let joint = heapless::String::try_from("a--b <1>").unwrap();
@@ -252,4 +252,38 @@ fn urdf_sdf_and_usd_keep_the_file() {
     let place = usd.find("viscousFrictionCoefficient = ").unwrap();
     let value = usd[place..].lines().next().unwrap().rsplit(' ').next().unwrap();
     near(value, 0.7f32.to_radians());
+}
+
+/// An image may hold what it adds to a rigid body that was given: then the bodies of the simulator are that rigid body.
+#[test]
+fn a_correction_of_a_given_rigid_body_is_the_armature() {
+    let mut image = image_of(3.0, 0.7, Unit::NewtonMetre);
+    image.model.rigid_body = RigidBody { inertia: 0.12, given_scale: 1.0, ..RigidBody::default() };
+    let content = Content::of(&image, TITLE, None).unwrap();
+    assert_eq!(content.inertia(), None, "of link and rotor it says nothing");
+    assert!((content.armature(0.3).unwrap() - 0.12).abs() < 1e-6);
+    let patched = written(&image, Simulator::MjcfPatch, Some((MJCF, "elbow"))).unwrap();
+    let [armature] = attributes(&patched, "joint", ["armature"]);
+    near(&armature, 0.12);
+}
+
+/// Load-dependent friction of a tenth, over a load from -4 to 4 N m: 2 N m on average.
+#[test]
+fn load_friction_stands_at_its_mean() {
+    let mut image = image_of(3.0, 0.7, Unit::NewtonMetre);
+    let load = Input { quantity: Quantity::Load, unit: Unit::NewtonMetre, low: -4.0, high: 4.0 };
+    image.model.inputs.push(load).unwrap();
+    let effect = Effect::Load {
+        mean: 0.1,
+        difference: 0.0,
+        quadratic: 0.0,
+        stribeck: 0.0,
+        velocity: 1.0,
+        smoothing_velocity: 0.001,
+    };
+    image.model.effects.push(effect).unwrap();
+    let patched = written(&image, Simulator::MjcfPatch, Some((MJCF, "elbow"))).unwrap();
+    let [loss] = attributes(&patched, "joint", ["frictionloss"]);
+    near(&loss, 3.2);
+    assert!(patched.contains("Load-dependent friction stands at its mean"), "{patched}");
 }

@@ -14,10 +14,9 @@ pub(super) fn layer(content: &Content, file: Option<&ModelFile>) -> String {
     let (form, static_friction) = (content.coulomb_viscous, content.static_friction());
     let (axis, per_unit) = if content.is_linear { ("linear", 1.0) } else { ("angular", 1f64.to_radians()) };
     let mut remark = content.remark(&form, |_| false);
-    let inertia = content.inertia();
-    let armature =
-        inertia.zip(file.and_then(|file| file.inertia_of_model)).map(|(all, bodies)| (all - bodies).max(0.0));
-    if let (Some(inertia), None) = (inertia, armature) {
+    let bodies = file.and_then(|file| file.inertia_of_model);
+    let armature = bodies.and_then(|bodies| content.armature(bodies)).map(|armature| armature.max(0.0));
+    if let (Some(inertia), None) = (content.inertia(), armature) {
         let _ = write!(
             remark,
             " Identified inertia {}, link and rotor: what of it the bodies lack is the armature, for which `--inertia-of-model` is needed.",
