@@ -16,13 +16,13 @@ use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::delay::delay_by_shifting;
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
+use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
-    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_unproven,
-    withdraw_without_shown_gain,
+    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -31,7 +31,6 @@ use crate::diagnose::realign::{Realignment, Trial, is_better, joined, next_delay
 use crate::diagnose::relock::{add_locked_event, locked_event, names_more};
 use crate::diagnose::request::{LEAST_EFFECT_SHARE, Options, Refusal};
 use crate::diagnose::search::accepted::Accepted;
-use crate::diagnose::search::forward_backward::SearchOutcome;
 use crate::diagnose::search::setup::Search;
 use crate::numerics::least_squares::rows_in;
 use crate::physics::{EffectId, catalogue};
@@ -141,7 +140,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
         if prepared.quantisation_limited { options.settings.behind_quantisation() } else { options.settings };
     let workbench = &Workbench::new(&prepared, &base, &hypotheses);
     let measurement_noise = MeasurementNoise::of(&prepared, comparison, &base.residual);
-    let search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings };
+    let mut search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings, refused: Vec::new() };
     let baseline = refit(workbench, &[]).ok_or(Refusal::Undetermined)?;
     let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms).collect();
     health.extend(examine(comparison));
@@ -149,11 +148,11 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     health.extend(scattered_sampling(signals, &prepared));
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
-    let SearchOutcome { mut accepted, last_round, noise } = if blocked { search.nothing() } else { search.run() };
-    polish(workbench, &mut accepted, &noise);
+    let found = if blocked { Confirmed::nothing(&search) } else { Confirmed::of(&mut search, &baseline) };
+    let Confirmed { mut accepted, withdrawn, last_round, noise } = found;
     // In this order: what is set aside later is weighed beside what stays.
     let mut discarded = Discarded {
-        withdrawn: withdraw_unproven(workbench, &settings, &baseline, &mut accepted),
+        withdrawn,
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),

@@ -5,6 +5,7 @@ use super::chart::{Chart, Ink, bars};
 use super::finding::section;
 use super::heat_map::HeatMap;
 use super::page::{PARAMETER_HEADER, Page, parameter_rows};
+use crate::diagnose::Motion;
 use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::answer::traces::Traces;
@@ -220,11 +221,33 @@ fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
             quantity(rollout.improved_rmse, &position),
             digits(rollout.horizon_s)
         ));
+        let caption =
+            "The recorded motion, and that of the model from its state every half second on, before and after.";
+        page.figure(&motions(&rollout.motions, units), caption);
     }
     page.paragraph(&format!(
         "Share of the recorded torque's variance that is explained: {:.4} before, {:.4} after.",
         diagnosis.baseline.r2, diagnosis.improved.r2
     ));
+}
+
+/// Positions over time, with a break between rollouts.
+fn motions(motions: &[Motion], units: Units) -> String {
+    let all = |of: fn(&Motion) -> &Vec<f64>| motions.iter().flat_map(move |motion| of(motion).iter().copied());
+    let position = Scale::over(all(|motion| &motion.recorded).chain(all(|motion| &motion.before)));
+    let time = Scale::over(all(|motion| &motion.time));
+    let mut chart = Chart::new((1060.0, 300.0), time, position, ["time (s)", &axis_label("position", units)]);
+    let mut line = |of: fn(&Motion) -> &Vec<f64>, ink: Ink, name: &str| {
+        let points = motions.iter().flat_map(|motion| {
+            let points = motion.time.iter().zip(of(motion)).map(|(time, position)| [*time, *position]);
+            points.chain([[motion.time[0], f64::NAN]])
+        });
+        chart.line(&points.collect::<Vec<_>>(), ink, name);
+    };
+    line(|motion| &motion.recorded, Ink::Data, "recorded");
+    line(|motion| &motion.before, Ink::Two, "base model");
+    line(|motion| &motion.after, Ink::One, "with the findings");
+    chart.svg()
 }
 
 fn limits(page: &mut Page, diagnosis: &Diagnosis, units: Units) {

@@ -7,7 +7,7 @@ use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
-use crate::diagnose::search::round::Scored;
+use crate::diagnose::search::scored::Scored;
 use crate::physics::EffectId;
 use crate::physics::units::Units;
 use crate::report::tell::Story;

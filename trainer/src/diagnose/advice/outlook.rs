@@ -72,8 +72,9 @@ impl Outlook {
         let Label::Named(effect) = found.label else { return None };
         let torque = self.white(&weighted(&self.filtered(effect, &found.shape)?, &found.coefficients));
         let base = self.base_without(effect);
-        let bench =
-            |torque: &[f64], runs: &[Range<usize>]| Bench::new(base.clone(), torque.to_vec(), vec![runs.to_vec()]);
+        let bench = |torque: &[f64], runs: &[Range<usize>]| {
+            Bench::new(base.clone(), Vec::new(), torque.to_vec(), vec![runs.to_vec()])
+        };
         let made = bench(&torque, &self.made);
         let Some((shape, coefficients)) = self.imitate(&made, rival, None, false).map(|best| (best.1, best.2)) else {
             // The recording has no room for the rival at all.

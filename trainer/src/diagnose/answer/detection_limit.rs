@@ -5,7 +5,7 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::proof::discarded::negligible_torque;
 use crate::diagnose::proof::refit::Refit;
-use crate::diagnose::search::round::Scored;
+use crate::diagnose::search::scored::Scored;
 use crate::diagnose::search::thresholds::OTHER_ROWS_ERROR_RATIO;
 
 /// Non-centrality (squared signal-to-noise ratio, dimensionless) that is found with a probability of 90 %: in
@@ -15,7 +15,6 @@ const NONCENTRALITY_AT_90_PERCENT_POWER: f64 = 40.0;
 /// Torque of each effect in the last table of scores at which it would have been found nine times in ten.
 pub(crate) fn detection_limits(workbench: &Workbench, table: &[Scored], refit: &Refit) -> Vec<DetectionLimit> {
     let bench = workbench.bench(workbench.base.columns.clone(), &refit.noise);
-    let uncertainty = workbench.law_uncertainty(&bench, &refit.noise);
     let least = negligible_torque(workbench).max(OTHER_ROWS_ERROR_RATIO * workbench.base.formula_error);
     table
         .iter()
@@ -25,7 +24,7 @@ pub(crate) fn detection_limits(workbench: &Workbench, table: &[Scored], refit: &
             let first = columns.first()?;
             // The statistic of the column itself as target: its non-centrality per squared amplitude.
             let white = workbench.whitened(&columns[..1], &refit.noise);
-            let visible = uncertainty.trust(&white, &[1.0]) * bench.visible_energy(&white[0])?;
+            let visible = bench.visible_energy(&white[0])?;
             let amplitude = (NONCENTRALITY_AT_90_PERCENT_POWER / visible).sqrt();
             let rms = (first.iter().map(|v| v * v).sum::<f64>() / first.len() as f64).sqrt();
             Some(DetectionLimit { effect, torque_rms: (amplitude * rms).max(least) })

@@ -11,7 +11,7 @@ use crate::diagnose::proof::discarded::Discarded;
 use crate::diagnose::proof::locked_rows::Proof;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::proof::rollout::Rollout;
-use crate::diagnose::search::round::Scored;
+use crate::diagnose::search::scored::Scored;
 use crate::numerics::statistics::NORMAL_95;
 use crate::physics::{Action, Dimension, EffectId};
 use serde::Serialize;

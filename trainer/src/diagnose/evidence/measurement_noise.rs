@@ -8,7 +8,7 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::{Prepared, identified_inertia};
-use crate::numerics::least_squares::{gram, moments, orthonormal, project_out, solve_symmetric};
+use crate::numerics::least_squares::{gram, moments, solve_symmetric};
 use crate::numerics::random::{normal, uniform};
 use crate::numerics::statistics::DEVIATION_PER_MEDIAN;
 use crate::numerics::statistics::quantile;
@@ -54,9 +54,10 @@ impl MeasurementNoise {
     /// What it does beside a bench.
     pub fn beside<'g>(&'g self, workbench: &'g Workbench<'g>, bench: &'g Bench, noise: &'g Noise) -> NoiseBeside<'g> {
         let runs = bench.runs();
-        let base = orthonormal(&bench.base, &runs);
-        let left = workbench.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
-        NoiseBeside { state: &self.state, workbench, bench, noise, base, left, runs }
+        let mut left = workbench.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
+        let mut target = bench.target.clone();
+        [&mut left, &mut target].into_iter().for_each(|column| bench.take_off_base(column));
+        NoiseBeside { state: &self.state, workbench, bench, noise, target, left, runs }
     }
 }
 
@@ -92,9 +93,9 @@ pub(crate) struct NoiseBeside<'g> {
     workbench: &'g Workbench<'g>,
     bench: &'g Bench,
     noise: &'g Noise,
-    /// Orthonormal directions that the base takes up.
-    base: Vec<Vec<f64>>,
-    /// Whitened change of what the base leaves.
+    /// What the base leaves, whitened.
+    target: Vec<f64>,
+    /// Its change, whitened.
     left: Vec<f64>,
     runs: Vec<Range<usize>>,
 }
@@ -102,10 +103,10 @@ pub(crate) struct NoiseBeside<'g> {
 impl NoiseBeside<'_> {
     /// Share of a candidate's evidence that the grain does not give it by itself, from 0 to 1.
     pub fn trust(&self, label: &Label, shape: &[f64]) -> f64 {
-        let Self { state, workbench, bench, noise, base, left, runs } = self;
+        let Self { state, workbench, bench, noise, target, left, runs } = self;
         let free = |columns: &[Vec<f64>]| {
             let mut white = workbench.whitened(columns, noise);
-            white.iter_mut().for_each(|column| project_out(column, base, runs));
+            white.iter_mut().for_each(|column| bench.take_off_base(column));
             white
         };
         let columns = workbench.filtered_columns(label, shape);
@@ -113,7 +114,7 @@ impl NoiseBeside<'_> {
         let change = |(more, column): (&Vec<f64>, &Vec<f64>)| more.iter().zip(column).map(|(m, c)| m - c).collect();
         let changes: Vec<Vec<f64>> = with_more.iter().zip(&columns).map(change).collect();
         let (columns, changes) = (free(&columns), free(&changes));
-        let (asked_for, by_grain) = (moments(&columns, &bench.target, runs), moments(&changes, left, runs));
+        let (asked_for, by_grain) = (moments(&columns, target, runs), moments(&changes, left, runs));
         let Some(coefficients) = solve_symmetric(&gram(&columns, runs), &asked_for) else { return 1.0 };
         let share = coefficients.dot(&by_grain) / coefficients.dot(&asked_for).max(f64::MIN_POSITIVE);
         (1.0 - share).clamp(0.0, 1.0).powi(2)

@@ -2,6 +2,7 @@
 
 pub(crate) mod law_uncertainty;
 pub(crate) mod measurement_noise;
+pub(crate) mod overdispersion;
 pub(crate) mod score;
 pub(crate) mod strength;
 pub(crate) mod workbench;

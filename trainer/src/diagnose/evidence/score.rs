@@ -1,5 +1,6 @@
 //! Evidence for one set of columns against the base: score statistic, held-out gain, Bayesian criterion.
 
+use crate::diagnose::evidence::law_uncertainty::LawUncertainty;
 use crate::numerics::least_squares::{
     Factored, dot, gram, moments, orthonormal, project_out, ridged_gram, rows_in, solve_symmetric, unit_diagonal,
 };
@@ -15,6 +16,11 @@ pub struct Bench {
     pub target: Vec<f64>,
     /// Runs of each open block.
     pub blocks: Vec<Vec<Range<usize>>>,
+    /// Orthonormal directions of the base.
+    base_directions: Vec<Vec<f64>>,
+    law_uncertainty: LawUncertainty,
+    /// Columns of the base, then of the errors of the law.
+    beside: Vec<Vec<f64>>,
     sums: Vec<BlockSums>,
 }
 
@@ -59,18 +65,41 @@ impl VariantEvidence {
 }
 
 impl Bench {
-    /// Collects the sums of each block.
-    pub fn new(base: Vec<Vec<f64>>, target: Vec<f64>, blocks: Vec<Vec<Range<usize>>>) -> Self {
+    /// Collects the sums of each block. `uncertain` is the whitened torque of each direction in which the law is not sure of itself, at
+    /// one standard deviation.
+    pub fn new(
+        base: Vec<Vec<f64>>,
+        uncertain: Vec<Vec<f64>>,
+        target: Vec<f64>,
+        blocks: Vec<Vec<Range<usize>>>,
+    ) -> Self {
+        let runs: Vec<Range<usize>> = blocks.iter().flatten().cloned().collect();
+        let base_directions = orthonormal(&base, &runs);
+        let law_uncertainty = LawUncertainty::beside(&base_directions, uncertain, &runs);
+        let beside: Vec<Vec<f64>> = base.iter().cloned().chain(law_uncertainty.columns()).collect();
         let sums = blocks
             .iter()
             .map(|runs| BlockSums {
-                base: gram(&base, runs),
-                base_target: moments(&base, &target, runs),
+                base: gram(&beside, runs),
+                base_target: moments(&beside, &target, runs),
                 target: dot(&target, &target, runs),
                 rows: rows_in(runs) as f64,
             })
             .collect();
-        Self { base, target, blocks, sums }
+        Self { base, target, blocks, base_directions, law_uncertainty, beside, sums }
+    }
+
+    /// What base and errors of the law leave of a whitened column, where both count as noise of unit variance.
+    pub fn take_off_base(&self, column: &mut [f64]) {
+        let runs = self.runs();
+        project_out(column, &self.base_directions, &runs);
+        self.law_uncertainty.whiten(column, &runs);
+    }
+
+    /// Prior precision of each column beside a candidate: none for the base, one for the errors of the law.
+    fn prior(&self) -> DMatrix<f64> {
+        let of_base = self.base.len();
+        DMatrix::from_diagonal(&DVector::from_fn(self.beside.len(), |i, _| f64::from(u8::from(i >= of_base))))
     }
 
     /// All open runs.
@@ -96,7 +125,7 @@ impl Bench {
     /// Drops the whitened columns that the base and those before them hold.
     pub fn retain_independent(&self, columns: &mut Vec<Vec<f64>>) {
         let runs = self.runs();
-        let mut held = orthonormal(&self.base, &runs);
+        let mut held = self.base_directions.clone();
         columns.retain(|column| {
             let mut free = column.clone();
             project_out(&mut free, &held, &runs);
@@ -111,7 +140,7 @@ impl Bench {
     /// As [`Self::evidence`], with the held-out folds only where asked for. `ridge` is the prior precision of each
     /// coefficient over what all rows tell of it; empty for none.
     pub fn weigh(&self, columns: &[Vec<f64>], ridge: &[f64], folds: bool) -> Option<VariantEvidence> {
-        let (p, d) = (self.base.len(), columns.len());
+        let (p, d) = (self.beside.len(), columns.len());
         let blocks: Vec<(DMatrix<f64>, DVector<f64>)> = self
             .blocks
             .iter()
@@ -123,7 +152,7 @@ impl Bench {
                 right.rows_mut(0, p).copy_from(&sums.base_target);
                 for (a, column) in columns.iter().enumerate() {
                     right[p + a] = dot(column, &self.target, runs);
-                    for (b, base) in self.base.iter().enumerate() {
+                    for (b, base) in self.beside.iter().enumerate() {
                         let value = dot(column, base, runs);
                         normal[(p + a, b)] = value;
                         normal[(b, p + a)] = value;
@@ -139,16 +168,17 @@ impl Bench {
             .collect();
         let normal: DMatrix<f64> = blocks.iter().fold(DMatrix::zeros(p + d, p + d), |sum, (n, _)| sum + n);
         let right: DVector<f64> = blocks.iter().fold(DVector::zeros(p + d), |sum, (_, r)| sum + r);
-        if d > 0 && ridge.is_empty() && !independent(&normal, p) {
+        let mut prior = DMatrix::<f64>::zeros(p + d, p + d);
+        prior.view_mut((0, 0), (p, p)).copy_from(&self.prior());
+        if d > 0 && ridge.is_empty() && !independent(&(&normal + &prior), p) {
             return None;
         }
-        let mut prior = DMatrix::<f64>::zeros(p + d, p + d);
         for (a, share) in ridge.iter().enumerate() {
             prior[(p + a, p + a)] = (share * normal[(p + a, p + a)]).max(f64::MIN_POSITIVE);
         }
         let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
-        let base_residual = energy - explained(&normal.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
         let posterior = &normal + &prior;
+        let base_residual = energy - explained(&posterior.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
         let full = Factored::new(&posterior)?;
         let solution = full.solve(&right)?;
         let residual = energy - solution.dot(&right);
@@ -186,8 +216,8 @@ impl Bench {
     /// Energy of a whitened column that the base cannot hold: the non-centrality of unit amplitude.
     pub fn visible_energy(&self, column: &[f64]) -> Option<f64> {
         let runs = self.runs();
-        let right = moments(&self.base, column, &runs);
-        let normal = self.sums.iter().fold(DMatrix::zeros(self.base.len(), self.base.len()), |sum, s| sum + &s.base);
+        let right = moments(&self.beside, column, &runs);
+        let normal = self.sums.iter().fold(self.prior(), |sum, s| sum + &s.base);
         let energy = dot(column, column, &runs) - explained(&normal, &right)?;
         (energy > 0.0).then_some(energy)
     }

@@ -39,12 +39,12 @@ pub fn strength(
     let model = Noise::fit(&fit_residual(&known, &base.target, &runs)?, &runs, &noise_features(&prepared));
     let white = |column: &[f64]| model.whitened(column, &runs);
     let columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
-    let whitened = Bench::new(columns, white(&filtered), vec![runs.clone()]);
+    let whitened = Bench::new(columns, Vec::new(), white(&filtered), vec![runs.clone()]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
     let bare: Vec<f64> = base.target.iter().zip(&filtered).map(|(t, f)| t - f).collect();
-    let without = Bench::new(whitened.base.clone(), white(&bare), whitened.blocks.clone());
+    let without = Bench::new(whitened.base.clone(), Vec::new(), white(&bare), whitened.blocks.clone());
     let rest_without = residual(&base.columns, &bare, &without.solve(&[])?);
-    let plain = Bench::new(base.columns.clone(), filtered.clone(), vec![runs.clone()]);
+    let plain = Bench::new(base.columns.clone(), Vec::new(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;
     let rows = rows_in(&runs);
     let noise = prepared.filtered(noise);

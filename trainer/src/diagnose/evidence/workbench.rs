@@ -1,14 +1,13 @@
 //! Base and candidates of one prepared recording: their filtered columns, whitened and weighed on the open rows.
 
 use crate::diagnose::comparison::base::{Base, Delay};
-use crate::diagnose::evidence::law_uncertainty::LawUncertainty;
 use crate::diagnose::evidence::score::Bench;
 use crate::diagnose::hypotheses::design::Design;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::least_squares::{fit_residual, weighted};
+use crate::numerics::least_squares::{dot, fit_residual, rows_in, weighted};
 use crate::physics::{EffectId, Hypothesis, JointState};
 use rayon::prelude::*;
 
@@ -137,19 +136,32 @@ impl<'a> Workbench<'a> {
 
     pub(crate) fn bench(&self, base: Vec<Vec<f64>>, noise: &Noise) -> Bench {
         let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
-        Bench::new(self.whitened(&base, noise), target, self.prepared.open_blocks())
+        let uncertain = self.whitened(&self.base.uncertainty, noise);
+        Bench::new(self.whitened(&base, noise), uncertain, target, self.prepared.open_blocks())
     }
 
-    /// LawUncertaintys of the reference beside the base of a bench.
-    pub(crate) fn law_uncertainty(&self, bench: &Bench, noise: &Noise) -> LawUncertainty {
-        LawUncertainty::beside(&bench.base, self.whitened(&self.base.uncertainty, noise), bench.runs())
+    /// White noise of what the base leaves: what is assumed before the noise is known.
+    pub(crate) fn white_noise(&self) -> Noise {
+        let runs = self.prepared.open_runs();
+        let energy = dot(&self.base.residual, &self.base.residual, &runs);
+        let deviation = (energy / rows_in(&runs).max(1) as f64).sqrt().max(f64::MIN_POSITIVE);
+        Noise::white(self.prepared.rows.len(), deviation)
     }
 
     /// Noise of what the columns leave after an ordinary least-squares fit: one that is whitened first may leave slow
     /// errors that pass for noise.
     pub(crate) fn noise_after(&self, columns: &[Vec<f64>]) -> Noise {
-        let runs = self.prepared.open_runs();
-        let left = fit_residual(columns, &self.base.target, &runs);
-        Noise::fit(left.as_ref().unwrap_or(&self.base.target), &runs, &self.noise_features)
+        self.noise_of(&self.left_by(columns))
+    }
+
+    /// What the columns leave of the target after an ordinary least-squares fit.
+    pub(crate) fn left_by(&self, columns: &[Vec<f64>]) -> Vec<f64> {
+        let left = fit_residual(columns, &self.base.target, &self.prepared.open_runs());
+        left.unwrap_or_else(|| self.base.target.clone())
+    }
+
+    /// The noise of a residual.
+    pub(crate) fn noise_of(&self, residual: &[f64]) -> Noise {
+        Noise::fit(residual, &self.prepared.open_runs(), &self.noise_features)
     }
 }

@@ -37,12 +37,12 @@ struct Colour {
 }
 
 impl Noise {
-    /// White noise of unit variance over `rows`: what is assumed before anything is known.
-    pub fn white(rows: usize) -> Self {
+    /// White noise of a standard deviation over `rows`: what is assumed before anything is known.
+    pub fn white(rows: usize, deviation: f64) -> Self {
         Self {
             colour: Colour { predictors: vec![Vec::new()], excess: vec![1.0] },
-            deviation: vec![1.0; rows],
-            rms: 1.0,
+            deviation: vec![deviation; rows],
+            rms: deviation,
         }
     }
 

@@ -47,7 +47,7 @@ const PLAIN_FIT_ERROR_RATIO: f64 = 1.1;
 pub(crate) fn polish(workbench: &Workbench, accepted: &mut [Accepted], noise: &Noise) {
     let state = &workbench.prepared.state;
     let plain = refit(workbench, accepted).is_some_and(|refit| refit.plain);
-    let white = Noise::white(workbench.prepared.rows.len());
+    let white = workbench.white_noise();
     let noise = if plain { &white } else { noise };
     let sweeps = if accepted.len() > 1 { SWEEPS } else { 1 };
     for _ in 0..sweeps {

@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::ops::Range;
 
 /// Position error of open-loop rollouts before and after, in rad or m.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rollout {
     /// Length of one rollout, s.
     pub horizon_s: f64,
@@ -23,6 +23,22 @@ pub struct Rollout {
     pub baseline_rmse: f64,
     /// The same with the effects.
     pub improved_rmse: f64,
+    /// The motion of every rollout.
+    #[serde(skip)]
+    pub motions: Vec<Motion>,
+}
+
+/// The motion of one rollout, a value for each row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Recorded position, rad or m.
+    pub recorded: Vec<f64>,
+    /// Position of the base model under the recorded torque.
+    pub before: Vec<f64>,
+    /// The same with the effects.
+    pub after: Vec<f64>,
 }
 
 /// Length of one rollout, s: by definition of the reported figure.
@@ -42,15 +58,35 @@ pub(crate) fn roll_out(workbench: &Workbench, baseline: &Refit, improved: &Refit
     let runs = if locked.is_empty() { prepared.open_runs() } else { locked };
     let state = &prepared.state;
     let inertia = |refit: &Refit| inertia(state, &workbench.base.names, refit).filter(|inertia| *inertia > 0.0);
-    let before = squares(state, &prepared.rows, &runs, &rest(workbench, baseline), inertia(baseline)?);
-    let after = squares(state, &prepared.rows, &runs, &rest(workbench, improved), inertia(improved)?);
-    let root_mean = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    let stretches = stretches(state, &prepared.rows, &runs);
+    let strayed = |refit: &Refit| {
+        let (residual, inertia) = (rest(workbench, refit), inertia(refit)?);
+        let one = |stretch: &Range<usize>| {
+            strays(state, &prepared.rows[stretch.clone()], &residual[stretch.clone()], inertia)
+        };
+        Some(stretches.iter().map(one).collect::<Vec<Vec<f64>>>())
+    };
+    let (before, after) = (strayed(baseline)?, strayed(improved)?);
+    let motions = stretches.iter().zip(before.iter().zip(&after)).map(|(stretch, (before, after))| {
+        let rows = &prepared.rows[stretch.clone()];
+        let recorded: Vec<f64> = rows.iter().map(|&row| state.position[row]).collect();
+        let strayed = |strays: &Vec<f64>| recorded.iter().zip(strays).map(|(q, stray)| q + stray).collect();
+        let time = rows.iter().map(|&row| state.time[row]).collect();
+        Motion { time, before: strayed(before), after: strayed(after), recorded }
+    });
     (!before.is_empty()).then(|| Rollout {
         horizon_s: HORIZON_S,
         starts: before.len(),
-        baseline_rmse: root_mean(&before),
-        improved_rmse: root_mean(&after),
+        baseline_rmse: root_mean_square_of(&before),
+        improved_rmse: root_mean_square_of(&after),
+        motions: motions.collect(),
     })
+}
+
+/// Root mean square over all rollouts of the mean square of each, their first rows left out, where nothing has strayed yet.
+fn root_mean_square_of(strays: &[Vec<f64>]) -> f64 {
+    let mean_square = |strays: &Vec<f64>| strays.iter().map(|s| s * s).sum::<f64>() / (strays.len() - 1) as f64;
+    (strays.iter().map(mean_square).sum::<f64>() / strays.len() as f64).sqrt()
 }
 
 /// Inertia in the actuator's unit a unit of acceleration: that of the given rigid body, else that of the base.
@@ -61,22 +97,23 @@ fn inertia(state: &JointState, names: &[&str], refit: &Refit) -> Option<f64> {
     }
 }
 
-/// Mean square position error of each rollout.
-fn squares(state: &JointState, rows: &[usize], runs: &[Range<usize>], residual: &[f64], inertia: f64) -> Vec<f64> {
-    let mut squares = Vec::new();
+/// The stretches of rows of a rollout each, within the runs.
+fn stretches(state: &JointState, rows: &[usize], runs: &[Range<usize>]) -> Vec<Range<usize>> {
+    let mut stretches = Vec::new();
     for run in runs {
         let mut begin = run.start;
         while let Some(end) = (begin..run.end).find(|&k| state.time[rows[k]] - state.time[rows[begin]] >= HORIZON_S) {
-            squares.push(one(state, &rows[begin..=end], &residual[begin..=end], inertia));
+            stretches.push(begin..end + 1);
             begin = end;
         }
     }
-    squares
+    stretches
 }
 
-/// One rollout from the recorded state at the first row, by the linearly implicit Euler method.
-fn one(state: &JointState, rows: &[usize], residual: &[f64], inertia: f64) -> f64 {
-    let (mut stray, mut speed, mut sum) = (0.0, 0.0, 0.0);
+/// How far the position strays at each row of one rollout from the recorded state at the first, by the linearly implicit Euler method.
+fn strays(state: &JointState, rows: &[usize], residual: &[f64], inertia: f64) -> Vec<f64> {
+    let (mut stray, mut speed) = (0.0, 0.0);
+    let mut strays = vec![0.0];
     let width = SLOPE_STEP_SHARE * state.sign_velocity;
     for (pair, torque) in rows.windows(2).zip(residual.windows(2)) {
         let step = (state.time[pair[1]] - state.time[pair[0]]) / EULER_STEPS as f64;
@@ -90,9 +127,9 @@ fn one(state: &JointState, rows: &[usize], residual: &[f64], inertia: f64) -> f6
             speed += step * force / (inertia + step * slope);
             stray += step * speed;
         }
-        sum += stray * stray;
+        strays.push(stray);
     }
-    sum / (rows.len() - 1) as f64
+    strays
 }
 
 #[cfg(test)]
@@ -116,10 +153,15 @@ mod tests {
         let state = signals.states();
         let rows: Vec<usize> = (100..1900).step_by(5).collect();
         let runs = [0..rows.len()];
-        let errors = squares(&state, &rows, &runs, &vec![0.2; rows.len()], 0.5);
-        assert_eq!(errors.len(), 3);
+        let stretches = stretches(&state, &rows, &runs);
+        let strayed: Vec<Vec<f64>> = stretches
+            .iter()
+            .map(|rows_of| strays(&state, &rows[rows_of.clone()], &vec![0.2; rows_of.len()], 0.5))
+            .collect();
+        assert_eq!(strayed.len(), 3);
         // Mean square of (a t^2 / 2) over the horizon: a^2 T^4 / 20.
         let expected = (0.4f64.powi(2) * HORIZON_S.powi(4) / 20.0).sqrt();
-        assert!((errors[0].sqrt() / expected - 1.0).abs() < 0.03, "{} {expected}", errors[0].sqrt());
+        let error = root_mean_square_of(&strayed[..1]);
+        assert!((error / expected - 1.0).abs() < 0.03, "{error} {expected}");
     }
 }

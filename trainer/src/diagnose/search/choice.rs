@@ -3,7 +3,8 @@
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::search::accepted::Accepted;
-use crate::diagnose::search::round::{Round, Scored};
+use crate::diagnose::search::round::Round;
+use crate::diagnose::search::scored::Scored;
 use crate::numerics::least_squares::{dot, orthonormal, project_out};
 use crate::physics::EffectId;
 
@@ -55,7 +56,7 @@ impl Round<'_, '_> {
         let any_locked = self.search.workbench.prepared.blocks.iter().any(|block| block.locked);
         let passes = |s: &&Scored| {
             let (level, score) = settings.on_open_rows(any_locked && s.label != Label::Named(EffectId::TransientEvent));
-            s.family_wise < level && s.score > score
+            s.family_wise < level && s.own_score > score
         };
         let is_named = |s: &&Scored| matches!(s.label, Label::Named(_));
         let passing_names = || table.iter().filter(is_named).filter(passes);
@@ -102,7 +103,7 @@ impl Round<'_, '_> {
                 rivals.push((effect, distance));
             }
         }
-        if rivals.len() > settings.most_rivals && !self.is_significant(best) {
+        if rivals.len() > settings.most_rivals {
             return None;
         }
         Some(Accepted {

@@ -5,7 +5,8 @@ use crate::diagnose::hypotheses::label::ridge_of;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::noise::null_draws::NullDraws;
 use crate::diagnose::search::accepted::{Accepted, others};
-use crate::diagnose::search::round::{Round, Scored, score_of};
+use crate::diagnose::search::round::Round;
+use crate::diagnose::search::scored::{Scored, score_of};
 use crate::diagnose::search::setup::Search;
 
 /// Largest number of terms, repeated ones included: three of each of the four effects that are accepted at most. A

@@ -4,5 +4,6 @@ pub(crate) mod accepted;
 pub(crate) mod choice;
 pub(crate) mod forward_backward;
 pub(crate) mod round;
+pub(crate) mod scored;
 pub(crate) mod setup;
 pub(crate) mod thresholds;

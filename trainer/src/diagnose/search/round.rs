@@ -1,6 +1,6 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
-use crate::diagnose::evidence::law_uncertainty::LawUncertainty;
+use crate::diagnose::evidence::overdispersion::overdispersion;
 use crate::diagnose::evidence::score::{Bench, GroupEvidence, VariantEvidence};
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::design::{Group, Variant};
@@ -9,10 +9,11 @@ use crate::diagnose::hypotheses::refine::refine;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::noise::null_draws::{Family, NullDraws, NullGroup, chi_square_surprise};
 use crate::diagnose::search::accepted::Accepted;
+use crate::diagnose::search::scored::{Scored, score_of};
 use crate::diagnose::search::setup::Search;
 use crate::diagnose::search::thresholds::Settings;
-use crate::numerics::least_squares::{orthonormal, project_out};
-use crate::physics::{EffectId, Shape};
+use crate::numerics::least_squares::{least_squares, orthonormal, project_out, weighted};
+use crate::physics::EffectId;
 use rayon::prelude::*;
 
 /// Shapes that a refinement distinguishes between two points of the grid, for each free shape parameter: their
@@ -25,44 +26,6 @@ const SHAPES_PER_GRID_STEP: f64 = 10.0;
 /// hypotheses seem too small, higher leaves effects in the noise.
 const CLEAR_CANDIDATE_NATS: f64 = 10.0;
 
-/// A hypothesis with its score in one round.
-#[derive(Clone, Debug)]
-pub struct Scored {
-    /// What it stands for.
-    pub label: Label,
-    /// Shape after refinement.
-    pub shape: Shape,
-    /// Score in nats.
-    pub score: f64,
-    /// Family-wise probability under the null; 1 in a round in which nothing reached the least score.
-    pub family_wise: f64,
-    /// Evidence behind the score.
-    pub evidence: GroupEvidence,
-    /// Place of the group in the design.
-    pub(crate) group: usize,
-    /// -log p of its best variant by chi-square.
-    pub(crate) surprise: f64,
-    /// Energy that its best variant explains before whitening.
-    pub(crate) explained: f64,
-}
-
-/// Score: the mean of held-out gain and Bayesian criterion; the criterion with a scan penalty for a one-off event, which no other
-/// block can confirm. One beyond doubt is weighed as its rivals are: what explains a part of it gains as much where it is held out.
-pub(crate) fn score_of(label: &Label, evidence: &GroupEvidence, grid_size: f64) -> f64 {
-    let both = 0.5 * (evidence.held_out + evidence.criterion);
-    match label {
-        Label::Named(EffectId::TransientEvent) => {
-            let alone = evidence.criterion - 0.5 * grid_size.ln();
-            if alone > CERTAIN_EVENT_NATS { alone.max(both) } else { alone }
-        }
-        _ => both,
-    }
-}
-
-/// Criterion of a one-off event above which it is weighed as its rivals are, nats. Chosen by judgement: far beyond the
-/// logarithm of the number of windows, some six nats; lower lets an event displace a lasting cause.
-const CERTAIN_EVENT_NATS: f64 = 50.0;
-
 /// Evidence of every variant of every group; `None` where a variant depends on the base.
 type Tested = Vec<Vec<Option<VariantEvidence>>>;
 
@@ -71,9 +34,10 @@ pub(crate) struct Round<'s, 'a> {
     pub(crate) noise: Noise,
     pub(crate) bench: Bench,
     alone: Option<VariantEvidence>,
-    law_uncertainty: LawUncertainty,
     variants: Tested,
     white: Vec<Vec<f64>>,
+    /// What base and best candidates leave, whitened.
+    left: Vec<f64>,
     /// Largest energy that each group explains before whitening.
     explained: Vec<f64>,
 }
@@ -82,8 +46,9 @@ impl<'s, 'a> Round<'s, 'a> {
     pub(crate) fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
-        let mut noise = Noise::white(search.workbench.prepared.rows.len());
+        let mut noise = search.workbench.white_noise();
         let mut explained = Vec::new();
+        let mut left = Vec::new();
         for _ in 0..2 {
             let (_, bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
             if explained.is_empty() {
@@ -96,18 +61,18 @@ impl<'s, 'a> Round<'s, 'a> {
             }
             let mut generous = base.clone();
             generous.extend(best_two(search.workbench, &variants, bench.rows(), f64::NEG_INFINITY));
-            noise = search.workbench.noise_after(&generous);
+            left = search.workbench.left_by(&generous);
+            noise = search.workbench.noise_of(&left);
         }
+        let left = search.workbench.whitened(&[left], &noise).swap_remove(0);
         let (white, bench, variants) = weigh_all(search.workbench, base, &noise, true);
         let alone = bench.alone();
-        let law_uncertainty = search.workbench.law_uncertainty(&bench, &noise);
-        Self { search, noise, bench, alone, law_uncertainty, variants, white, explained }
+        Self { search, noise, bench, alone, variants, white, left, explained }
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
         let best = best_two(self.search.workbench, &self.variants, self.bench.rows(), CLEAR_CANDIDATE_NATS);
         let runs = self.bench.runs();
-        let base_directions = orthonormal(&self.bench.base, &runs);
         let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
             let weighed =
                 group.variants.iter().zip(evidence).filter(|(variant, evidence)| {
@@ -115,7 +80,7 @@ impl<'s, 'a> Round<'s, 'a> {
                 });
             let directions = |variant: &Variant| {
                 let mut columns = self.white[variant.columns.clone()].to_vec();
-                columns.iter_mut().for_each(|column| project_out(column, &base_directions, &runs));
+                columns.iter_mut().for_each(|column| self.bench.take_off_base(column));
                 orthonormal(&columns, &runs)
             };
             NullGroup {
@@ -130,10 +95,10 @@ impl<'s, 'a> Round<'s, 'a> {
         let groups: Vec<NullGroup> =
             self.search.workbench.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
         let mut rest = self.bench.target.clone();
-        project_out(&mut rest, &base_directions, &runs);
-        let mut extended = base_directions.clone();
-        extended.extend(self.search.workbench.whitened(&best, &self.noise));
-        project_out(&mut rest, &orthonormal(&extended, &runs), &runs);
+        self.bench.take_off_base(&mut rest);
+        let mut best = self.search.workbench.whitened(&best, &self.noise);
+        best.iter_mut().for_each(|column| self.bench.take_off_base(column));
+        project_out(&mut rest, &orthonormal(&best, &runs), &runs);
         let Settings { null_draws, seed, .. } = self.search.settings;
         NullDraws::draw(&groups, &rest, &runs, null_draws, seed)
     }
@@ -154,21 +119,18 @@ impl<'s, 'a> Round<'s, 'a> {
                 let admissible = self.admissible(index);
                 let evidence = GroupEvidence::weigh(alone, &admissible, rows, grid)?;
                 let scanned = self.search.workbench.scanned_beyond(index);
-                let trust = |variant: &Variant, evidence: &VariantEvidence| {
-                    self.law_uncertainty.trust(&self.white[variant.columns.clone()], &evidence.coefficients)
-                };
                 // A prior adds no direction: what it weighs is calibrated by the free series.
                 let free = group.variants.iter().zip(&admissible);
                 let surprise = free
                     .filter(|(variant, _)| ridge_of(&group.label, &variant.shape).is_empty())
-                    .filter_map(|(variant, evidence)| evidence.as_ref().map(|v| (variant, v)))
-                    .map(|(variant, v)| chi_square_surprise(trust(variant, v) * v.statistic, v.degrees) - scanned)
+                    .filter_map(|(_, evidence)| evidence.as_ref())
+                    .map(|v| chi_square_surprise(v.statistic, v.degrees) - scanned)
                     .fold(0.0, f64::max);
-                let best = admissible[evidence.best].as_ref()?;
                 Some(Scored {
                     label: group.label.clone(),
                     shape: group.variants[evidence.best].shape.clone(),
-                    score: trust(&group.variants[evidence.best], best) * score_of(&group.label, &evidence, grid),
+                    score: score_of(&group.label, &evidence, grid),
+                    own_score: 0.0,
                     family_wise: 1.0,
                     evidence,
                     group: index,
@@ -178,24 +140,55 @@ impl<'s, 'a> Round<'s, 'a> {
             })
             .collect();
         self.refine_leaders(&mut table, alone, rows);
-        self.discount_measurement_noise(&mut table);
+        self.discount_noise(&mut table);
         table.sort_by(|a, b| b.score.total_cmp(&a.score));
         table
     }
 
-    /// Takes from every candidate what the encoder's grain gives it by itself.
-    fn discount_measurement_noise(&self, table: &mut [Scored]) {
-        let Some(grain) = self.search.measurement_noise else { return };
+    /// Takes from every candidate what the encoder's grain gives it by itself, and by how much more its evidence scatters than the model of
+    /// the noise says.
+    fn discount_noise(&self, table: &mut [Scored]) {
         let least = self.search.settings.candidate_score;
         if table.iter().all(|scored| scored.score <= least) {
             return;
         }
-        let grain = grain.beside(self.search.workbench, &self.bench, &self.noise);
-        table.par_iter_mut().filter(|scored| scored.score > least).for_each(|scored| {
-            let trust = grain.trust(&scored.label, &scored.shape);
-            scored.score *= trust;
-            scored.surprise *= trust;
-        });
+        let workbench = self.search.workbench;
+        let grain = self.search.measurement_noise.map(|grain| grain.beside(workbench, &self.bench, &self.noise));
+        let scatters: Vec<f64> = table
+            .par_iter_mut()
+            .map(|scored| {
+                if scored.score <= least {
+                    return 1.0;
+                }
+                if let Some(grain) = &grain {
+                    let trust = grain.trust(&scored.label, &scored.shape);
+                    scored.score *= trust;
+                    scored.surprise *= trust;
+                }
+                self.overdispersion_of(&scored.label, &scored.shape)
+            })
+            .collect();
+        // One measure for all that are compared, so that a near tie does not hang on it: the leader's. An event has the noise of its time.
+        let is_event = |scored: &Scored| scored.label == Label::Named(EffectId::TransientEvent);
+        let lasting = table.iter().zip(&scatters).filter(|(scored, _)| !is_event(scored));
+        let of_leader =
+            lasting.max_by(|(a, _), (b, _)| a.score.total_cmp(&b.score)).map_or(1.0, |(_, scatter)| *scatter);
+        for (scored, own) in table.iter_mut().zip(scatters) {
+            scored.surprise /= own;
+            scored.own_score = scored.score / own;
+            scored.score /= if is_event(scored) { own } else { of_leader };
+        }
+    }
+
+    /// Overdispersion along the torque that a candidate is fitted with.
+    fn overdispersion_of(&self, label: &Label, shape: &[f64]) -> f64 {
+        let workbench = self.search.workbench;
+        let mut columns = workbench.whitened(&workbench.filtered_columns(label, shape), &self.noise);
+        columns.iter_mut().for_each(|column| self.bench.take_off_base(column));
+        let mut target = self.bench.target.clone();
+        self.bench.take_off_base(&mut target);
+        let coefficients = least_squares(&columns, &target, &self.bench.runs());
+        coefficients.map_or(1.0, |fitted| overdispersion(&weighted(&columns, &fitted), &self.left, &self.bench.blocks))
     }
 
     /// The variants of a group whose coefficients have a possible sign.
@@ -240,14 +233,13 @@ impl<'s, 'a> Round<'s, 'a> {
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.workbench.grid_size(scored.group);
             let Some(refined) = weigh(&shape) else { return };
-            let trust = self.law_uncertainty.trust(&white(&shape), &refined.coefficients);
             if let Some(evidence) = GroupEvidence::weigh(alone, &[Some(refined)], rows, grid) {
-                let score = trust * score_of(&scored.label, &evidence, grid);
+                let score = score_of(&scored.label, &evidence, grid);
                 if score > scored.score {
                     let free = (0..shape.len()).filter(|&i| hypothesis.bounds(state, i, &shape).is_some()).count();
                     let looked_at =
                         SHAPES_PER_GRID_STEP.ln() * free as f64 + self.search.workbench.scanned_beyond(scored.group);
-                    let refined = chi_square_surprise(trust * evidence.statistic, evidence.degrees) - looked_at;
+                    let refined = chi_square_surprise(evidence.statistic, evidence.degrees) - looked_at;
                     scored.surprise = scored.surprise.max(refined);
                     scored.shape = shape;
                     scored.score = score;

@@ -13,15 +13,17 @@ pub struct Search<'a> {
     /// What more of the encoder's grain and of the torque's noise would change.
     pub(crate) measurement_noise: Option<&'a MeasurementNoise>,
     pub(crate) settings: Settings,
+    /// What was found before and other rows did not bear out.
+    pub(crate) refused: Vec<Label>,
 }
 
 impl Search<'_> {
-    /// Whether a label may be found in the next round: once, except for effects that repeat with other shapes.
+    /// Whether a label may be found in the next round: once, except for effects that repeat with other shapes, and not what was refused.
     pub(crate) fn may_be_found(&self, label: &Label, accepted: &[Accepted]) -> bool {
         let repeats = match label {
             Label::Named(effect) => self.workbench.hypothesis(*effect).is_some_and(Hypothesis::repeats),
             Label::Generic(_) => false,
         };
-        repeats || accepted.iter().all(|found| found.label != *label)
+        !self.refused.contains(label) && (repeats || accepted.iter().all(|found| found.label != *label))
     }
 }

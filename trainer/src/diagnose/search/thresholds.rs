@@ -19,8 +19,7 @@ pub struct Settings {
     pub largest_locked_loss: f64,
     /// Margin in nats within which rivals cannot be told apart.
     pub ambiguity_margin: f64,
-    /// Largest number of rivals that cannot be told from an effect which the open rows do not prove by themselves: what nearly
-    /// everything could stand for is no finding.
+    /// Largest number of rivals that cannot be told from an effect: what nearly everything could stand for is no finding.
     pub most_rivals: usize,
     /// Null draws a round.
     pub null_draws: usize,

@@ -58,7 +58,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
         base: Vec::new(),
         base_deviation: Vec::new(),
         effects: Vec::new(),
-        noise: crate::diagnose::Noise::white(0),
+        noise: crate::diagnose::Noise::white(0, 1.0),
         plain: false,
     };
     let velocity: Vec<f64> = (-50..50).map(|k| 0.002 * f64::from(k) + 0.001).collect();
