@@ -34,6 +34,10 @@ pub struct DiagnosisPage<'a> {
     pub export: &'a [String],
 }
 
+/// Rollouts in the chart of motions: so many can be told apart.
+const MOST_MOTIONS: usize = 20;
+/// Distance between the begins of two rollouts in that chart, in lengths of one.
+const MOTION_PACE: f64 = 1.2;
 /// Hypotheses in the chart of rivals.
 const MOST_RIVALS: usize = 12;
 
@@ -194,11 +198,12 @@ fn rivals(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.heading("The rivals and their evidence");
     let caption = if diagnosis.findings.is_empty() {
-        "The candidates with the highest scores; none was accepted."
+        "The candidates with the highest scores; none was accepted. Nats: natural logarithm of a likelihood ratio."
     } else {
-        "Orange: accepted, with the score at that time. Grey: not accepted, with the score beside the findings."
+        "Orange: accepted, with the score at that time. Grey: not accepted, with the score beside the findings. Nats: natural logarithm \
+         of a likelihood ratio."
     };
-    page.figure(&bars(&rows, "nats (natural logarithm of a likelihood ratio)"), caption);
+    page.figure(&bars(&rows, "nats"), caption);
 }
 
 fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
@@ -221,9 +226,9 @@ fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
             quantity(rollout.improved_rmse, &position),
             digits(rollout.horizon_s)
         ));
-        let caption =
-            "The recorded motion, and that of the model from its state every half second on, before and after.";
-        page.figure(&motions(&rollout.motions, units), caption);
+        let caption = "The recorded motion and that of the model from the state at the begin of each stretch on, before and after; the \
+                       stretches stand one behind the other.";
+        page.figure(&motions(&rollout.motions, rollout.horizon_s, units), caption);
     }
     page.paragraph(&format!(
         "Share of the recorded torque's variance that is explained: {:.4} before, {:.4} after.",
@@ -231,16 +236,20 @@ fn proof(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
     ));
 }
 
-/// Positions over time, with a break between rollouts.
-fn motions(motions: &[Motion], units: Units) -> String {
+/// Positions over time, one rollout behind the other with a break between.
+fn motions(motions: &[Motion], horizon_s: f64, units: Units) -> String {
+    let motions = &motions[..motions.len().min(MOST_MOTIONS)];
     let all = |of: fn(&Motion) -> &Vec<f64>| motions.iter().flat_map(move |motion| of(motion).iter().copied());
     let position = Scale::over(all(|motion| &motion.recorded).chain(all(|motion| &motion.before)));
-    let time = Scale::over(all(|motion| &motion.time));
+    let pace_s = MOTION_PACE * horizon_s;
+    let time = Scale::over([0.0, pace_s * motions.len() as f64].into_iter());
     let mut chart = Chart::new((1060.0, 300.0), time, position, ["time (s)", &axis_label("position", units)]);
     let mut line = |of: fn(&Motion) -> &Vec<f64>, ink: Ink, name: &str| {
-        let points = motions.iter().flat_map(|motion| {
-            let points = motion.time.iter().zip(of(motion)).map(|(time, position)| [*time, *position]);
-            points.chain([[motion.time[0], f64::NAN]])
+        let points = motions.iter().enumerate().flat_map(|(index, motion)| {
+            let begin = pace_s * index as f64;
+            let behind = begin - motion.time[0];
+            let points = motion.time.iter().zip(of(motion)).map(move |(time, position)| [time + behind, *position]);
+            points.chain([[begin, f64::NAN]])
         });
         chart.line(&points.collect::<Vec<_>>(), ink, name);
     };

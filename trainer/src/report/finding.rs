@@ -44,7 +44,9 @@ pub(super) fn section(page: &mut Page, diagnosis: &Diagnosis, index: usize, unit
             ]
         })
         .collect();
-    page.subheading("Where it sits");
+    if !regions.is_empty() {
+        page.subheading("Where it sits");
+    }
     page.table(&["channel", "from", "to", "unit", "of the evidence", "of the samples"], &regions);
     standings(page, found);
     page.subheading("On the drive");
