@@ -38,17 +38,18 @@ impl Confirmed {
     pub fn of(search: &mut Search, baseline: &Refit) -> Self {
         let workbench: &Workbench = search.workbench;
         let mut withdrawn = Vec::new();
-        for searches in 1.. {
+        let mut searches_left = MOST_SEARCHES;
+        loop {
+            searches_left -= 1;
             let SearchOutcome { mut accepted, last_round, noise } = search.run();
             polish(workbench, &mut accepted, &noise);
             let labels = accepted.iter().map(|found| found.label.clone());
             let unnamed: Vec<Label> = labels.filter(|label| label.channel().is_some()).collect();
             withdrawn.extend(withdraw_unproven(workbench, &search.settings, baseline, &mut accepted));
-            if !accepted.is_empty() || unnamed.is_empty() || searches == MOST_SEARCHES {
+            if !accepted.is_empty() || unnamed.is_empty() || searches_left == 0 {
                 return Self { accepted, withdrawn, last_round, noise };
             }
             search.refused.extend(unnamed);
         }
-        Self::nothing(search)
     }
 }

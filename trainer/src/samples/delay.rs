@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::joint::Joint;
 use crate::numerics::products::dot;
 use crate::numerics::regression::least_squares;
+use crate::numerics::statistics::t_statistic;
 use crate::recording::Recording;
 
 /// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either edge of it makes
@@ -61,14 +62,6 @@ fn put_back(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<f64> {
     };
     let gains: Vec<f64> = even_blocks(least.len(), PARTS).into_iter().map(gain).collect();
     (t_statistic(&gains) > LEAST_T_STATISTIC).then_some(samples)
-}
-
-/// Mean over its standard error.
-fn t_statistic(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean / (variance / count).sqrt()
 }
 
 /// What rigid body and friction, identified where the joint slides, leave of the torque there.

@@ -55,9 +55,8 @@ impl MeasurementNoise {
     pub fn beside<'g>(&'g self, workbench: &'g Workbench<'g>, bench: &'g Bench, noise: &'g Noise) -> NoiseBeside<'g> {
         let runs = bench.runs();
         let mut left = workbench.whitened(std::slice::from_ref(&self.left), noise).swap_remove(0);
-        let mut target = bench.target.clone();
-        [&mut left, &mut target].into_iter().for_each(|column| bench.take_off_base(column));
-        NoiseBeside { state: &self.state, workbench, bench, noise, target, left, runs }
+        bench.take_off_base(&mut left);
+        NoiseBeside { state: &self.state, workbench, bench, noise, target: bench.target_beside_base(), left, runs }
     }
 }
 

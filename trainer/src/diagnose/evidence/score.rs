@@ -96,6 +96,13 @@ impl Bench {
         self.law_uncertainty.whiten(column, &runs);
     }
 
+    /// What base and errors of the law leave of the target, in the same measure.
+    pub fn target_beside_base(&self) -> Vec<f64> {
+        let mut target = self.target.clone();
+        self.take_off_base(&mut target);
+        target
+    }
+
     /// Prior precision of each column beside a candidate: none for the base, one for the errors of the law.
     fn prior(&self) -> DMatrix<f64> {
         let of_base = self.base.len();
@@ -170,14 +177,14 @@ impl Bench {
         let right: DVector<f64> = blocks.iter().fold(DVector::zeros(p + d), |sum, (_, r)| sum + r);
         let mut prior = DMatrix::<f64>::zeros(p + d, p + d);
         prior.view_mut((0, 0), (p, p)).copy_from(&self.prior());
-        if d > 0 && ridge.is_empty() && !independent(&(&normal + &prior), p) {
-            return None;
-        }
         for (a, share) in ridge.iter().enumerate() {
             prior[(p + a, p + a)] = (share * normal[(p + a, p + a)]).max(f64::MIN_POSITIVE);
         }
-        let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
         let posterior = &normal + &prior;
+        if d > 0 && ridge.is_empty() && !independent(&posterior, p) {
+            return None;
+        }
+        let energy: f64 = self.sums.iter().map(|sums| sums.target).sum();
         let base_residual = energy - explained(&posterior.view((0, 0), (p, p)).into(), &right.rows(0, p).into())?;
         let full = Factored::new(&posterior)?;
         let solution = full.solve(&right)?;

@@ -6,6 +6,7 @@ use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::round::Round;
 use crate::diagnose::search::scored::Scored;
 use crate::numerics::least_squares::{dot, orthonormal, project_out};
+use crate::numerics::statistics::t_statistic;
 use crate::physics::EffectId;
 
 /// Energy that a name explains over that of a free function which leads it, above which the name is kept. Chosen by
@@ -237,8 +238,5 @@ fn within_reach(best: &Scored, rival: &Scored, reach: f64) -> bool {
     const LEAD_T_STATISTIC: f64 = 1.65;
     let distance = best.score - rival.score;
     let leads: Vec<f64> = best.evidence.fold_gain.iter().zip(&rival.evidence.fold_gain).map(|(b, r)| b - r).collect();
-    let count = leads.len() as f64;
-    let mean = leads.iter().sum::<f64>() / count;
-    let variance = leads.iter().map(|lead| (lead - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    distance < reach || distance < CLOSE_LEAD_NATS && mean < LEAD_T_STATISTIC * (variance / count).sqrt()
+    distance < reach || distance < CLOSE_LEAD_NATS && t_statistic(&leads) < LEAD_T_STATISTIC
 }

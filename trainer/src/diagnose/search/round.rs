@@ -94,8 +94,7 @@ impl<'s, 'a> Round<'s, 'a> {
         };
         let groups: Vec<NullGroup> =
             self.search.workbench.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
-        let mut rest = self.bench.target.clone();
-        self.bench.take_off_base(&mut rest);
+        let mut rest = self.bench.target_beside_base();
         let mut best = self.search.workbench.whitened(&best, &self.noise);
         best.iter_mut().for_each(|column| self.bench.take_off_base(column));
         project_out(&mut rest, &orthonormal(&best, &runs), &runs);
@@ -154,6 +153,7 @@ impl<'s, 'a> Round<'s, 'a> {
         }
         let workbench = self.search.workbench;
         let grain = self.search.measurement_noise.map(|grain| grain.beside(workbench, &self.bench, &self.noise));
+        let target = self.bench.target_beside_base();
         let scatters: Vec<f64> = table
             .par_iter_mut()
             .map(|scored| {
@@ -165,7 +165,7 @@ impl<'s, 'a> Round<'s, 'a> {
                     scored.score *= trust;
                     scored.surprise *= trust;
                 }
-                self.overdispersion_of(&scored.label, &scored.shape)
+                self.overdispersion_of(&scored.label, &scored.shape, &target)
             })
             .collect();
         // One measure for all that are compared, so that a near tie does not hang on it: the leader's. An event has the noise of its time.
@@ -180,14 +180,12 @@ impl<'s, 'a> Round<'s, 'a> {
         }
     }
 
-    /// Overdispersion along the torque that a candidate is fitted with.
-    fn overdispersion_of(&self, label: &Label, shape: &[f64]) -> f64 {
+    /// Overdispersion along the torque that a candidate is fitted to the target with, beside the base.
+    fn overdispersion_of(&self, label: &Label, shape: &[f64], target: &[f64]) -> f64 {
         let workbench = self.search.workbench;
         let mut columns = workbench.whitened(&workbench.filtered_columns(label, shape), &self.noise);
         columns.iter_mut().for_each(|column| self.bench.take_off_base(column));
-        let mut target = self.bench.target.clone();
-        self.bench.take_off_base(&mut target);
-        let coefficients = least_squares(&columns, &target, &self.bench.runs());
+        let coefficients = least_squares(&columns, target, &self.bench.runs());
         coefficients.map_or(1.0, |fitted| overdispersion(&weighted(&columns, &fitted), &self.left, &self.bench.blocks))
     }
 
