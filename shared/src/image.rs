@@ -13,7 +13,7 @@ use crate::validate::InvalidModel;
 pub const MAGIC: [u8; 4] = *b"FRKN";
 
 /// Version of the format that this crate writes and reads.
-pub const FORMAT_VERSION: u16 = 5;
+pub const FORMAT_VERSION: u16 = 6;
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 16;
@@ -167,7 +167,8 @@ pub fn decode<const CELLS: usize>(bytes: &[u8]) -> Result<Image<CELLS>, ImageErr
     }
     let (provenance, rest) = postcard::take_from_bytes::<Provenance>(payload).map_err(|_| ImageError::Malformed)?;
     let LawError { slow, sliding } = provenance.law_error;
-    if ![slow, sliding].iter().all(|error| error.is_finite() && *error >= 0.0) {
+    let is_bounded = [slow, sliding].iter().all(|error| error.is_finite() && *error >= 0.0);
+    if !is_bounded || !provenance.rigid_body_error.factor.iter().all(|error| error.is_finite()) {
         return Err(ImageError::Malformed);
     }
     let (model, rest) = postcard::take_from_bytes::<Model<CELLS>>(rest).map_err(|_| ImageError::Malformed)?;

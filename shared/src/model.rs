@@ -82,6 +82,8 @@ pub struct Provenance {
     pub seed: u64,
     /// What the law gets wrong of the recordings.
     pub law_error: LawError,
+    /// What the recordings leave open of the rigid body.
+    pub rigid_body_error: RigidBodyError,
 }
 
 /// What a law gets wrong of the recordings that it was fitted to, beside their noise: root mean squares in the unit of the output,
@@ -92,6 +94,41 @@ pub struct LawError {
     pub slow: f32,
     /// Above it.
     pub sliding: f32,
+}
+
+/// Covariance of the constants of a [`RigidBody`] that were identified along with the law, as a factor: 0 for a constant that was given,
+/// all 0 where it was not determined.
+///
+/// Row `k` of the upper triangle, which [`RigidBodyError::row`] returns, is one independent error of all constants at one standard
+/// deviation; the covariance is the sum of the products of each row with itself. Finite numbers in the units of the constants.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct RigidBodyError {
+    /// The upper triangle by rows, constants in the order of [`RigidBody`].
+    pub factor: [f32; RIGID_BODY_CONSTANTS * (RIGID_BODY_CONSTANTS + 1) / 2],
+}
+
+/// Constants of a [`RigidBody`].
+pub const RIGID_BODY_CONSTANTS: usize = 5;
+
+impl RigidBodyError {
+    /// Error of each constant in independent error `k` (below [`RIGID_BODY_CONSTANTS`]), at one standard deviation.
+    ///
+    /// ```
+    /// use frikan_shared::model::RigidBodyError;
+    /// let mut error = RigidBodyError::default();
+    /// error.factor[4] = 0.1; // given_scale in the first row
+    /// error.factor[14] = 0.2; // given_scale by itself
+    /// assert_eq!(error.row(0), [0.0, 0.0, 0.0, 0.0, 0.1]);
+    /// assert_eq!(error.row(4), [0.0, 0.0, 0.0, 0.0, 0.2]);
+    /// ```
+    #[must_use]
+    pub fn row(&self, k: usize) -> [f32; RIGID_BODY_CONSTANTS] {
+        let mut row = [0.0; RIGID_BODY_CONSTANTS];
+        let begin: usize = (0..k).map(|before| RIGID_BODY_CONSTANTS.saturating_sub(before)).sum();
+        let own = self.factor.get(begin..).unwrap_or_default();
+        row.iter_mut().skip(k).zip(own).for_each(|(constant, error)| *constant = *error);
+        row
+    }
 }
 
 /// Share of the top speed up to which friction may be that of break-away.

@@ -1,4 +1,4 @@
-//! `trainer show` of images with correction terms: nothing that the image holds and nothing that a term remembers is left out.
+//! `trainer show`: nothing that an image holds and nothing that a term remembers is left out, and how sure its constants are.
 
 use frikan_runtime::friction::{FrictionState, Measurement};
 use frikan_shared::effect::Effect;
@@ -66,4 +66,22 @@ fn every_parameter_and_every_state_of_every_effect_is_shown() {
         let states: usize = terms.iter().map(|term| term["state"].as_array().unwrap().len()).sum();
         assert_eq!(text.output.matches("remembers the ").count(), states, "{}", text.output);
     }
+}
+
+/// The golden image of `fixtures/elbow.toml`: inertia 0.5 kg m^2, gravity 6 N m sin q, no offset.
+#[test]
+fn a_fitted_rigid_body_is_within_its_errors_and_says_what_makes_up_for_what() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/elbow.frk");
+    let (_, image) = frikan_trainer::fit::model::load(path.as_ref()).unwrap();
+    let (body, error) = (image.model.rigid_body, image.provenance.rigid_body_error);
+    let constants = [body.inertia, body.gravity_sin, body.gravity_cos, body.offset].map(f64::from);
+    let covariance =
+        |i: usize, j: usize| (0..5).map(|k| f64::from(error.row(k)[i]) * f64::from(error.row(k)[j])).sum::<f64>();
+    for (place, (constant, truth)) in constants.into_iter().zip([0.5, 6.0, 0.0, 0.0]).enumerate() {
+        let error = covariance(place, place).sqrt();
+        assert!(error > 0.0 && (constant - truth).abs() < 2.0 * error, "{place}: {constant} +- {error}");
+    }
+    assert!(covariance(2, 3) < -0.98 * (covariance(2, 2) * covariance(3, 3)).sqrt());
+    let shown = run(env!("CARGO_MANIFEST_DIR").as_ref(), &["show", path]).output;
+    assert!(shown.lines().any(|line| line.contains("gravity, cosine 0.114276 +- 0.147")), "{shown}");
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS};
 use crate::expression::{Operation, Program, ProgramFault};
-use crate::model::{Input, Law, LawError, RigidBody};
+use crate::model::{Input, Law, LawError, RigidBody, RigidBodyError};
 use crate::table::{Cell, Geometric, GeometricShape, Symmetry};
 use crate::units::{Quantity, Unit};
 use proptest::prelude::*;
@@ -41,6 +41,7 @@ fn table_image(symmetry: Symmetry) -> Image<64> {
         recordings_hash: u64::MAX,
         seed: 7,
         law_error: LawError { slow: 0.25, sliding: 0.125 },
+        rigid_body_error: RigidBodyError { factor: core::array::from_fn(|k| 0.5 - k as f32) },
     };
     Image { provenance, model }
 }
@@ -68,13 +69,19 @@ fn forged(model: &Pool, provenance: &Provenance) -> Vec<u8> {
 }
 
 #[test]
-fn an_error_of_the_law_that_is_none_is_refused() {
+fn an_error_of_law_or_rigid_body_that_is_none_is_refused() {
     let model = table_image(Symmetry::Odd).model;
     for bad in [f32::NAN, f32::INFINITY, -0.5] {
         for law_error in [LawError { slow: bad, sliding: 0.0 }, LawError { slow: 0.0, sliding: bad }] {
             let provenance = Provenance { law_error, ..Provenance::default() };
             assert_eq!(decode::<64>(&forged(&model, &provenance)).unwrap_err(), ImageError::Malformed, "{law_error:?}");
         }
+    }
+    let mut rigid_body_error = RigidBodyError::default();
+    for bad in [f32::NAN, f32::NEG_INFINITY] {
+        rigid_body_error.factor[14] = bad;
+        let provenance = Provenance { rigid_body_error, ..Provenance::default() };
+        assert_eq!(decode::<64>(&forged(&model, &provenance)).unwrap_err(), ImageError::Malformed);
     }
 }
 

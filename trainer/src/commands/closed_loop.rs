@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use frikan_runtime::drive::DriveSettings;
 use frikan_runtime::shared::image::Image;
-use frikan_runtime::shared::model::LawError;
 use frikan_runtime::shared::units::Unit;
 use frikan_runtime::supervised::{DEFAULT_GAIN, VelocitySource};
 
@@ -178,10 +177,7 @@ fn image_of(arguments: &Loop, joint: &plant::Joint) -> Result<(Vec<u8>, HostMode
     } else {
         let nominal = nominal_model::<CELLS>(&joint.friction)
             .ok_or_else(|| Error::new(&codes::BAD_JOINT_FILE, "an image cannot hold this friction"))?;
-        let image = Box::new(Image {
-            model: nominal,
-            provenance: model::provenance("", &[], arguments.seed, LawError::default()),
-        });
+        let image = Box::new(Image { model: nominal, provenance: model::provenance("", &[], arguments.seed) });
         (model::to_bytes(&image)?, image)
     };
     if image.model.output_unit != Unit::NewtonMetre {

@@ -34,7 +34,6 @@ use crate::report::{self, DiagnosisPage};
 use clap::{Args, ValueEnum};
 use compare::{Compared, comparison};
 use frikan_shared::image::Image;
-use frikan_shared::model::LawError;
 use frikan_shared::units::Unit;
 use sealed::sealed_score;
 use std::path::{Path, PathBuf};
@@ -247,10 +246,15 @@ fn improved_image(
     comparison: &Comparison,
     compared: &Compared,
 ) -> Result<Written> {
-    let (origin, law_error) = match compared {
-        Compared::Itself(body) => (Origin::Recording(**body), LawError::default()),
-        Compared::Simulation(law, given) => (Origin::Simulation(law, *given), LawError::default()),
-        Compared::Model(image) => (Origin::Model(&image.model), image.provenance.law_error),
+    let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, arguments.seed);
+    let origin = match compared {
+        Compared::Itself(body) => Origin::Recording(**body),
+        Compared::Simulation(law, given) => Origin::Simulation(law, *given),
+        Compared::Model(image) => {
+            provenance.law_error = image.provenance.law_error;
+            provenance.rigid_body_error = image.provenance.rigid_body_error;
+            Origin::Model(&image.model)
+        }
     };
     let unit = match units(&recordings[0]).actuator {
         "N" => Unit::Newton,
@@ -259,8 +263,6 @@ fn improved_image(
     };
     let improved = improve(diagnosis, comparison, origin, unit, arguments.target.unwrap_or_default())
         .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
-    let name = joint.name.as_deref().unwrap_or_default();
-    let provenance = fit::model::provenance(name, recordings, arguments.seed, law_error);
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.
     let after = fit::model::from_bytes(&image)?.model;

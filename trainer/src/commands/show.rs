@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
-use frikan_shared::model::{Law, LawError};
+use frikan_shared::model::{Law, LawError, RIGID_BODY_CONSTANTS, RigidBodyError};
 
 use super::output::Outputs;
 use crate::error::Result;
@@ -161,15 +161,17 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         describe_term(out, &term)?;
     }
     let body = model.rigid_body;
-    for (name, value) in [
+    let constants = [
         ("inertia", body.inertia),
         ("gravity, sine", body.gravity_sin),
         ("gravity, cosine", body.gravity_cos),
         ("offset", body.offset),
         ("scale of a given torque", body.given_scale),
-    ] {
+    ];
+    for ((name, value), error) in constants.into_iter().zip(standard_errors(provenance.rigid_body_error)) {
+        let error = if error > 0.0 { format!(" +- {}", significant(error, DIGITS)) } else { String::new() };
         if value != 0.0 {
-            writeln!(out, "rigid body  {name} {}", significant(f64::from(value), DIGITS))?;
+            writeln!(out, "rigid body  {name} {}{error}", significant(f64::from(value), DIGITS))?;
         }
     }
     let LawError { slow, sliding } = provenance.law_error;
@@ -192,4 +194,11 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
         model.cells.len(),
         image_crc32(bytes).unwrap_or(0)
     )
+}
+
+/// Standard error of each constant of a rigid body.
+fn standard_errors(error: RigidBodyError) -> [f64; RIGID_BODY_CONSTANTS] {
+    let of =
+        |constant: usize| (0..RIGID_BODY_CONSTANTS).map(|k| f64::from(error.row(k)[constant]).powi(2)).sum::<f64>();
+    core::array::from_fn(|constant| of(constant).sqrt())
 }

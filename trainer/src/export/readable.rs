@@ -26,6 +26,7 @@ pub fn readable(bytes: &[u8], image: &Image<CELLS>) -> String {
         "recordings_hash": format!("{:016x}", provenance.recordings_hash),
         "seed": provenance.seed,
         "law_error": { "slow": f64::from(provenance.law_error.slow), "sliding": f64::from(provenance.law_error.sliding) },
+        "rigid_body_error": provenance.rigid_body_error.factor.map(f64::from),
         "bytes": bytes.len(),
         "crc32": image_crc32(bytes).unwrap_or(0),
         "inputs": inputs,

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::numerics::hat_functions::law_error_hats;
 use crate::numerics::least_squares::{gram, moments, solve_symmetric};
 use crate::numerics::regression::least_squares;
+use crate::samples::blocks::ERROR_BLOCKS;
 use crate::samples::top_speed;
 use frikan_shared::model::{LawError, SLOW_SHARE};
 use nalgebra::{DMatrix, DVector};
@@ -17,29 +18,45 @@ const FOLDS: usize = 10;
 /// Rows without an error that each hat is given, so that one which few rows fall under says nothing.
 const ROWS_WITHOUT_ERROR: f64 = 1.0;
 
+/// What a model leaves of the torque that it was fitted to.
+pub(super) struct Residual<'a> {
+    /// Measured less predicted, one value a sample.
+    pub(super) left: Vec<f64>,
+    pub(super) velocity: &'a [f64],
+    /// That of the law.
+    pub(super) top_speed: f64,
+}
+
+impl<'a> Residual<'a> {
+    /// # Errors
+    /// As [`predict`].
+    pub(super) fn of(model: &HostModel, material: &'a Material) -> Result<Self> {
+        let samples = &material.samples;
+        let predicted = predict(model, samples)?.total();
+        let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
+        let left = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
+        let velocity = samples.velocity.as_deref().unwrap_or_default();
+        let top_speed = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
+        Ok(Self { left, velocity, top_speed })
+    }
+}
+
 /// Error of a law over the rows that it was fitted to: what of its residual is a function of velocity and of whether the joint speeds up or
 /// slows down, estimated on rows held out, and the standard error of a curve over speed.
-///
-/// # Errors
-/// As [`predict`].
-pub(super) fn law_error(model: &HostModel, material: &Material) -> Result<LawError> {
-    let samples = &material.samples;
-    let predicted = predict(model, samples)?.total();
-    let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-    let left: Vec<f64> = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
-    let velocity = samples.velocity.as_deref().unwrap_or_default();
-    let top = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
+pub(super) fn law_error(material: &Material, residual: &Residual<'_>) -> LawError {
+    let Residual { left, velocity, top_speed } = residual;
+    let acceleration = material.samples.acceleration.as_deref();
     let over = |is_slow: bool| {
-        let counts = |position: &usize| (velocity[material.rows[*position]].abs() <= SLOW_SHARE * top) == is_slow;
+        let counts = |position: &usize| (velocity[material.rows[*position]].abs() <= SLOW_SHARE * top_speed) == is_slow;
         let positions: Vec<usize> = (0..material.rows.len()).filter(counts).collect();
         let pick = |values: &[f64]| -> Vec<f64> {
             positions.iter().map(|&position| values[material.rows[position]]).collect()
         };
-        let labels: Vec<usize> = positions.iter().map(|&position| material.labels[position]).collect();
-        error_over(&pick(&left), &pick(velocity), samples.acceleration.as_deref().map(pick).as_deref(), &labels, top)
-            as f32
+        let labels: Vec<usize> =
+            positions.iter().map(|&position| position * ERROR_BLOCKS / material.rows.len()).collect();
+        error_over(&pick(left), &pick(velocity), acceleration.map(pick).as_deref(), &labels, *top_speed) as f32
     };
-    Ok(LawError { slow: over(true), sliding: over(false) })
+    LawError { slow: over(true), sliding: over(false) }
 }
 
 /// Root mean square of the error in a residual; velocity, acceleration and block of each row, top speed.

@@ -10,6 +10,7 @@ pub mod model;
 mod options;
 pub mod outcome;
 pub mod predict;
+mod rigid_body_error;
 mod run;
 pub mod score;
 

@@ -2,7 +2,7 @@
 
 use crc::{CRC_64_XZ, Crc};
 use frikan_shared::image::{Image, decode, encode};
-use frikan_shared::model::{Input, Law, LawError, Provenance, RigidBody};
+use frikan_shared::model::{Input, Law, LawError, Provenance, RigidBody, RigidBodyError};
 use frikan_shared::pool::Pool;
 use frikan_shared::table::Cell;
 use frikan_shared::units::Unit;
@@ -48,15 +48,16 @@ pub(super) fn assemble(parts: &Parts<'_>) -> Option<Box<HostModel>> {
     Some(Box::new(model))
 }
 
-/// Where a model comes from, and how large the error of its law is.
-/// The joint's name is cut to what an image holds.
-pub(crate) fn provenance(joint: &str, recordings: &[Recording], seed: u64, law_error: LawError) -> Provenance {
+/// Where a model comes from; the errors of its law and of its rigid body are not determined yet. The joint's name is cut to what an image
+/// holds.
+pub(crate) fn provenance(joint: &str, recordings: &[Recording], seed: u64) -> Provenance {
     Provenance {
         joint: cut(joint),
         trainer_version: cut(env!("CARGO_PKG_VERSION")),
         recordings_hash: recordings_hash(recordings),
         seed,
-        law_error,
+        law_error: LawError::default(),
+        rigid_body_error: RigidBodyError::default(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use frikan_runtime::evaluate::evaluate;
 use frikan_shared::image::Image;
-use frikan_shared::model::MAX_INPUTS;
+use frikan_shared::model::{MAX_INPUTS, Provenance};
 
 use super::choice::choose::Trial;
 use super::choice::physical::Violation;
@@ -11,7 +11,7 @@ use super::choice::turn::{self, Turn};
 use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
-use super::law_error::law_error;
+use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
 use super::laws::formula::{self, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
@@ -19,6 +19,7 @@ use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore};
+use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
 use crate::error::Result;
 use crate::joint::Joint;
@@ -91,7 +92,12 @@ fn fit_once(
     let violation = Violation::of(&model, &material);
 
     let name = joint.name.clone().unwrap_or_default();
-    let provenance = provenance(&name, recordings, options.seed, law_error(&model, &material)?);
+    let residual = Residual::of(&model, &material)?;
+    let provenance = Provenance {
+        law_error: law_error(&material, &residual),
+        rigid_body_error: rigid_body_error(&material, &residual),
+        ..provenance(&name, recordings, options.seed)
+    };
     let image = to_bytes(&Image { provenance, model: *model })?;
     // What is scored is what a drive would decode.
     let model = from_bytes(&image)?.model;

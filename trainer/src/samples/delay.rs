@@ -4,8 +4,9 @@
 use std::ops::Range;
 
 use super::bending::BendingLaw;
+use super::blocks::even_blocks;
 use super::prepare::prepare;
-use super::rigid_body::{even_blocks, given_torque, terms};
+use super::rigid_body::{given_torque, terms};
 use super::{Preparation, Samples, top_speed};
 use crate::error::Result;
 use crate::joint::Joint;

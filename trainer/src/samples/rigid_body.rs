@@ -1,10 +1,9 @@
 //! Takes the rigid body off the actuator's torque: given parameters are subtracted, the others identified together
 //! with a friction law that is free to bend (linear least squares; Swevers et al. 1997).
 
-use std::ops::Range;
-
 use super::Samples;
 use super::bending::BendingLaw;
+use super::blocks::{ERROR_BLOCKS, even_blocks};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::numerics::regression::least_squares;
@@ -16,9 +15,6 @@ const GRAVITY_RANGE_RAD: f64 = 0.5;
 const REST_SHARE: f64 = 0.001;
 /// Samples of one direction needed to tell an offset from friction, as a share.
 const DIRECTION_SHARE: f64 = 0.05;
-/// Blocks over which residuals may be correlated, for the standard errors.
-const BLOCKS: usize = 40;
-
 /// What a rigid-body term stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TermKind {
@@ -206,7 +202,7 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
     let mut columns: Vec<Vec<f64>> = own_column.iter().map(|term| pick(&term.column)).collect();
     columns.extend(law.columns(&moving_velocity));
     let target: Vec<f64> = moving.iter().map(|&i| actuator[i] - given[i]).collect();
-    let fit = least_squares(&columns, &target, &even_blocks(target.len(), BLOCKS));
+    let fit = least_squares(&columns, &target, &even_blocks(target.len(), ERROR_BLOCKS));
 
     let mut parameters = Vec::with_capacity(terms.len());
     for (index, term) in own_column.iter().enumerate() {
@@ -259,9 +255,4 @@ fn range(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
     highest - lowest
-}
-
-/// Blocks of nearly the same length.
-pub(super) fn even_blocks(length: usize, count: usize) -> Vec<Range<usize>> {
-    (0..count).map(|k| k * length / count..(k + 1) * length / count).filter(|block| !block.is_empty()).collect()
 }

@@ -62,7 +62,7 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
 
 /// A model at the states of a recording, with the error that its law has by the image.
 fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> Result<Reference> {
-    let uncertainty = from_model::uncertainty(&image.model, image.provenance.law_error, state);
+    let uncertainty = from_model::uncertainty(image, state, given);
     Ok(Reference { uncertainty, ..from_model::at(&image.model, state, given)? })
 }
 

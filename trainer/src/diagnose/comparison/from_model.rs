@@ -10,7 +10,8 @@ use crate::samples::blocks::rests;
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement, rigid_body_torque};
 use frikan_shared::expression::Operation;
-use frikan_shared::model::{Law, LawError, Model, SLOW_SHARE};
+use frikan_shared::image::Image;
+use frikan_shared::model::{Law, LawError, Model, RIGID_BODY_CONSTANTS, RigidBody, RigidBodyError, SLOW_SHARE};
 use frikan_shared::table::Symmetry;
 use frikan_shared::units::Quantity;
 
@@ -37,10 +38,7 @@ pub fn at<const CELLS: usize>(model: &Model<CELLS>, state: &JointState, given: O
             return Err(Error::new(&codes::MISSING_COLUMN, message).in_column(name));
         }
     }
-    let rigid_body = state.map(|i| {
-        let given = given.map_or(0.0, |torque| torque[i] as f32);
-        f64::from(rigid_body_torque(&model.rigid_body, state.position[i] as f32, state.acceleration[i] as f32, given))
-    });
+    let rigid_body = rigid_body(&model.rigid_body, state, given);
     let friction = friction(model, state);
     Ok(Reference {
         torque: friction.iter().zip(&rigid_body).map(|(f, b)| f + b).collect(),
@@ -103,9 +101,20 @@ fn friction<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
     friction
 }
 
-/// Torque of each direction in which the law is not sure of itself, at one standard deviation: a hat over speed, of its own where the
-/// joint speeds up and where it slows down. None where the image does not say how wrong its law is.
-pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, state: &JointState) -> Vec<Vec<f64>> {
+/// Torque of each direction in which a model is not sure of itself, at one standard deviation, as its image says: hats over speed for the
+/// law, of their own where the joint speeds up and where it slows down, and the independent errors of the rigid body. `given` is a
+/// rigid-body torque that the recording carries.
+pub fn uncertainty<const CELLS: usize>(
+    image: &Image<CELLS>,
+    state: &JointState,
+    given: Option<&[f64]>,
+) -> Vec<Vec<f64>> {
+    let mut directions = law_uncertainty(&image.model, image.provenance.law_error, state);
+    directions.extend(rigid_body_uncertainty(image.provenance.rigid_body_error, state, given));
+    directions
+}
+
+fn law_uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, state: &JointState) -> Vec<Vec<f64>> {
     if error == LawError::default() {
         return Vec::new();
     }
@@ -119,6 +128,23 @@ pub fn uncertainty<const CELLS: usize>(model: &Model<CELLS>, error: LawError, st
         direction.iter_mut().zip(&deviation).for_each(|(hat, deviation)| *hat *= deviation);
     }
     directions
+}
+
+fn rigid_body_uncertainty(error: RigidBodyError, state: &JointState, given: Option<&[f64]>) -> Vec<Vec<f64>> {
+    let rows = (0..RIGID_BODY_CONSTANTS).map(|k| error.row(k)).filter(|row| row.iter().any(|error| *error != 0.0));
+    rows.map(|[inertia, gravity_sin, gravity_cos, offset, given_scale]| {
+        let body = RigidBody { inertia, gravity_sin, gravity_cos, offset, given_scale };
+        rigid_body(&body, state, given)
+    })
+    .collect()
+}
+
+/// Torque of a rigid body at the states of a recording.
+fn rigid_body(body: &RigidBody, state: &JointState, given: Option<&[f64]>) -> Vec<f64> {
+    state.map(|i| {
+        let given = given.map_or(0.0, |torque| torque[i] as f32);
+        f64::from(rigid_body_torque(body, state.position[i] as f32, state.acceleration[i] as f32, given))
+    })
 }
 
 /// The channels of a recording at their mean; at no speed.

@@ -1,7 +1,7 @@
 //! The laws side by side: what each costs on a drive, which of them the budget allows, which goes into the image.
 
 use frikan_shared::image::Image;
-use frikan_shared::model::{Law, LawError};
+use frikan_shared::model::Law;
 
 use super::choose::{Entry, Judge, Trial, effective_rows};
 use super::physical::Violation;
@@ -46,7 +46,7 @@ impl Budget {
 
 /// Bytes of the image of a model, provenance not counted.
 fn size(model: &HostModel) -> Result<usize> {
-    Ok(to_bytes(&Image { provenance: provenance("", &[], 0, LawError::default()), model: model.clone() })?.len())
+    Ok(to_bytes(&Image { provenance: provenance("", &[], 0), model: model.clone() })?.len())
 }
 
 /// Compares the laws on rows that they have not seen, or by what their constants cost where there are none, and takes the simplest
