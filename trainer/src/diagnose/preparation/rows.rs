@@ -11,7 +11,7 @@ const ROWS_PER_CUT_OFF: f64 = 2.5;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 
-/// Times the reach of the filter that a tenth of a block has to be long for it to be sealed: what the border costs is then small.
+/// Times the reach of the filter that a part of a block has to be long for it to be sealed: what the border costs is then small.
 const SEALED_OVER_REACH: usize = 3;
 
 /// Which rows are locked away from all fitting and naming.
@@ -112,12 +112,11 @@ fn split_for_lock(
             let at = |tenth: usize| piece.start + piece.len() * tenth / 10;
             let first = if lock == Lock::Spread { 1 } else { 3 };
             let fifth = 2 * ((2 * index + first) % 5);
-            // The tenth that decides nothing is the same whichever fifth is locked, and never inside it. Each border costs the reach of
-            // the filter, so that only every other block has one.
+            // The tenths that decide nothing are the same whichever fifth is locked, and never inside it.
             let tenth = 2 * ((2 * index + 2) % 5);
-            let is_sealed = index % 2 == 1 && piece.len() / 10 >= SEALED_OVER_REACH * reach;
+            let sealed = tenth..tenth + sealed_tenths(piece.len(), reach, index);
             let purpose = |part: usize| match part {
-                _ if part == tenth && is_sealed => Use::Sealed,
+                _ if sealed.contains(&part) => Use::Sealed,
                 _ if part == fifth || part == fifth + 1 => Use::Locked,
                 _ => Use::Open,
             };
@@ -130,6 +129,17 @@ fn split_for_lock(
             }
             parts
         }
+    }
+}
+
+/// Tenths of a block that are sealed: a twentieth of the recording, in as many parts as are long beside the reach of the filter, which each of
+/// their borders costs. None where a fifth of a block is too short.
+fn sealed_tenths(block: usize, reach: usize, index: usize) -> usize {
+    let is_enough = |tenths: usize| block * tenths / 10 >= SEALED_OVER_REACH * reach;
+    match index % 4 {
+        1 if !is_enough(1) && is_enough(2) => 2,
+        1 | 3 if is_enough(1) => 1,
+        _ => 0,
     }
 }
 
@@ -239,5 +249,13 @@ mod tests {
         let slow = hesitation(&velocity, 0.5, &segments);
         let expected = [2, 3, 8];
         assert_eq!((0..velocity.len()).filter(|&i| slow[i]).collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn as_much_is_sealed_of_short_blocks_in_fewer_and_longer_parts() {
+        let tenths = |block: usize| [0, 1, 2, 3, 4, 5].map(|index| sealed_tenths(block, 10, index));
+        assert_eq!(tenths(300), [0, 1, 0, 1, 0, 1]);
+        assert_eq!(tenths(299), [0, 2, 0, 0, 0, 2]);
+        assert_eq!(tenths(149), [0; 6]);
     }
 }
