@@ -7,7 +7,7 @@ use super::bending::BendingLaw;
 use super::blocks::even_blocks;
 use super::prepare::prepare;
 use super::rigid_body::{given_torque, terms};
-use super::{Preparation, Samples, top_speed};
+use super::{Preparation, SLIDING_SPEED_SHARE, Samples, top_speed};
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::numerics::products::dot;
@@ -18,9 +18,6 @@ use crate::recording::Recording;
 /// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either edge of it makes
 /// up to one, and a quarter is left for the error of the estimate. A longer one is no matter of the sampling and stays: `diagnose` names it.
 pub(crate) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
-/// Speed over the top speed above which a sample tells of a delay. Chosen by judgement: near reversals presliding and lag of the friction look
-/// like one; higher leaves too few samples.
-const SLIDING_SPEED_SHARE: f64 = 0.2;
 /// Parts of the samples whose gains are compared. Chosen by judgement: noise is independent between parts of a second and more.
 const PARTS: usize = 20;
 /// Gauss-Newton steps. The second corrects what a filter and a law that bends make of the first.

@@ -32,6 +32,10 @@ use crate::recording::Axis;
 /// Quantile of the speed that counts as the top speed; what is above may be noise.
 const TOP_QUANTILE: f64 = 0.999;
 
+/// Speed over the top speed above which a joint slides: its friction curve is Coulomb and viscous. Chosen by judgement: below it friction may
+/// still fall from break-away, which would count as Coulomb torque, and presliding and lag look like a delay; higher leaves too few samples.
+pub(crate) const SLIDING_SPEED_SHARE: f64 = 0.2;
+
 /// Speed that all but a thousandth of the samples stay below, in the unit of the velocity.
 pub(crate) fn top_speed(velocity: &[f64]) -> f64 {
     quantile(velocity.iter().map(|v| v.abs()), TOP_QUANTILE)

@@ -17,10 +17,7 @@ use crate::numerics::covariance;
 use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Dimension, EffectId};
-
-/// Speed over the top speed above which a friction curve is Coulomb and viscous. Chosen by judgement: below it friction
-/// may still fall from break-away, which would count as Coulomb torque; higher leaves too little of the curve.
-const SLIDING_SPEED_SHARE: f64 = 0.2;
+use crate::samples::SLIDING_SPEED_SHARE;
 
 /// Effects that scale Coulomb or viscous friction by a channel of their own: what of the level is theirs depends on the
 /// value of the channel that they count from.

@@ -10,8 +10,6 @@ use std::ops::Range;
 /// Whitened base and target, with the sums of every block: all that the evidence needs besides the candidate.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// Whitened base columns.
-    pub base: Vec<Vec<f64>>,
     /// Whitened target.
     pub target: Vec<f64>,
     /// Runs of each open block.
@@ -19,8 +17,10 @@ pub struct Bench {
     /// Orthonormal directions of the base.
     base_directions: Vec<Vec<f64>>,
     law_uncertainty: LawUncertainty,
-    /// Columns of the base, then of the errors of the law.
+    /// Whitened columns of the base, then of the errors of the law.
     beside: Vec<Vec<f64>>,
+    /// How many of them are of the base.
+    of_base: usize,
     sums: Vec<BlockSums>,
 }
 
@@ -76,7 +76,8 @@ impl Bench {
         let runs: Vec<Range<usize>> = blocks.iter().flatten().cloned().collect();
         let base_directions = orthonormal(&base, &runs);
         let law_uncertainty = LawUncertainty::beside(&base_directions, uncertain, &runs);
-        let beside: Vec<Vec<f64>> = base.iter().cloned().chain(law_uncertainty.columns()).collect();
+        let of_base = base.len();
+        let beside = [base, law_uncertainty.columns()].concat();
         let sums = blocks
             .iter()
             .map(|runs| BlockSums {
@@ -86,7 +87,12 @@ impl Bench {
                 rows: rows_in(runs) as f64,
             })
             .collect();
-        Self { base, target, blocks, base_directions, law_uncertainty, beside, sums }
+        Self { target, blocks, base_directions, law_uncertainty, beside, of_base, sums }
+    }
+
+    /// Whitened columns of the base.
+    pub fn base(&self) -> &[Vec<f64>] {
+        &self.beside[..self.of_base]
     }
 
     /// What base and errors of the law leave of a whitened column, where both count as noise of unit variance.
@@ -105,8 +111,7 @@ impl Bench {
 
     /// Prior precision of each column beside a candidate: none for the base, one for the errors of the law.
     fn prior(&self) -> DMatrix<f64> {
-        let of_base = self.base.len();
-        DMatrix::from_diagonal(&DVector::from_fn(self.beside.len(), |i, _| f64::from(u8::from(i >= of_base))))
+        DMatrix::from_diagonal(&DVector::from_fn(self.beside.len(), |i, _| f64::from(u8::from(i >= self.of_base))))
     }
 
     /// All open runs.
@@ -232,8 +237,8 @@ impl Bench {
     /// Coefficients of the base. `ridge` as in [`Self::weigh`], one a base column.
     pub fn solve(&self, ridge: &[f64]) -> Option<Vec<f64>> {
         let runs = self.runs();
-        let normal = ridged_gram(&self.base, ridge, &runs);
-        Some(solve_symmetric(&normal, &moments(&self.base, &self.target, &runs))?.iter().copied().collect())
+        let normal = ridged_gram(self.base(), ridge, &runs);
+        Some(solve_symmetric(&normal, &moments(self.base(), &self.target, &runs))?.iter().copied().collect())
     }
 }
 

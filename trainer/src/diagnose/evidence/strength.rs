@@ -42,7 +42,7 @@ pub fn strength(
     let whitened = Bench::new(columns, Vec::new(), white(&filtered), vec![runs.clone()]);
     let lambda = whitened.visible_energy(&whitened.target.clone())?;
     let bare: Vec<f64> = base.target.iter().zip(&filtered).map(|(t, f)| t - f).collect();
-    let without = Bench::new(whitened.base.clone(), Vec::new(), white(&bare), whitened.blocks.clone());
+    let without = Bench::new(whitened.base().to_vec(), Vec::new(), white(&bare), whitened.blocks.clone());
     let rest_without = residual(&base.columns, &bare, &without.solve(&[])?);
     let plain = Bench::new(base.columns.clone(), Vec::new(), filtered.clone(), vec![runs.clone()]);
     let kept = plain.visible_energy(&filtered)?;

@@ -98,7 +98,7 @@ pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refi
     let bench = workbench.bench(columns.clone(), &noise);
     let runs = bench.runs();
     let mut solution = bench.solve(&ridge)?;
-    let white = residual(&bench.base, &bench.target, &solution);
+    let white = residual(bench.base(), &bench.target, &solution);
     let mut left = residual(&columns, &workbench.base.target, &solution);
     let rows = rows_in(&runs);
     let plain = (dot(&left, &left, &runs) / rows as f64).sqrt() > PLAIN_FIT_ERROR_RATIO * noise.rms;
@@ -122,7 +122,7 @@ pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refi
             let all: Vec<Vec<f64>> = columns.iter().chain(tangents).cloned().collect();
             covariance::of_blocks(&all, &left, &bench.blocks)
         } else {
-            let all: Vec<Vec<f64>> = bench.base.iter().cloned().chain(workbench.whitened(tangents, &noise)).collect();
+            let all: Vec<Vec<f64>> = bench.base().iter().cloned().chain(workbench.whitened(tangents, &noise)).collect();
             covariance::of_whitened(&all, &white, &ridge, &runs)
         }
     };

@@ -205,8 +205,8 @@ impl Round<'_, '_> {
                 .workbench
                 .whitened(&self.search.workbench.filtered_columns(&scored.label, &scored.shape), &self.noise)
         };
-        let span = orthonormal(&self.bench.base.iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
-        let base = orthonormal(&self.bench.base, &runs);
+        let span = orthonormal(&self.bench.base().iter().cloned().chain(white(wider)).collect::<Vec<_>>(), &runs);
+        let base = orthonormal(self.bench.base(), &runs);
         white(narrower).iter().all(|column| {
             let outside = |basis: &[Vec<f64>]| {
                 let mut rest = column.clone();

@@ -190,7 +190,7 @@ impl<'a> Content<'a> {
         if self.has_other_inputs {
             text += " Other inputs of the law stand in the middle of their trained range.";
         }
-        if self.effects.iter().any(|effect| matches!(effect, Effect::Load { .. })) {
+        if self.effects.iter().any(is_load_friction) {
             text += " Load-dependent friction stands at its mean over the trained range of the load.";
         }
         let left_out = self.left_out(held);
@@ -215,6 +215,11 @@ impl<'a> Content<'a> {
             )
         })
     }
+}
+
+/// Whether friction grows with the load, not only the torque that drives it.
+fn is_load_friction(effect: &Effect) -> bool {
+    matches!(effect, Effect::Load { mean, quadratic, stribeck, .. } if [*mean, *quadratic, *stribeck] != [0.0; 3])
 }
 
 /// By how much driving and backdriving a load differ from it, as a share of the load: what no motion tells from a rigid body that is so

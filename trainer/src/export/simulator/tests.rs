@@ -191,6 +191,8 @@ fn what_law_and_rigid_body_share_is_taken_together() {
     assert!(content.body.offset.abs() < 1e-3, "{}", content.body.offset);
     assert!((content.coulomb_viscous.coulomb - 3.0).abs() < 2e-3, "{:?}", content.coulomb_viscous);
     assert!((content.inertia().unwrap() - 0.6).abs() < 1e-6);
+    let patched = written(&image, Simulator::MjcfPatch, Some((MJCF, "elbow"))).unwrap();
+    assert!(!patched.contains("Load-dependent friction"), "{patched}");
 }
 
 #[test]
