@@ -175,7 +175,7 @@ every figure below is counted by that command, and no threshold was chosen on th
 
 A pair is a simulation and a recording of one joint (servo, elbow or shoulder under gravity, with Coulomb friction, damping and rotor inertia) for
 20 to 30 s at 250 Hz, under one controller and one motion of four frequencies, half of the motions with stops. The rigid body is given in
-`joint.toml`. Coulomb friction is the same on both sides: a tanh of the velocity, 0.01 to 0.1 rad/s wide, or ("frictionloss", half of the pairs
+`joint.toml`, but for half of the pairs with a fitted model. Coulomb friction is the same on both sides: a tanh of the velocity, 0.01 to 0.1 rad/s wide, or ("frictionloss", half of the pairs
 of MuJoCo) the soft constraint that MuJoCo makes of it. In MuJoCo the recorded joint is integrated at 0.25 ms, the simulation too where it has a
 tanh, else at 1 ms. In Drake the recorded joint is a discrete plant of 0.25 ms, which has limits of joints and contact between bodies, and the
 simulation is integrated continuously with steps of variable length; the tanh, which Drake's joints do not have, is a generalized force beside the
@@ -192,7 +192,9 @@ little to be found.
     if groups["healthy"]:
         text += of_healthy(groups["healthy"], "Nothing is missing: recording against simulation")
     if groups["model"]:
-        text += of_healthy(groups["model"], "Nothing is missing: recording against a model fitted to another recording of 12 to 120 s")
+        title = "Nothing is missing: recording against a model fitted to another recording of 12 to 120 s, rigid body"
+        for whose, part in split(groups["model"], lambda result: result.get("rigid_body", "given")).items():
+            text += of_healthy(part, f"{title} {whose}")
     else:
         text += "Recordings against a model fitted to another one (`--only model`) are not measured in these runs.\n"
     return text.rstrip() + "\n"
