@@ -54,11 +54,15 @@ def cases(arguments):
 
 
 def solve(job):
-    """One pair made, asked and judged; its folder stays where the answer is wrong."""
+    """One pair made, asked and judged; its folder stays where the answer is wrong. None where the simulator cannot compute the joint."""
     group, case, binary, keep, always = job
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / "pair"
-        pair = model_case(case) if group == "model" else make(case)
+        try:
+            pair = model_case(case) if group == "model" else make(case)
+        except RuntimeError as error:
+            print(f"{group} {case.seed} ({case.effect}): {error}", file=sys.stderr)
+            return None
         write(folder, pair)
         answer = ask(binary, folder, group == "model")
         told = pair[3]
@@ -104,7 +108,7 @@ def measure(arguments):
         for begin in range(0, len(jobs), 2 * arguments.jobs):
             if time.monotonic() - start > 60 * arguments.minutes:
                 break
-            for result in pool.map(solve, jobs[begin : begin + 2 * arguments.jobs]):
+            for result in filter(None, pool.map(solve, jobs[begin : begin + 2 * arguments.jobs])):
                 result["run"] = arguments.seed
                 results.append(result)
                 print(json.dumps(result), file=lines, flush=True)

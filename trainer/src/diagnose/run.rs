@@ -22,7 +22,8 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
-    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
+    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, set_aside_undetermined,
+    withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -153,6 +154,7 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     // In this order: what is set aside later is weighed beside what stays.
     let mut discarded = Discarded {
         withdrawn,
+        undetermined: Vec::new(),
         doubtful: set_aside_doubtful(workbench, &mut accepted),
         minor: set_aside_minor(workbench, &mut accepted, &baseline),
         negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
@@ -161,6 +163,10 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
         discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
     }
     if !discarded.is_empty() {
+        polish(workbench, &mut accepted, &noise);
+    }
+    while let Some(effect) = set_aside_undetermined(workbench, &mut accepted) {
+        discarded.undetermined.push(effect);
         polish(workbench, &mut accepted, &noise);
     }
     let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;

@@ -51,6 +51,7 @@ pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
         "doubtful": explaining(&diagnosis.discarded.doubtful),
         "negligible": explaining(&diagnosis.discarded.negligible),
         "withdrawn": diagnosis.discarded.withdrawn,
+        "undetermined": diagnosis.discarded.undetermined,
         "localisation": { "where": excess.iter().map(region_json).collect::<Vec<_>>(), "when_s": excess_when },
         "detection_limits": diagnosis.limits,
         "rivals": diagnosis.rivals.iter().map(rival_json).collect::<Vec<_>>(),

@@ -1,6 +1,8 @@
 //! What was accepted and is not told: what the locked rows do not bear out, and what may be the error of a formula.
 
 use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::decision::{SHOWN_DEVIATIONS, is_carried, is_worse_by_an_event};
 use crate::diagnose::proof::locked_rows::{Proof, prove, prove_alone, rest};
@@ -9,7 +11,7 @@ use crate::diagnose::request::LEAST_EFFECT_SHARE;
 use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::thresholds::{OTHER_ROWS_ERROR_RATIO, Settings};
 use crate::numerics::least_squares::{dot, rows_in};
-use crate::numerics::statistics::root_mean_square;
+use crate::numerics::statistics::{NORMAL_95, root_mean_square};
 use crate::physics::{Action, EffectId};
 
 /// Share (0..1) of the removable error below which a named effect beside others is minor, where it is also small
@@ -46,12 +48,15 @@ pub struct Discarded {
     pub negligible: Vec<(EffectId, f64)>,
     /// Withdrawn, because locked rows did not confirm them.
     pub withdrawn: Vec<EffectId>,
+    /// Of a size whose 95 % interval includes zero.
+    pub undetermined: Vec<EffectId>,
 }
 
 impl Discarded {
     /// Whether nothing was discarded.
     pub(crate) fn is_empty(&self) -> bool {
-        self.minor.is_empty() && self.doubtful.is_empty() && self.negligible.is_empty() && self.withdrawn.is_empty()
+        let Self { minor, doubtful, negligible, withdrawn, undetermined } = self;
+        [minor, doubtful, negligible].into_iter().all(Vec::is_empty) && withdrawn.is_empty() && undetermined.is_empty()
     }
 }
 
@@ -149,6 +154,25 @@ impl Explained<'_> {
         let share = (left_without - left).max(0.0) / left;
         Some(share < LEAST_NOISE_SHARE * LEAST_NOISE_SHARE && share * (rows_in(&runs) as f64) < LEAST_EFFECT_ENERGY)
     }
+}
+
+/// Sets aside the least certain of the effects of one coefficient, beside the first, whose 95 % interval includes zero: what it is cannot be told
+/// where it may be no torque at all. The first stands by its evidence: its coefficient may trade with a parameter of the base, as that of a
+/// power of the velocity near one does with viscous friction.
+pub(crate) fn set_aside_undetermined(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Option<EffectId> {
+    let index = least_determined(&refit(workbench, accepted)?.effects)?;
+    Some(accepted.remove(index).effect())
+}
+
+/// The effect of one coefficient, but the first effect, whose 95 % interval includes zero, the least certain of several. Of several coefficients each may be anything
+/// while together they are not, and a structure without a name is shrunk towards zero.
+fn least_determined(effects: &[Fitted]) -> Option<usize> {
+    let deviations = |fitted: &Fitted| match (&fitted.label, &fitted.coefficients[..], &fitted.deviation[..]) {
+        (Label::Named(_), [coefficient], [deviation]) => (coefficient / deviation).abs(),
+        _ => f64::INFINITY,
+    };
+    let beside = effects.iter().map(deviations).enumerate().skip(1);
+    Some(beside.filter(|(_, deviations)| *deviations < NORMAL_95).min_by(|a, b| a.1.total_cmp(&b.1))?.0)
 }
 
 /// Sets aside what explains no more than the formulas of the reference get wrong.
@@ -270,4 +294,26 @@ fn share_at_the_time_of_events(workbench: &Workbench, refitted: &Refit) -> f64 {
     let during = events.iter().zip(&others).filter(|(event, _)| event.abs() > half);
     let [event, other] = during.fold([0.0; 2], |[e, o], (event, other)| [e + event * event, o + other * other]);
     event / other
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_may_be_no_torque_at_all_is_not_named() {
+        let fitted = |coefficients: &[f64], deviation: &[f64]| Fitted {
+            label: Label::Named(EffectId::Elasticity),
+            shape: Vec::new(),
+            shape_deviation: Vec::new(),
+            coefficients: coefficients.to_vec(),
+            deviation: deviation.to_vec(),
+        };
+        let (sure, unsure, least) = (fitted(&[-2.0], &[1.0]), fitted(&[1.5], &[1.2]), fitted(&[-0.1], &[1.0]));
+        let of_two = fitted(&[0.1, -0.1], &[1.0, 1.0]);
+        assert_eq!(least_determined(&[sure.clone(), unsure.clone(), least, of_two.clone()]), Some(2));
+        assert_eq!(least_determined(&[sure.clone(), unsure.clone()]), Some(1));
+        assert_eq!(least_determined(&[unsure, sure.clone()]), None, "the first stands by its evidence");
+        assert_eq!(least_determined(&[sure, of_two]), None);
+    }
 }

@@ -53,6 +53,8 @@ pub struct Story {
     pub negligible: Option<String>,
     /// What was found at first and then withdrawn.
     pub withdrawn: Option<String>,
+    /// What was found and may be no torque at all.
+    pub undetermined: Option<String>,
     /// What would have been seen.
     pub limits: Option<String>,
 }
@@ -60,11 +62,13 @@ pub struct Story {
 impl Story {
     /// What follows the findings.
     pub fn rest(&self) -> impl Iterator<Item = &String> {
-        [&self.sealed, &self.proof, &self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.limits]
-            .into_iter()
-            .flatten()
+        let found = [&self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.undetermined];
+        [&self.sealed, &self.proof].into_iter().chain(found).chain([&self.limits]).flatten()
     }
 }
+
+const WITHDRAWN: &str = "Withdrawn, because held-out data did not confirm it";
+const UNDETERMINED: &str = "Not named, because the 95 % interval of its size includes zero on this recording";
 
 /// Tells a diagnosis, with the error of the written model on rows that decided nothing where there is one.
 #[must_use]
@@ -83,7 +87,8 @@ pub fn tell(diagnosis: &Diagnosis, sealed: Option<&SealedScore>, units: Units) -
         minor: minor(diagnosis),
         doubtful: doubtful(diagnosis, units),
         negligible: negligible(diagnosis, units),
-        withdrawn: withdrawn(diagnosis),
+        withdrawn: listed(WITHDRAWN, &diagnosis.discarded.withdrawn),
+        undetermined: listed(UNDETERMINED, &diagnosis.discarded.undetermined),
         limits: limits(diagnosis, units),
     }
 }
@@ -321,9 +326,10 @@ fn explaining(effects: &[(EffectId, f64)], units: Units) -> String {
     effects.iter().map(named).collect::<Vec<_>>().join(", ")
 }
 
-fn withdrawn(diagnosis: &Diagnosis) -> Option<String> {
-    let names: Vec<&str> = diagnosis.discarded.withdrawn.iter().map(|effect| plain_name(*effect)).collect();
-    (!names.is_empty()).then(|| format!("Withdrawn, because held-out data did not confirm it: {}.", names.join(", ")))
+/// What became of effects, with their names; `None` without any.
+fn listed(what: &str, effects: &[EffectId]) -> Option<String> {
+    let names: Vec<&str> = effects.iter().map(|effect| plain_name(*effect)).collect();
+    (!names.is_empty()).then(|| format!("{what}: {}.", names.join(", ")))
 }
 
 /// The three effects that would have been seen soonest, of those a user asks for first.

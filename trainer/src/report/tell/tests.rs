@@ -74,6 +74,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
             doubtful: vec![(EffectId::TransientEvent, 0.02)],
             negligible: vec![(EffectId::Elasticity, 0.003)],
             withdrawn: vec![EffectId::Spring],
+            undetermined: vec![EffectId::Backlash],
         },
         limits: Vec::new(),
         base: BaseKind::CoulombViscous,
@@ -126,6 +127,7 @@ fn a_finding_reads_as_a_sentence() {
     assert!(doubtful.contains("not taken for physics: one-off event (0.02 N m)."), "{doubtful}");
     assert_eq!(story.negligible.unwrap(), "Below the least effect, and not modelled: elastic transmission (3 mN m).");
     assert!(story.withdrawn.unwrap().contains("spring"));
+    assert!(story.undetermined.unwrap().ends_with("includes zero on this recording: backlash."));
     assert!(story.minor.unwrap().contains("4.2 %"));
 }
 
