@@ -22,8 +22,7 @@ use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::{
-    Discarded, set_aside_doubtful, set_aside_minor, set_aside_negligible, set_aside_undetermined,
-    withdraw_without_shown_gain,
+    Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -165,11 +164,12 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     if !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
     }
-    while let Some(effect) = set_aside_undetermined(workbench, &mut accepted) {
-        discarded.undetermined.push(effect);
+    let mut improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
+    while let Some(index) = least_determined(&improved.effects) {
+        discarded.undetermined.push(accepted.remove(index).effect());
         polish(workbench, &mut accepted, &noise);
+        improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
     }
-    let improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;
     let proof = prove(workbench, &baseline, &improved);
     let shows_gain = proof.as_ref().is_none_or(Proof::shows_gain);
     let findings: Vec<Finding> = if blocked {

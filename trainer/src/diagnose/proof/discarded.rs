@@ -156,17 +156,11 @@ impl Explained<'_> {
     }
 }
 
-/// Sets aside the least certain of the effects of one coefficient, beside the first, whose 95 % interval includes zero: what it is cannot be told
-/// where it may be no torque at all. The first stands by its evidence: its coefficient may trade with a parameter of the base, as that of a
-/// power of the velocity near one does with viscous friction.
-pub(crate) fn set_aside_undetermined(workbench: &Workbench, accepted: &mut Vec<Accepted>) -> Option<EffectId> {
-    let index = least_determined(&refit(workbench, accepted)?.effects)?;
-    Some(accepted.remove(index).effect())
-}
-
-/// The effect of one coefficient, but the first effect, whose 95 % interval includes zero, the least certain of several. Of several coefficients each may be anything
-/// while together they are not, and a structure without a name is shrunk towards zero.
-fn least_determined(effects: &[Fitted]) -> Option<usize> {
+/// The least certain of the effects of one coefficient, beside the first, whose 95 % interval includes zero: what it is cannot be told where it
+/// may be no torque at all. The first stands by its evidence: its coefficient may trade with a parameter of the base, as that of a power of the
+/// velocity near one does with viscous friction. Of several coefficients each may be anything while together they are not, and a structure
+/// without a name is shrunk towards zero.
+pub(crate) fn least_determined(effects: &[Fitted]) -> Option<usize> {
     let deviations = |fitted: &Fitted| match (&fitted.label, &fitted.coefficients[..], &fitted.deviation[..]) {
         (Label::Named(_), [coefficient], [deviation]) => (coefficient / deviation).abs(),
         _ => f64::INFINITY,
