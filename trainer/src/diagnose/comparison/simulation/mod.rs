@@ -63,6 +63,8 @@ pub struct InverseLaw {
     resolved_speed: f64,
     /// Time by which friction turns over before the velocity, s; `None` where it does not.
     relaxation_s: Option<f64>,
+    /// The same where the friction of the law itself turns over so; zero where that is left out.
+    lead_s: f64,
     gravity: bool,
     given: bool,
     /// Hats over speed.
@@ -87,14 +89,28 @@ pub struct InverseLaw {
 pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let law = learn_with(None, &prepared, given)?;
+    let law = learn_with(None, &prepared, given, 0.0)?;
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
-    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given).unwrap_or(law) };
+    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given, 0.0).unwrap_or(law) };
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
     law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
     Ok(law)
+}
+
+/// Learns the static law of a simulation alone: rigid body and friction over velocity.
+///
+/// # Errors
+/// [`Unlearnable`] for a simulation of rest or of one velocity.
+pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
+    let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
+    let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
+    let law = learn_with(None, &prepared, given, 0.0)?;
+    match law.relaxation_s {
+        Some(lead_s) => learn_with(None, &prepared, given, lead_s),
+        None => Ok(law),
+    }
 }
 
 /// The law with given effects in it.
@@ -102,6 +118,7 @@ fn learn_with(
     simulated: Option<SimulatedEffects>,
     prepared: &Prepared,
     given: bool,
+    lead_s: f64,
 ) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
@@ -113,6 +130,7 @@ fn learn_with(
         top_speed: state.top_speed(),
         resolved_speed: state.resolved_speed(),
         relaxation_s: None,
+        lead_s,
         knots: KNOTS[KNOTS.len() - 1],
         gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
         given,
@@ -124,8 +142,10 @@ fn learn_with(
         rmse: 0.0,
     };
     let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
-    unfitted.relaxation_s =
-        relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
+    if lead_s == 0.0 {
+        unfitted.relaxation_s =
+            relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
+    }
     let laws: Vec<(InverseLaw, Vec<f64>)> =
         KNOTS.into_iter().filter_map(|knots| InverseLaw { knots, ..unfitted.clone() }.fitted(prepared)).collect();
     // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
@@ -216,7 +236,7 @@ impl InverseLaw {
     }
 
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let sign = state.averaged_sign(&state.velocity, self.sign_velocity);
+        let sign = state.averaged_sign(&state.led_velocity(self.lead_s), self.sign_velocity);
         let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
         for (velocity, sign) in state.velocity.iter().zip(&sign) {
             for (column, value) in columns.iter_mut().zip(self.friction_columns(*velocity, *sign)) {
@@ -297,6 +317,7 @@ impl InverseLaw {
             outside: Outside::default(),
             is_fitted: false,
             friction: self.friction_curve(),
+            sign_lead_s: self.lead_s,
         }
     }
 }
