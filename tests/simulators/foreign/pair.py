@@ -144,7 +144,8 @@ class Reference:
 
 
 def sized(bench, reference, motion, shape, share):
-    """The size with which the effect has about that share of the friction: bisection of its logarithm once it is bracketed. In MuJoCo, whose runs are short."""
+    """The size with which the effect has about that share of the friction, and its recording: bisection of its logarithm once it is bracketed. The size is
+    sought in MuJoCo, whose runs are short."""
     size, low, high = 1.0, 0.0, math.inf
     for _ in range(SIZE_RUNS):
         log = bench.recorded(motion, shape(size), in_mujoco)
@@ -155,7 +156,9 @@ def sized(bench, reference, motion, shape, share):
         low, high = (size, high) if found < aim else (low, size)
         bracketed = low > 0 and high < math.inf
         size = math.sqrt(low * high) if bracketed else size * min(max((aim / max(found, 1e-9)) ** 0.9, 0.1), 5.0)
-    return size
+    else:
+        log = bench.recorded(motion, shape(size), in_mujoco)
+    return size, log if bench.simulator is in_mujoco else bench.recorded(motion, shape(size))
 
 
 def make(case):
@@ -179,8 +182,7 @@ def make(case):
     else:
         effect = EFFECTS[case.effect]
         shape = effect.plant(bench.joint, motion, rng)
-        size = sized(bench, reference, motion, shape, effect.share) if effect.sized else 1.0
-        log = bench.recorded(motion, shape(size))
+        size, log = sized(bench, reference, motion, shape, effect.share) if effect.sized else (1.0, bench.recorded(motion, shape(1.0)))
         tuned, left = reference.refitted(log)
         level = rms(left) / case.ratio
         truth |= {

@@ -36,7 +36,7 @@ fn a_pair_is_made_from_its_seed_and_number_alone() {
         let folder = scratch.path().join(name);
         script(
             &python,
-            &["foreign_pairs.py", "--write", folder.to_str().unwrap(), "--simulation", pairs, "--seed", "12"],
+            &["foreign_pairs.py", "--write", folder.to_str().unwrap(), "--simulation", pairs, "--seed", "111"],
         );
         files(&folder.join("simulation-000"))
     };
