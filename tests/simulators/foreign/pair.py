@@ -206,10 +206,9 @@ def make(case):
 
 
 def numbers(shape):
-    """What an effect's shape was drawn with."""
-    cells = zip(shape.__code__.co_freevars, shape.__closure__ or ())
-    drawn = {name: cell.cell_contents for name, cell in cells}
-    return {name: float(value) for name, value in drawn.items() if isinstance(value, (bool, int, float, np.number))}
+    """What an effect's shape was drawn with; a complex number as its two parts."""
+    drawn = {name: cell.cell_contents for name, cell in zip(shape.__code__.co_freevars, shape.__closure__ or ()) if np.isscalar(cell.cell_contents)}
+    return {name: [value.real, value.imag] if isinstance(value, complex) else float(value) for name, value in drawn.items()}
 
 
 def as_rows(log: Log):
