@@ -49,7 +49,7 @@ fn a_pair_is_made_from_its_seed_and_number_alone() {
 fn a_refit_takes_a_level_away_and_leaves_an_effect() {
     let Some(python) = python("mujoco, pydrake") else { return };
     let left = json(&script(&python, &["-c", LEFT]));
-    let of = |name: &str| [0, 1].map(|at| left[name][at].as_f64().unwrap());
+    let of = |name: &str| [0_usize, 1].map(|at| left[name][at].as_f64().unwrap());
     assert!(of("none")[0] < 1e-3 && of("none")[1] < 1e-3, "a healthy joint departs from itself: {left}");
     let [before, behind] = of("coulomb_level");
     assert!(before > 0.05 && behind < 0.1 * before, "another level is left: {left}");
