@@ -5,8 +5,8 @@
 
 mod columns;
 mod health;
-mod lines;
 mod quantity;
+mod records;
 mod select;
 mod table;
 #[cfg(test)]
@@ -16,8 +16,8 @@ mod text;
 use std::path::Path;
 
 pub use health::Health;
-pub use lines::RECORD_LIMIT_BYTES;
 pub use quantity::{Axis, Quantity, Unit};
+pub use records::RECORD_LIMIT_BYTES;
 pub use select::Omission;
 pub use table::TextTable;
 pub use text::MINIMUM_ROWS;

@@ -138,6 +138,30 @@ fn an_endless_line_is_refused_with_its_row_and_bounded_memory() {
 }
 
 #[test]
+fn a_quotation_mark_inside_a_text_does_not_refuse_a_long_recording() {
+    let mut text = String::from("# the 3\" wheel\ntime_s,torque_Nm,remark\n");
+    let rows = 80_000;
+    for row in 0..rows {
+        text += &format!("{}e-3,0.5,12\" disc\n", row + 1);
+    }
+    assert!(text.len() > RECORD_LIMIT_BYTES);
+    assert_eq!(read(text).unwrap().len(), rows);
+}
+
+#[test]
+fn a_header_of_very_many_columns_is_read_at_once() {
+    let columns = 180_000;
+    let names: Vec<String> = (0..columns).map(|index| format!("{index:x}")).collect();
+    let row = ",1".repeat(columns);
+    let text: String = (0..MINIMUM_ROWS).map(|time| format!("{time}{row}\n")).collect();
+    let begun = std::time::Instant::now();
+    let recording = read(format!("time_s,{}\n{text}", names.join(","))).unwrap();
+    assert_eq!(recording.channels.len(), columns + 1);
+    // A second beside others; comparing every name with every other takes most of a minute.
+    assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
+}
+
+#[test]
 fn folders_and_missing_files_are_input_errors() {
     let folder = tempfile::tempdir().unwrap();
     let error = load(folder.path(), &Joint::default()).unwrap_err();

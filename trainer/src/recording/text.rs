@@ -1,8 +1,9 @@
 //! From bytes to a table of text and numbers: separators, encodings, broken rows.
 
-use std::io::Read;
+use std::collections::HashSet;
+use std::io::{BufRead, BufReader, Read};
 
-use super::lines::{BoundedRecords, TOO_LONG};
+use super::records::{Fingerprinted, Records, stream};
 use super::table::TextTable;
 use crate::error::{Error, Result, codes};
 
@@ -24,30 +25,21 @@ pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
     let mut probe = Vec::with_capacity(HEADER_PROBE_BYTES);
     source.by_ref().take(HEADER_PROBE_BYTES as u64).read_to_end(&mut probe).map_err(|error| stream(&error))?;
     let separator = separator_of(&probe);
-    let bounded = BoundedRecords::new(Read::chain(&probe[..], source));
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .flexible(true)
-        .has_headers(false)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(bounded);
-
-    let mut record = csv::ByteRecord::new();
-    if !next(&mut reader, &mut record)? {
+    let source = BufReader::new(Fingerprinted::new(Read::chain(&probe[..], source)));
+    let mut records = Records::new(source, separator);
+    if !records.advance()? {
         return Err(Error::new(&codes::EMPTY_FILE, "the file holds no header and no data"));
     }
-    let header = read_header(&record)?;
-    let mut table = TextTable::new(header);
-    while next(&mut reader, &mut record)? {
-        push_row(&mut table, &record)?;
+    let mut table = TextTable::new(read_header(&records)?);
+    while records.advance()? {
+        push_row(&mut table, &records)?;
     }
     if table.len() < MINIMUM_ROWS {
         let message = format!("a recording needs at least {MINIMUM_ROWS} rows of data");
         let last = table.len().checked_sub(1).map_or(1, |index| table.line(index));
         return Err(Error::new(&codes::TOO_FEW_ROWS, message).at_row(last).with_value(table.len().to_string()));
     }
-    let fingerprint = reader.get_ref().fingerprint();
+    let fingerprint = records.source().get_ref().fingerprint();
     Ok(RawTable { table, fingerprint, decimal_comma: separator != b',' })
 }
 
@@ -70,24 +62,6 @@ impl RawTable {
     }
 }
 
-fn next<R: Read>(reader: &mut csv::Reader<R>, record: &mut csv::ByteRecord) -> Result<bool> {
-    let line = reader.position().line();
-    reader.read_byte_record(record).map_err(|error| match error.kind() {
-        csv::ErrorKind::Io(io) if io.to_string() == TOO_LONG => {
-            let message = "a record is longer than one mebibyte; is this a text table, is a quotation left open?";
-            Error::new(&codes::LINE_TOO_LONG, message).at_row(line)
-        }
-        csv::ErrorKind::Io(io) => stream(io).at_row(line),
-        _ => Error::new(&codes::INPUT_OUTPUT, error.to_string()).at_row(line),
-    })
-}
-
-fn stream(error: &std::io::Error) -> Error {
-    let code =
-        if error.kind() == std::io::ErrorKind::IsADirectory { &codes::IS_A_DIRECTORY } else { &codes::INPUT_OUTPUT };
-    Error::new(code, error.to_string())
-}
-
 /// The most frequent of comma, semicolon and tab on the first line that is no comment.
 fn separator_of(probe: &[u8]) -> u8 {
     let header = probe
@@ -99,11 +73,12 @@ fn separator_of(probe: &[u8]) -> u8 {
     [b'\t', b';', b','].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 
-fn read_header(record: &csv::ByteRecord) -> Result<Vec<String>> {
-    let mut header: Vec<String> = Vec::with_capacity(record.len());
-    for (index, field) in record.iter().enumerate() {
+fn read_header(records: &Records<impl BufRead>) -> Result<Vec<String>> {
+    let mut header: Vec<String> = Vec::with_capacity(records.len());
+    let mut seen = HashSet::with_capacity(records.len());
+    for (index, field) in records.fields().enumerate() {
         let name = utf8(field, 1, &format!("column {}", index + 1))?;
-        if !name.is_empty() && header.iter().any(|earlier| earlier == name) {
+        if !name.is_empty() && !seen.insert(name) {
             return Err(Error::new(&codes::DUPLICATE_COLUMN, "two columns have this name").at_row(1).in_column(name));
         }
         header.push(name.to_owned());
@@ -115,17 +90,16 @@ fn read_header(record: &csv::ByteRecord) -> Result<Vec<String>> {
     Ok(header)
 }
 
-fn push_row(table: &mut TextTable, record: &csv::ByteRecord) -> Result<()> {
-    let line = record.position().map_or(0, csv::Position::line);
+fn push_row(table: &mut TextTable, records: &Records<impl BufRead>) -> Result<()> {
     let expected = table.header().len();
-    if record.len() != expected {
-        let message = format!("this row has {} fields, the header has {expected}", record.len());
-        let text = String::from_utf8_lossy(record.as_slice()).into_owned();
-        return Err(Error::new(&codes::RAGGED_ROW, message).at_row(line).with_value(text));
+    if records.len() != expected {
+        let message = format!("this row has {} fields, the header has {expected}", records.len());
+        let text = String::from_utf8_lossy(&records.fields().collect::<Vec<_>>().concat()).into_owned();
+        return Err(Error::new(&codes::RAGGED_ROW, message).at_row(records.line()).with_value(text));
     }
-    table.begin_row(line);
-    for (index, field) in record.iter().enumerate() {
-        let text = std::str::from_utf8(field).map_err(|_| not_utf8(field, line, &table.header()[index]))?;
+    table.begin_row(records.line());
+    for (index, field) in records.fields().enumerate() {
+        let text = std::str::from_utf8(field).map_err(|_| not_utf8(field, records.line(), &table.header()[index]))?;
         table.push_field(text);
     }
     Ok(())
