@@ -1,6 +1,7 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
 mod columns;
+mod keys;
 mod urdf;
 
 use std::path::Path;

@@ -3,28 +3,35 @@
 //! A recording is a text table whose columns are named `<quantity>_<unit>`. [`load`] reads a file and [`parse`] any
 //! stream of bytes; both give every channel in SI or one [`Error`] with the place in the file.
 
+mod clock;
 mod columns;
+mod convert;
 mod health;
+mod merged;
+mod names;
 mod quantity;
-mod records;
 mod select;
+mod source;
 mod table;
 #[cfg(test)]
 mod tests;
 mod text;
+mod vectors;
 
 use std::path::Path;
 
 pub use health::Health;
 pub use quantity::{Axis, Quantity, Unit};
-pub use records::RECORD_LIMIT_BYTES;
 pub use select::Omission;
 pub use table::TextTable;
-pub use text::MINIMUM_ROWS;
+pub use text::RECORD_LIMIT_BYTES;
 
 use crate::error::{Error, Result, codes};
-use crate::files;
 use crate::joint::Joint;
+use source::Fingerprinted;
+
+/// Fewest rows of data that a recording may have; below it no filter and no split makes sense.
+pub const MINIMUM_ROWS: usize = 20;
 
 /// A recording in SI units, joint side.
 #[derive(Clone, Debug)]
@@ -41,6 +48,8 @@ pub struct Recording {
     pub health: Health,
     /// The rows as text.
     pub table: TextTable,
+    /// Columns that nearly have the name of a quantity that no column has, with that name.
+    pub nearly_named: Vec<(String, String)>,
     unusable: Vec<(Quantity, String)>,
     file: String,
 }
@@ -64,14 +73,15 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
-/// Reads a recording from a file.
+/// Reads a recording from a file, or from standard input where it is named `-`.
 ///
 /// # Errors
 /// `FRK-I...` when the file cannot be read, `FRK-D...` with row, column and value when its content cannot be used.
 pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
-    let file = path.display().to_string();
+    let file = if path == Path::new("-") { "standard input".to_owned() } else { path.display().to_string() };
     let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
-    let source = files::open(path)?;
+    let label = if label == "-" { file.clone() } else { label };
+    let source = source::open(path)?;
     let mut recording = parse(&label, source, joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
     Ok(recording)
@@ -82,23 +92,40 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
 /// # Errors
 /// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
 pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
-    let raw = text::read(source)?;
-    let assigned = columns::assign(&raw.table, joint)?;
-    let channels = columns::convert(&raw, &assigned.columns, joint)?;
-    if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
-        refuse_backward_time(time, &raw.table)?;
+    let mut bytes = Fingerprinted::new(source);
+    let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(text::read)?;
+    refuse_short(&raw.table)?;
+    let assigned = columns::assign(&raw, joint)?;
+    let converted = convert::convert(&raw, &assigned, joint)?;
+    let (channels, mut table) = (converted.channels, raw.table);
+    if let Some(kept) = &converted.rows {
+        table = table.with_rows(kept);
     }
-    let health = Health::of(&channels, assigned.notes, Vec::new());
+    if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
+        refuse_backward_time(time, &table)?;
+    }
+    let notes = [raw.notes, assigned.notes, converted.notes].concat();
+    let health = Health::of(&channels, notes, Vec::new());
     Ok(Recording {
         label: label.to_owned(),
         axis: assigned.axis,
         channels,
-        content_hash: raw.fingerprint,
+        content_hash: bytes.fingerprint(),
         health,
-        table: raw.table,
+        table,
+        nearly_named: assigned.nearly,
         unusable: assigned.unusable,
         file: label.to_owned(),
     })
+}
+
+fn refuse_short(table: &TextTable) -> Result<()> {
+    if table.len() >= MINIMUM_ROWS {
+        return Ok(());
+    }
+    let message = format!("a recording needs at least {MINIMUM_ROWS} rows of data");
+    let last = table.len().checked_sub(1).map_or(table.header_line(), |index| table.line(index));
+    Err(Error::new(&codes::TOO_FEW_ROWS, message).at_row(last).with_value(table.len().to_string()))
 }
 
 /// A stamp that stands twice is left to the checks.

@@ -1,44 +1,17 @@
-//! Records of a delimited text, as `csv` splits them, with what a broken file can cost bounded and its bytes fingerprinted.
+//! Records of a delimited text, as `csv` splits them, with what a broken file can cost bounded.
 
-use std::io::{self, BufRead, Read};
+use std::io::BufRead;
 
-use crc::{CRC_64_XZ, Crc, Digest, Table};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use crate::error::{Error, Result, codes};
+use crate::recording::source::failed;
 
 /// Longest record, in bytes of its fields; it has at most as many fields.
 pub const RECORD_LIMIT_BYTES: usize = 1 << 20;
 
 /// Room for a record at the start; it grows up to the limit.
 const FIRST_ROOM: usize = 1 << 10;
-
-static FINGERPRINT: Crc<u64, Table<16>> = Crc::<u64, Table<16>>::new(&CRC_64_XZ);
-
-/// CRC-64/XZ of everything that passes through.
-pub(super) struct Fingerprinted<R> {
-    inner: R,
-    digest: Digest<'static, u64, Table<16>>,
-}
-
-impl<R> Fingerprinted<R> {
-    pub(super) fn new(inner: R) -> Self {
-        Self { inner, digest: FINGERPRINT.digest() }
-    }
-
-    /// CRC-64/XZ of the bytes read so far.
-    pub(super) fn fingerprint(&self) -> u64 {
-        self.digest.clone().finalize()
-    }
-}
-
-impl<R: Read> Read for Fingerprinted<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let length = self.inner.read(buffer)?;
-        self.digest.update(&buffer[..length]);
-        Ok(length)
-    }
-}
 
 /// The records of a text in turn; lines that begin with `#` are comments and blank lines are none.
 pub(super) struct Records<R> {
@@ -64,7 +37,7 @@ impl<R: BufRead> Records<R> {
         let (mut bytes, mut ends) = (0, 0);
         let mut ended_by_newline = false;
         loop {
-            let input = self.source.fill_buf().map_err(|error| stream(&error).at_row(self.splitter.line()))?;
+            let input = self.source.fill_buf().map_err(|error| failed(&error).at_row(self.splitter.line()))?;
             let (outcome, read, written, closed) =
                 self.splitter.read_record(input, &mut self.text[bytes..], &mut self.ends[ends..]);
             if read > 0 {
@@ -112,23 +85,12 @@ impl<R: BufRead> Records<R> {
     pub(super) fn line(&self) -> u64 {
         self.line
     }
-
-    /// What is behind the records.
-    pub(super) fn source(&self) -> &R {
-        &self.source
-    }
-}
-
-/// A source that fails while it is read.
-pub(super) fn stream(error: &io::Error) -> Error {
-    let code = if error.kind() == io::ErrorKind::IsADirectory { &codes::IS_A_DIRECTORY } else { &codes::INPUT_OUTPUT };
-    Error::new(code, error.to_string())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::BufReader;
+    use std::io::{self, BufReader, Read};
 
     fn count(source: impl Read) -> Result<usize> {
         let mut records = Records::new(BufReader::new(source), b',');
@@ -168,12 +130,5 @@ mod tests {
             }
             assert_eq!(lines, [1, 4, 5], "{text:?}");
         }
-    }
-
-    #[test]
-    fn the_fingerprint_is_the_published_one() {
-        let mut source = Fingerprinted::new(&b"123456789"[..]);
-        io::copy(&mut source, &mut io::sink()).unwrap();
-        assert_eq!(source.fingerprint(), 0x995d_c9bb_df19_39fa);
     }
 }
