@@ -163,6 +163,10 @@ registry! {
         "The file contradicts its own format: lengths, types or checksums in it do not fit together.",
         "A transfer in text mode, a failing disk, or a file that only has the ending of this format.",
         "Copy the file again, or export it once more with the tool that wrote it.";
+    FORMAT_NOT_READ = "FRK-D043" Data "format that is not read",
+        "The file is of a format that this program does not read, or was built without.",
+        "A bag in SQLite, MATLAB 7.3, HDF5, a spreadsheet, or a compression other than gzip.",
+        "Convert it as the message says; CSV, NumPy, MATLAB 5 to 7, JSON, Parquet and MCAP are read.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",

@@ -6,6 +6,7 @@
 mod clock;
 mod columns;
 mod convert;
+mod formats;
 mod health;
 mod merged;
 mod names;
@@ -93,7 +94,7 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
 /// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
 pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
     let mut bytes = Fingerprinted::new(source);
-    let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(text::read)?;
+    let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(formats::read)?;
     refuse_short(&raw.table)?;
     let assigned = columns::assign(&raw, joint)?;
     let converted = convert::convert(&raw, &assigned, joint)?;
