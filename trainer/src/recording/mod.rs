@@ -7,6 +7,7 @@ mod clock;
 mod columns;
 mod convert;
 mod formats;
+mod guess;
 mod health;
 mod merged;
 mod names;
@@ -21,6 +22,7 @@ mod vectors;
 
 use std::path::Path;
 
+pub use guess::{Proposal, Taken};
 pub use health::Health;
 pub use quantity::{Axis, Quantity, Unit};
 pub use select::Omission;
@@ -30,6 +32,7 @@ pub use text::RECORD_LIMIT_BYTES;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use source::Fingerprinted;
+use table::RawTable;
 
 /// Fewest rows of data that a recording may have; below it no filter and no split makes sense.
 pub const MINIMUM_ROWS: usize = 20;
@@ -79,13 +82,21 @@ pub struct Channel {
 /// # Errors
 /// `FRK-I...` when the file cannot be read, `FRK-D...` with row, column and value when its content cannot be used.
 pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
-    let file = if path == Path::new("-") { "standard input".to_owned() } else { path.display().to_string() };
-    let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
-    let label = if label == "-" { file.clone() } else { label };
+    let (file, label) = names_of(path);
     let source = source::open(path)?;
     let mut recording = parse(&label, source, joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
     Ok(recording)
+}
+
+/// A path as it is shown, and the name of its file.
+fn names_of(path: &Path) -> (String, String) {
+    if path == Path::new("-") {
+        return ("standard input".to_owned(), "standard input".to_owned());
+    }
+    let file = path.display().to_string();
+    let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+    (file, label)
 }
 
 /// Reads a recording from any stream of bytes, with bounded memory for a record of any length.
@@ -93,9 +104,34 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
 /// # Errors
 /// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
 pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
+    let (raw, fingerprint) = read(source)?;
+    interpret(label, raw, fingerprint, joint)
+}
+
+/// Proposes a `joint.toml` for a file, or for standard input where it is named `-`, and reads the recording by it.
+///
+/// # Errors
+/// As [`load`], where the file cannot be read even so.
+pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
+    let (file, label) = names_of(path);
+    let (raw, fingerprint) = read(source::open(path)?).map_err(|error| error.in_file(&file))?;
+    let stem = Path::new(&label).file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
+    let proposal = guess::propose(&raw, &stem);
+    let recording = Joint::parse(&proposal.toml).and_then(|joint| interpret(&label, raw, fingerprint, &joint));
+    let mut recording = recording.map_err(|error| error.in_file(&file))?;
+    recording.file = file;
+    Ok((proposal, recording))
+}
+
+/// The table in a stream of bytes, long enough, and the fingerprint of the stream.
+fn read(source: impl std::io::Read) -> Result<(RawTable, u64)> {
     let mut bytes = Fingerprinted::new(source);
     let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(formats::read)?;
     refuse_short(&raw.table)?;
+    Ok((raw, bytes.fingerprint()))
+}
+
+fn interpret(label: &str, raw: RawTable, fingerprint: u64, joint: &Joint) -> Result<Recording> {
     let assigned = columns::assign(&raw, joint)?;
     let converted = convert::convert(&raw, &assigned, joint)?;
     let (channels, mut table) = (converted.channels, raw.table);
@@ -111,7 +147,7 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
         label: label.to_owned(),
         axis: assigned.axis,
         channels,
-        content_hash: bytes.fingerprint(),
+        content_hash: fingerprint,
         health,
         table,
         nearly_named: assigned.nearly,
