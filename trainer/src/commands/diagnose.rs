@@ -113,7 +113,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let begin = Instant::now();
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
-    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
     let real = &recordings[0];
     let (comparison, compared) = comparison(arguments, &recordings, &joint)?;
