@@ -85,6 +85,9 @@ pub fn learn_simulation(simulation: &Signals, real: &Signals) -> Result<InverseL
 /// Log likelihood ratio of a delay longer than the sampling's own from which it is told, nats: very strong evidence, five nats (Kass and
 /// Raftery 1995), at the exponent of a quarter that noise of unknown kind usually leaves of it.
 const DELAY_NATS: f64 = 20.0;
+/// The same by the scatter of its gain from block to block, over its standard error: one in a hundred for a dozen blocks (Student) and the
+/// few delays that differ.
+const DELAY_DEVIATIONS: f64 = 3.0;
 
 /// What is asked for, whatever becomes of the signals on the way.
 #[derive(Clone, Copy)]
@@ -257,7 +260,8 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let is_own = late.delay_s.abs() <= LONGEST_SAMPLING_DELAY * period;
     // The drive answers to the grain of its encoder some samples later.
     let explained = 2.0 * late.gain_nats * noise.rms * noise.rms;
-    let is_told = !is_own && late.gain_nats > DELAY_NATS && explained > position_error_energy(&prepared, comparison);
+    let is_shown = late.gain_nats > DELAY_NATS && late.shown_deviations > DELAY_DEVIATIONS;
+    let is_told = !is_own && is_shown && explained > position_error_energy(&prepared, comparison);
     let longest = if is_told { f64::INFINITY } else { LONGEST_SAMPLING_DELAY * period };
     let late = TorqueDelay { delay_s: late.delay_s.clamp(-longest, longest), ..late };
     let in_step = shifted(&Side::new(&prepared, &base), late.delay_s);
@@ -278,7 +282,6 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
     let simulation = comparison.simulation.as_deref()?;
     let cut_off = real.filter.cut_off_hz;
     let mut prepared = Prepared::at_cut_off(&simulation.signals, cut_off, simulation.known(), Lock::Nothing);
-    prepared.state.sign_lead_s = real.state.sign_lead_s;
     prepared.state.turn_over_within(real.state.sign_velocity);
     let base = Base::fit(&mut prepared, simulation, BaseKind::Reference)?;
     Some((prepared, base))
@@ -290,9 +293,7 @@ fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
     let Some(simulation) = comparison.simulation.as_deref() else { return };
     let alone = Comparison::from(simulation.signals.clone());
     let mut prepared = Prepared::at_cut_off(&alone.signals, real.filter.cut_off_hz, alone.known(), Lock::Nothing);
-    let lead_s = comparison.reference.as_ref().map_or(0.0, |law| law.sign_lead_s);
     let least = real.state.sign_velocity;
-    (prepared.state.sign_lead_s, real.state.sign_lead_s) = (lead_s, lead_s);
     prepared.state.turn_over_within(least);
     fit_sign_width(&mut prepared, &alone, BaseKind::CoulombViscous);
     real.state.turn_over_within(prepared.state.sign_velocity.max(least));

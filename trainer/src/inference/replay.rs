@@ -105,11 +105,48 @@ fn gumbel_quantile(values: &[f64], share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inference::evidence::Variant;
+    use crate::inference::posterior::Posterior;
+    use crate::inference::products::products;
+    use crate::inference::sets::Field;
+    use crate::numerics::random::normal;
 
     #[test]
     fn the_quantile_of_gumbel_values_is_theirs() {
         let values: Vec<f64> = (0..2000).map(|i| 3.0 - 2.0 * (-((f64::from(i) + 0.5) / 2000.0).ln()).ln()).collect();
         let expected = 3.0 - 2.0 * (-0.99f64.ln()).ln();
         assert!((gumbel_quantile(&values, 0.99) / expected - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn the_price_makes_something_likelier_than_nothing_in_one_healthy_recording_of_a_hundred() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let rows = 300;
+        let mut draw = || -> Vec<f64> { (0..rows).map(|_| normal(&mut random)).collect() };
+        let columns: Vec<Vec<f64>> = (0..20).map(|_| draw()).collect();
+        let candidate = |column: usize| Candidate {
+            log_prior: 0.0,
+            variants: vec![Variant {
+                columns: column..column + 1,
+                shared: 0..0,
+                variance: vec![0.1],
+                log_weight: 0.0,
+                only_positive: false,
+            }],
+            repeats: false,
+        };
+        let candidates: Vec<Candidate> = (0..20).map(candidate).collect();
+        let of_target =
+            |target: Vec<f64>| Reduced::without_base(&products(&[columns.clone(), vec![target]].concat()), 0);
+        let residual = draw();
+        let moments = Replay { residual: &residual, piece: 10, seed: 1 }.moments(&columns);
+        let price = NullEvidence::new(&of_target(residual.clone()), &moments, &candidates).price(1.0);
+        let mut is_alarm = |_: usize| {
+            let reduced = of_target(draw());
+            let field = Field { reduced: &reduced, candidates: &candidates, price, temper: 1.0 };
+            Posterior::of(&field, field.search()).nothing() < 0.5
+        };
+        let alarms = (0..300).filter(|&k| is_alarm(k)).count();
+        assert!(alarms <= 12, "{alarms} of 300; three are expected");
     }
 }

@@ -251,3 +251,76 @@ impl Field<'_> {
         sets
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::posterior::Posterior;
+    use crate::inference::products::products;
+    use crate::numerics::random::normal;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    const ROWS: usize = 400;
+
+    fn random_columns(count: usize, seed: u64) -> Vec<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        (0..count).map(|_| (0..ROWS).map(|_| normal(&mut random)).collect()).collect()
+    }
+
+    fn candidate(shapes: &[usize]) -> Candidate {
+        let variant = |&column: &usize| Variant {
+            columns: column..column + 1,
+            shared: 0..0,
+            variance: vec![1.0],
+            log_weight: -(shapes.len() as f64).ln(),
+            only_positive: false,
+        };
+        Candidate { log_prior: 0.0, variants: shapes.iter().map(variant).collect(), repeats: false }
+    }
+
+    /// Products of columns with the sum of some of them and unit noise.
+    fn with_target(columns: &[Vec<f64>], of: &[(usize, f64)]) -> Reduced {
+        let mut all = columns.to_vec();
+        let mut target = random_columns(1, 99).swap_remove(0);
+        for (column, coefficient) in of {
+            target.iter_mut().zip(&columns[*column]).for_each(|(t, c)| *t += coefficient * c);
+        }
+        all.push(target);
+        Reduced::without_base(&products(&all), 0)
+    }
+
+    #[test]
+    fn the_right_set_is_found_with_its_shapes_and_nothing_where_there_is_nothing() {
+        let columns = random_columns(12, 4);
+        let candidates: Vec<Candidate> = (0..4).map(|k| candidate(&[3 * k, 3 * k + 1, 3 * k + 2])).collect();
+        let search = |of: &[(usize, f64)]| {
+            let reduced = with_target(&columns, of);
+            let field = Field { reduced: &reduced, candidates: &candidates, price: 5.0, temper: 1.0 };
+            Posterior::of(&field, field.search())
+        };
+        let two = search(&[(1, 0.5), (9, -0.4)]);
+        let expected = [Member { candidate: 0, variant: 1 }, Member { candidate: 3, variant: 0 }];
+        assert_eq!(two.likeliest().unwrap().members, expected);
+        assert!(two.inclusion(0) > 0.99 && two.inclusion(3) > 0.99 && two.inclusion(1) < 0.05);
+        assert!(search(&[]).nothing() > 0.9);
+        let total: f64 = two.sets.iter().map(|(_, probability)| probability).sum();
+        assert!((total - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn two_that_are_one_stand_in_for_each_other() {
+        let mut columns = random_columns(4, 8);
+        let (first, noise) = (columns[0].clone(), random_columns(1, 5).swap_remove(0));
+        columns[1] = first.iter().zip(&noise).map(|(first, noise)| first + 0.02 * noise).collect();
+        let reduced = with_target(&columns, &[(0, 0.4)]);
+        let candidates: Vec<Candidate> = (0..4).map(|k| candidate(&[k])).collect();
+        let field = Field { reduced: &reduced, candidates: &candidates, price: 5.0, temper: 1.0 };
+        let posterior = Posterior::of(&field, field.search());
+        let likeliest = posterior.likeliest().unwrap().members[0].candidate;
+        let stand_ins = posterior.stand_ins(likeliest);
+        assert_eq!(stand_ins.len(), 1, "{stand_ins:?}");
+        assert_eq!(stand_ins[0].0, 1 - likeliest);
+        assert!((posterior.inclusion(0) + posterior.inclusion(1) - 1.0).abs() < 0.05);
+    }
+}

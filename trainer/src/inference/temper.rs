@@ -50,3 +50,50 @@ pub(crate) fn exponent(whole: &Reduced, blocks: &[BlockProducts], sets: &[Vec<&V
     let total = log_sum_exp(scored.iter().map(|(score, _)| *score));
     scored.iter().map(|(score, logarithm)| (score - total).exp() * logarithm).sum::<f64>().exp()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::products::products;
+    use crate::numerics::random::normal;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    /// The exponent for two rival columns in twelve blocks; `apart` is the deviation of the coefficient from block to block.
+    fn found(apart: f64) -> f64 {
+        let mut random = ChaCha8Rng::seed_from_u64(12);
+        let mut draw = || normal(&mut random);
+        let blocks: Vec<BlockProducts> = (0..12)
+            .map(|_| {
+                let coefficient = 0.1 + apart * draw();
+                let columns: Vec<Vec<f64>> = (0..2).map(|_| (0..200).map(|_| draw()).collect()).collect();
+                let target = columns[0].iter().map(|c| coefficient * c + draw()).collect();
+                let gram = products(&[columns, vec![target]].concat());
+                BlockProducts {
+                    gram: gram.view((0, 0), (2, 2)).clone_owned(),
+                    moments: gram.view((0, 2), (2, 1)).column(0).clone_owned(),
+                }
+            })
+            .collect();
+        let sum = |of: fn(&BlockProducts) -> DMatrix<f64>| blocks.iter().map(of).reduce(|a, b| a + b).unwrap();
+        let gram = sum(|block| block.gram.clone());
+        let moments = sum(|block| DMatrix::from_column_slice(2, 1, block.moments.as_slice()));
+        let whole = Reduced { gram, moments: DVector::from_column_slice(moments.as_slice()), energy: 0.0 };
+        let variant = |column: usize| Variant {
+            columns: column..column + 1,
+            shared: 0..0,
+            variance: vec![1.0],
+            log_weight: 0.0,
+            only_positive: false,
+        };
+        let [first, second] = [variant(0), variant(1)];
+        exponent(&whole, &blocks, &[vec![], vec![&first], vec![&second]], &[0.0, -3.0, -3.0])
+    }
+
+    #[test]
+    fn evidence_that_blocks_contradict_is_believed_less() {
+        let (agreed, contradicted) = (found(0.0), found(0.6));
+        assert!(agreed > 0.3, "{agreed}");
+        assert!(contradicted < 0.6 * agreed, "{contradicted} beside {agreed}");
+    }
+}

@@ -19,9 +19,7 @@ pub struct JointState {
     pub acceleration: Vec<f64>,
     /// Velocity below which the smoothed sign turns, in the unit of velocity.
     pub sign_velocity: f64,
-    /// Time by which friction turns over before the velocity, s: that of a solver of constraints, zero for a joint.
-    pub sign_lead_s: f64,
-    /// Smoothed sign: the mean of `tanh(v / sign_velocity)` over the sample, of the velocity that is led.
+    /// Smoothed sign: the mean of `tanh(v / sign_velocity)` over the sample.
     pub sign: Vec<f64>,
     /// Torque of the nominal rigid body in the unit of the actuator, where one is given.
     pub rigid_body: Option<Vec<f64>>,
@@ -241,7 +239,7 @@ impl JointState {
     /// Lets the smoothed sign turn below another velocity.
     pub(crate) fn turn_over_within(&mut self, velocity: f64) {
         self.sign_velocity = velocity;
-        self.sign = self.averaged_sign(&self.led_velocity(self.sign_lead_s), velocity);
+        self.sign = self.averaged_sign(&self.velocity, velocity);
     }
 
     /// The velocity that the joint is about to have after a time (s) at its acceleration.

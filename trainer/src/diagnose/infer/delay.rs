@@ -7,6 +7,8 @@ use crate::diagnose::noise::autoregression::Noise;
 use crate::inference::evidence::Candidate;
 use crate::inference::sets::Field;
 use crate::numerics::between_samples::between_samples;
+use crate::numerics::least_squares::{orthonormal, project_out, weighted};
+use crate::numerics::statistics::t_statistic;
 use rayon::prelude::*;
 
 /// Longest delay that is looked for, s: several periods of a field bus. Longer may fit one swing of a fast motion to the next.
@@ -27,6 +29,8 @@ pub(crate) struct TorqueDelay {
     pub deviation_s: f64,
     /// Log likelihood ratio against no delay, nats.
     pub gain_nats: f64,
+    /// Mean gain of a block of rows over its standard error.
+    pub shown_deviations: f64,
 }
 
 /// The likeliest delay, beside the few effects that explain most at that delay, and the noise that it leaves. First with white noise,
@@ -41,7 +45,8 @@ pub(crate) fn torque_delay(candidates: &Candidates, real: &Side, simulated: Opti
     let noise = first_noise(candidates, &shifted(real, roughly), simulated);
     let profile = Profile::new(candidates, real, simulated, noise.clone(), MEMBERS);
     let found = profile.likeliest(roughly, step, NEIGHBOURS);
-    (TorqueDelay { gain_nats: profile.at(found.delay_s) - profile.at(0.0), ..found }, noise)
+    let gain_nats = profile.at(found.delay_s) - profile.at(0.0);
+    (TorqueDelay { gain_nats, shown_deviations: profile.shown_deviations(candidates, found.delay_s), ..found }, noise)
 }
 
 /// A side with its torque put back by a delay.
@@ -82,6 +87,32 @@ impl<'a> Profile<'a> {
         found - 0.5 * reduced.energy
     }
 
+    /// What blocks of rows gain by a delay beside the effects that explain most there: their mean over its standard error.
+    fn shown_deviations(&self, candidates: &Candidates, delay_s: f64) -> f64 {
+        let Self { real, noise, weighing, .. } = self;
+        let white = |delay_s: f64| real.on_rows(&noise.whitened(&shifted_target(real, delay_s), &real.runs));
+        let reduced = weighing.with_target(&white(delay_s));
+        let field = Field { reduced: &reduced, candidates: &self.weighed, price: FIRST_PRICE, temper: 1.0 };
+        let members = field.forward(self.members);
+        let common = weighted(weighing.columns(), &weighing.common(&self.weighed, &members));
+        let of_members = members.iter().flat_map(|m| candidates.entries[m.candidate].shapes[m.variant].columns.clone());
+        let beside: Vec<Vec<f64>> =
+            weighing.base().iter().cloned().chain(of_members.map(|place| weighing.columns()[place].clone())).collect();
+        let all = std::iter::once(0..common.len()).collect::<Vec<_>>();
+        let basis = orthonormal(&beside, &all);
+        let left = |delay_s: f64| {
+            let mut left: Vec<f64> =
+                white(delay_s).iter().zip(&common).map(|(target, common)| target - common).collect();
+            project_out(&mut left, &basis, &all);
+            left
+        };
+        let (with, without) = (left(delay_s), left(0.0));
+        let energy = |left: &[f64]| left.iter().map(|value| value * value).sum::<f64>();
+        let gains: Vec<f64> =
+            real.blocks().into_iter().map(|rows| energy(&without[rows.clone()]) - energy(&with[rows])).collect();
+        t_statistic(&gains)
+    }
+
     /// The likeliest of some delays to both sides of a centre, by a parabola through the best and its neighbours, a step and then a
     /// quarter of one apart.
     fn likeliest(&self, centre: f64, step: f64, count: i32) -> TorqueDelay {
@@ -104,7 +135,7 @@ impl<'a> Profile<'a> {
             values = [centre - width, centre, centre + width].map(|delay| self.at(delay));
         }
         let deviation_s = if bend > 0.0 { bend.sqrt().recip() } else { f64::INFINITY };
-        TorqueDelay { delay_s: centre, deviation_s, gain_nats: 0.0 }
+        TorqueDelay { delay_s: centre, deviation_s, gain_nats: 0.0, shown_deviations: 0.0 }
     }
 }
 

@@ -309,7 +309,7 @@ impl InverseLaw {
         Reference {
             torque: weighted(&columns, &self.coefficients),
             rigid_body: self.rigid_body_of(&columns),
-            jacobian: coulomb_and_viscous(state),
+            jacobian: coulomb_and_viscous(state, self.lead_s),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
             replayed_residual: met.map(|met| met.torque),
             formula_error,
@@ -317,7 +317,6 @@ impl InverseLaw {
             outside: Outside::default(),
             is_fitted: false,
             friction: self.friction_curve(),
-            sign_lead_s: self.lead_s,
         }
     }
 }
