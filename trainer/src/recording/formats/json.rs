@@ -29,8 +29,7 @@ struct Rows {
 pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
     let mut rows = Rows::default();
     let mut notes = Vec::new();
-    let mut values = Deserializer::from_slice(bytes).into_iter::<Value>();
-    while let Some(value) = values.next() {
+    for value in Deserializer::from_slice(bytes).into_iter::<Value>() {
         match value {
             Ok(Value::Array(list)) => list.iter().for_each(|value| rows.push(value)),
             Ok(Value::Object(object)) if is_columns(&object) => rows.push_columns(&object),
