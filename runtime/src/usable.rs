@@ -16,6 +16,7 @@ impl Usable {
     }
 
     /// As [`Usable::where_negative`], where so little depends on it that the compiler has nothing to go around.
+    #[cfg(feature = "table")]
     #[inline(always)]
     pub(crate) fn where_negative_of_little(sign: i32) -> Self {
         Self((sign >> 31) as u32)
