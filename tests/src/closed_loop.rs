@@ -16,6 +16,7 @@ pub fn joints() -> [(&'static str, Joint); 3] {
         viscous_nm_s_rad: viscous,
         stribeck_torque_nm: stribeck,
         stribeck_velocity_rad_s: velocity,
+        stribeck_exponent: 1.0,
         contact_stiffness_nm_rad: stiffness,
     };
     let joint = |inertia_kgm2: f64, friction, (stiffness, damping): (f64, f64)| {

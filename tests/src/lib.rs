@@ -7,6 +7,7 @@ pub mod concealed;
 pub mod cost;
 pub mod fixtures;
 pub mod inertia;
+pub mod law_coverage;
 pub mod laws;
 pub mod models;
 pub mod paper;

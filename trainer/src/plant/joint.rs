@@ -56,6 +56,8 @@ pub struct Friction {
     pub stribeck_torque_nm: f64,
     /// Stribeck velocity, rad/s (> 0).
     pub stribeck_velocity_rad_s: f64,
+    /// Exponent of the decline of that torque over speed (> 0): 1 exponential, 2 Gaussian.
+    pub stribeck_exponent: f64,
     /// Stiffness of the contact before it slips, N m/rad; 0 for a contact that does not yield.
     #[serde(rename = "contact_stiffness_Nm_rad")]
     pub contact_stiffness_nm_rad: f64,
@@ -253,18 +255,20 @@ impl Default for Friction {
             viscous_nm_s_rad: 1.2,
             stribeck_torque_nm: 0.0,
             stribeck_velocity_rad_s: 0.05,
+            stribeck_exponent: 1.0,
             contact_stiffness_nm_rad: 0.0,
         }
     }
 }
 
 impl Friction {
-    /// Dry level at a speed, N m: Coulomb plus Stribeck (Tustin 1947, exponent 1).
+    /// Dry level at a speed, N m: Coulomb plus Stribeck (Tustin 1947; Bo & Pavelescu 1982 for the exponent).
     pub(crate) fn dry_level(&self, speed: f64) -> f64 {
         if self.stribeck_torque_nm == 0.0 {
             return self.coulomb_torque_nm;
         }
-        self.coulomb_torque_nm + self.stribeck_torque_nm * (-speed / self.stribeck_velocity_rad_s).exp()
+        let decline = -(speed / self.stribeck_velocity_rad_s).powf(self.stribeck_exponent);
+        self.coulomb_torque_nm + self.stribeck_torque_nm * decline.exp()
     }
 }
 

@@ -65,6 +65,7 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
     let positive = [
         ("inertia_kgm2", joint.inertia_kgm2),
         ("friction.stribeck_velocity_rad_s", joint.friction.stribeck_velocity_rad_s),
+        ("friction.stribeck_exponent", joint.friction.stribeck_exponent),
         ("control.bandwidth_Hz", joint.control.bandwidth_hz),
         ("control.damping_ratio", joint.control.damping_ratio),
         ("control.velocity_corner_Hz", joint.control.velocity_corner_hz),

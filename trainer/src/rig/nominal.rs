@@ -12,10 +12,13 @@ const SIGN_SLOPE: f32 = 192.0;
 /// Largest speed of the model, rad/s.
 const TOP_SPEED: f32 = 20.0;
 
-/// `(coulomb + stribeck exp(-|v| / stribeck velocity)) tanh(192 v) + viscous v`, N m at rad/s. `None` where a parameter is not one that an
-/// image may hold.
+/// `(coulomb + stribeck exp(-|v| / stribeck velocity)) tanh(192 v) + viscous v`, N m at rad/s. `None` where the decline is no exponential,
+/// and where a parameter is not one that an image may hold.
 #[must_use]
 pub fn nominal_model<const CELLS: usize>(friction: &Friction) -> Option<Model<CELLS>> {
+    if (friction.stribeck_exponent - 1.0).abs() > f64::EPSILON {
+        return None;
+    }
     let viscous = friction.viscous_nm_s_rad as f32;
     let operations = [
         Operation::ScaledMagnitude(0, -1.0 / friction.stribeck_velocity_rad_s as f32),
