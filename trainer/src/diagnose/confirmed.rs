@@ -2,7 +2,7 @@
 
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
-use crate::diagnose::infer::infer::Inferred;
+use crate::diagnose::infer::inferred::Inferred;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::proof::discarded::withdraw_unproven;
 use crate::diagnose::proof::refit::{Refit, polish};

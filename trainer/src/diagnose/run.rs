@@ -22,7 +22,7 @@ use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::infer::candidates::Candidates;
 use crate::diagnose::infer::delay::{TorqueDelay, shifted, torque_delay};
-use crate::diagnose::infer::infer::{Inferred, infer};
+use crate::diagnose::infer::inferred::{Inferred, infer};
 use crate::diagnose::infer::side::Side;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
@@ -315,7 +315,7 @@ fn judge_friction_level(
             diagnosis.proof = prove(workbench, &as_given, improved);
             diagnosis.baseline = score(workbench, &as_given);
             diagnosis.traces.before = rest(workbench, &as_given);
-            diagnosis.baseline_refit = as_given;
+            diagnosis.baseline_refit = *as_given;
             diagnosis.put_by_size(*finding, torque);
         }
     }

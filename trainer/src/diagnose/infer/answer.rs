@@ -2,7 +2,7 @@
 
 use crate::diagnose::evidence::score::GroupEvidence;
 use crate::diagnose::hypotheses::channel::Channel;
-use crate::diagnose::infer::infer::Inferred;
+use crate::diagnose::infer::inferred::Inferred;
 use crate::diagnose::search::accepted::{Accepted, Stated};
 use crate::diagnose::search::scored::Scored;
 use crate::inference::sets::{Member, Set};

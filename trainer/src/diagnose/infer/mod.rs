@@ -6,7 +6,7 @@
 pub(crate) mod answer;
 pub(crate) mod candidates;
 pub(crate) mod delay;
-pub(crate) mod infer;
+pub(crate) mod inferred;
 pub(crate) mod predicted_blocks;
 pub(crate) mod refined;
 pub(crate) mod side;

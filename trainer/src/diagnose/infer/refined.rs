@@ -46,7 +46,7 @@ pub(crate) fn refined(
         let is_possible = !hypothesis.only_positive() || solution.iter().all(|value| *value > 0.0);
         is_possible.then(|| 0.5 * solution.dot(&asked)).filter(|value| value.is_finite())
     };
-    let shape = refine(hypothesis.as_ref(), state, start, &explained);
+    let shape = refine(hypothesis.as_ref(), state, start, explained);
     let peak = explained(&shape)?;
     let mut log_width = 0.0;
     for index in free {
