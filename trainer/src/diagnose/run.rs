@@ -282,6 +282,7 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
     let simulation = comparison.simulation.as_deref()?;
     let cut_off = real.filter.cut_off_hz;
     let mut prepared = Prepared::at_cut_off(&simulation.signals, cut_off, simulation.known(), Lock::Nothing);
+    prepared.state.sign_lead_s = real.state.sign_lead_s;
     prepared.state.turn_over_within(real.state.sign_velocity);
     let base = Base::fit(&mut prepared, simulation, BaseKind::Reference)?;
     Some((prepared, base))
@@ -293,7 +294,9 @@ fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
     let Some(simulation) = comparison.simulation.as_deref() else { return };
     let alone = Comparison::from(simulation.signals.clone());
     let mut prepared = Prepared::at_cut_off(&alone.signals, real.filter.cut_off_hz, alone.known(), Lock::Nothing);
+    let lead_s = comparison.reference.as_ref().map_or(0.0, |law| law.sign_lead_s);
     let least = real.state.sign_velocity;
+    (prepared.state.sign_lead_s, real.state.sign_lead_s) = (lead_s, lead_s);
     prepared.state.turn_over_within(least);
     fit_sign_width(&mut prepared, &alone, BaseKind::CoulombViscous);
     real.state.turn_over_within(prepared.state.sign_velocity.max(least));

@@ -28,6 +28,8 @@ pub struct Reference {
     pub outside: Outside,
     /// Its friction as pairs (velocity, torque) in ascending velocity.
     pub friction: Vec<(f64, f64)>,
+    /// Time by which its friction turns over before the velocity, s.
+    pub sign_lead_s: f64,
 }
 
 /// Where a law is asked for more than it was fitted on: there it holds its last value, and the difference is its own.
@@ -106,14 +108,9 @@ impl Comparison {
     }
 }
 
-/// Coulomb and viscous friction that may move beside a law whose friction turns over by a time (s) before the velocity, with the names of
-/// their changes.
-pub(crate) fn coulomb_and_viscous(state: &JointState, lead_s: f64) -> Vec<(&'static str, Vec<f64>)> {
-    let sign = match lead_s == 0.0 {
-        true => state.sign.clone(),
-        false => state.averaged_sign(&state.led_velocity(lead_s), state.sign_velocity),
-    };
-    vec![("coulomb_torque_change", sign), ("viscous_coefficient_change", state.velocity.clone())]
+/// Coulomb and viscous friction that may move beside a law, with the names of their changes.
+pub(crate) fn coulomb_and_viscous(state: &JointState) -> Vec<(&'static str, Vec<f64>)> {
+    vec![("coulomb_torque_change", state.sign.clone()), ("viscous_coefficient_change", state.velocity.clone())]
 }
 
 /// Velocities at which a reference's friction is tabulated, denser towards zero.

@@ -237,8 +237,13 @@ impl InverseLaw {
         2 + 2 * usize::from(self.gravity) + usize::from(self.given)
     }
 
+    /// Smoothed sign of its friction.
+    fn sign(&self, state: &JointState) -> Vec<f64> {
+        state.averaged_sign(&state.led_velocity(self.lead_s), self.sign_velocity)
+    }
+
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let sign = state.averaged_sign(&state.led_velocity(self.lead_s), self.sign_velocity);
+        let sign = self.sign(state);
         let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
         for (velocity, sign) in state.velocity.iter().zip(&sign) {
             for (column, value) in columns.iter_mut().zip(self.friction_columns(*velocity, *sign)) {
@@ -311,7 +316,7 @@ impl InverseLaw {
         Reference {
             torque: weighted(&columns, &self.coefficients),
             rigid_body: self.rigid_body_of(&columns),
-            jacobian: coulomb_and_viscous(state, self.lead_s),
+            jacobian: coulomb_and_viscous(&JointState { sign: self.sign(state), ..state.clone() }),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
             replayed_residual: met.map(|met| met.torque),
             formula_error,
@@ -319,6 +324,7 @@ impl InverseLaw {
             outside: Outside::default(),
             is_fitted: false,
             friction: self.friction_curve(),
+            sign_lead_s: self.lead_s,
         }
     }
 }
