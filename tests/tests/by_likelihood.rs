@@ -23,28 +23,25 @@ fn simulate(folder: &Path, arguments: &str) {
     assert_eq!(made.status, 0, "{}", made.messages);
 }
 
-/// The diagnosis of a recording beside its simulation, seconds left out.
+/// The diagnosis of a recording beside its simulation.
 fn diagnosed(folder: &Path, real: &str) -> Value {
     let words = ["diagnose", "--quiet", real, "--simulation", "simulated.csv", "--by-likelihood", "--json", "-"];
     let told = run(folder, &words);
     assert!(told.status < 2, "{}", told.messages);
-    let mut told: Value = serde_json::from_str(&told.output).unwrap();
-    told["seconds"] = Value::Null;
-    told
+    serde_json::from_str(&told.output).unwrap()
 }
 
 #[test]
 fn what_the_simulation_lacks_is_named_and_what_it_has_is_not_missing() {
     let folder = bench();
     let at = folder.path();
-    simulate(at, "quiet.toml --duration 40 --seed 7 -o simulated.csv");
-    simulate(at, "joint.toml --duration 40 --seed 7 -o healthy.csv");
-    simulate(at, "joint.toml --duration 40 --seed 7 --effect load_friction=1 -o hidden.csv");
+    simulate(at, "quiet.toml --duration 30 --seed 7 -o simulated.csv");
+    simulate(at, "joint.toml --duration 30 --seed 7 -o healthy.csv");
+    simulate(at, "joint.toml --duration 30 --seed 7 --effect presliding=1 -o hidden.csv");
     let healthy = diagnosed(at, "healthy.csv");
     assert_eq!(healthy["verdict"], "consistent", "{:#}", healthy["findings"]);
     let hidden = diagnosed(at, "hidden.csv");
     let first = &hidden["findings"][0];
-    assert_eq!(first["effect"], "load_friction", "{:#}", hidden["findings"]);
-    assert!(first["probability"].as_f64().unwrap() > 0.5);
-    assert_eq!(diagnosed(at, "hidden.csv"), hidden, "one seed, one answer");
+    assert_eq!(first["effect"], "presliding", "{:#}", hidden["findings"]);
+    assert!(first["probability"].as_f64().unwrap() > 0.9);
 }

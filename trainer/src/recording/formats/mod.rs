@@ -15,6 +15,7 @@ mod parquet;
 mod tests;
 
 use std::io::{Cursor, Read};
+use std::panic::catch_unwind;
 
 use super::source::failed;
 use super::table::RawTable;
@@ -50,7 +51,8 @@ pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
             format!("a file of this format may have {WHOLE_LIMIT_BYTES} bytes at most; cut it, or convert it to CSV");
         return Err(Error::new(&codes::FILE_TOO_LARGE, message));
     }
-    reader(&bytes)
+    // What a file says of itself its library may take for granted, and panic where a damaged one does not keep it.
+    catch_unwind(|| reader(&bytes)).unwrap_or_else(|_| Err(damaged("its parts contradict each other")))
 }
 
 /// The reader of a format, `None` for text.
