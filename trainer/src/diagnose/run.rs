@@ -55,13 +55,13 @@ const LEAST_ROWS: usize = 150;
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
 pub fn diagnose(comparison: &Comparison, options: &Options) -> Result<Diagnosis, Refusal> {
-    let Comparison { signals, reference, .. } = comparison;
+    let signals = &comparison.signals;
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
     let request = Request { options: *options, as_recorded: &AsRecorded::of(signals) };
     let Some(command) = Command::of(signals) else { return diagnose_in_step(comparison, &request) };
-    let limited = Comparison { signals: command.given(signals), reference: reference.clone(), ..comparison.clone() };
+    let limited = Comparison { signals: command.given(signals), ..comparison.clone() };
     let mut diagnosis = diagnose_in_step(&limited, &request)?;
     let note = command.note();
     diagnosis.put_first(measurement_finding(&note), Vec::new());

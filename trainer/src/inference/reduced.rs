@@ -50,38 +50,46 @@ pub(crate) struct RandomEffects {
     factor: Cholesky<f64, Dyn>,
     /// Factors that scale their matrix to a unit diagonal.
     scale: Vec<f64>,
+    /// `L^-1` times their products with the candidates on their own rows, then on all rows.
+    across: DMatrix<f64>,
     /// Their products with the target over all rows.
     moments: DVector<f64>,
 }
 
 impl RandomEffects {
-    /// Columns at `places` with a precision each, by the products `all` over all rows on which they act. `None` where they are singular
-    /// to working precision.
-    pub fn new(all: &Reduced, places: Vec<usize>, precision: &[f64]) -> Option<Self> {
+    /// Columns at `places` with a precision each, by the products `all` over all rows on which they act and `own` over those on which the
+    /// candidates do. `None` where they are singular to working precision.
+    pub fn new(all: &Reduced, own: &Reduced, places: Vec<usize>, precision: &[f64]) -> Option<Self> {
         let diagonal = |i: usize| all.gram[(places[i], places[i])] + precision[i];
         let scale: Vec<f64> =
             (0..places.len()).map(|i| if diagonal(i) > 0.0 { diagonal(i).sqrt().recip() } else { 0.0 }).collect();
         let matrix = DMatrix::from_fn(places.len(), places.len(), |i, j| {
             if i == j { 1.0 + LEAST_PRECISION } else { scale[i] * scale[j] * all.gram[(places[i], places[j])] }
         });
+        let factor = matrix.cholesky()?;
+        let width = own.gram.nrows();
+        let mut across = DMatrix::from_fn(places.len(), 2 * width, |i, j| {
+            let of = if j < width { own } else { all };
+            scale[i] * of.gram[(places[i], j % width)]
+        });
+        factor.l_dirty().solve_lower_triangular_mut(&mut across);
         let moments = DVector::from_fn(places.len(), |i, _| all.moments[places[i]]);
-        Some(Self { factor: matrix.cholesky()?, scale, moments, places })
+        Some(Self { factor, scale, across, moments, places })
     }
 
     /// The products of candidates on their `own` rows and on `all` rows with the random effects integrated out: columns are the own
     /// ones, then, in the same order, those that act on all rows.
     pub fn integrated_out(&self, all: &Reduced, own: &Reduced) -> Reduced {
         let width = own.gram.nrows();
-        let across = self.across(all, own);
         let weighed = self.weighed(&self.moments);
-        let columns: Vec<Vec<f64>> = across.column_iter().map(|column| column.iter().copied().collect()).collect();
+        let columns: Vec<Vec<f64>> = self.across.column_iter().map(|column| column.iter().copied().collect()).collect();
         let taken = products(&columns);
         let before = |i: usize, j: usize| {
             let of = if i < width || j < width { own } else { all };
             of.gram[(i % width, j % width)]
         };
         let moment = |i: usize| if i < width { own.moments[i] } else { all.moments[i - width] };
-        let taken_moments = across.tr_mul(&weighed);
+        let taken_moments = self.across.tr_mul(&weighed);
         let mut left = Reduced {
             gram: DMatrix::from_fn(2 * width, 2 * width, |i, j| before(i, j) - taken[(i, j)]),
             moments: DVector::from_fn(2 * width, |i, _| moment(i) - taken_moments[i]),
@@ -96,18 +104,6 @@ impl RandomEffects {
             }
         }
         left
-    }
-
-    /// `L^-1` times the products of the random effects with candidates on their own rows, and on all rows.
-    fn across(&self, all: &Reduced, own: &Reduced) -> DMatrix<f64> {
-        let width = own.gram.nrows();
-        let product = |i: usize, j: usize| {
-            let of = if j < width { own } else { all };
-            of.gram[(self.places[i], j % width)]
-        };
-        let mut across = DMatrix::from_fn(self.places.len(), 2 * width, |i, j| self.scale[i] * product(i, j));
-        self.factor.l_dirty().solve_lower_triangular_mut(&mut across);
-        across
     }
 
     /// Places of their columns.
@@ -133,14 +129,13 @@ impl RandomEffects {
 
     /// Takes from products of other targets, which are zero but on the candidates' own rows (one a row of `moments`), what the random
     /// effects take; columns as of [`Self::integrated_out`].
-    pub fn beside(&self, all: &Reduced, own: &Reduced, moments: &DMatrix<f64>) -> DMatrix<f64> {
-        let width = own.gram.nrows();
-        let across = self.across(all, own);
+    pub fn beside(&self, moments: &DMatrix<f64>) -> DMatrix<f64> {
+        let width = moments.ncols();
         let mut of_random =
             DMatrix::from_fn(self.places.len(), moments.nrows(), |i, k| self.scale[i] * moments[(k, self.places[i])]);
         self.factor.l_dirty().solve_lower_triangular_mut(&mut of_random);
         let twice = DMatrix::from_fn(moments.nrows(), 2 * width, |k, j| moments[(k, j % width)]);
-        twice - of_random.tr_mul(&across)
+        twice - of_random.tr_mul(&self.across)
     }
 
     /// Energy that the random effects take more of a target of which their products (one row) are changed on the candidates' rows.
@@ -219,7 +214,8 @@ mod tests {
         let rows = 300;
         let columns: Vec<Vec<f64>> = [3, 4, 7].map(|seed| column(seed, rows)).to_vec();
         let all = Reduced::without_base(&products(&columns), 0);
-        let with = |precision: f64| RandomEffects::new(&all, vec![0], &[precision]).unwrap().integrated_out(&all, &all);
+        let with =
+            |precision: f64| RandomEffects::new(&all, &all, vec![0], &[precision]).unwrap().integrated_out(&all, &all);
         assert!((with(1e15).gram[(1, 1)] - all.gram[(1, 1)]).abs() < 1e-4);
         assert_eq!(with(1e15).gram.nrows(), 4, "own columns and those on all rows");
         let flat = with(0.0);

@@ -71,11 +71,10 @@ impl Field<'_> {
         self.temper * set.log_evidence + prior - self.price * set.members.len() as f64
     }
 
-    /// Log evidence that a candidate adds to a model, averaged over its shapes.
-    fn gain(&self, model: &Model, candidate: usize) -> f64 {
+    /// Weighted log evidence that each shape of a candidate adds to a model.
+    fn gains(&self, model: &Model, candidate: usize) -> Vec<f64> {
         let variants = &self.candidates[candidate].variants;
-        let gains: Vec<f64> = variants.iter().map(|variant| variant.log_weight + model.gain(variant)).collect();
-        log_sum_exp(gains.iter().copied())
+        variants.iter().map(|variant| variant.log_weight + model.gain(variant)).collect()
     }
 
     /// The set with each member's shape where it is likeliest beside the others; `None` where a model is singular.
@@ -88,15 +87,11 @@ impl Field<'_> {
                 let mut others = members.clone();
                 let own = others.remove(place);
                 let model = self.model(&others)?;
-                let variants = &self.candidates[own.candidate].variants;
-                let gains: Vec<f64> = variants.iter().map(|variant| variant.log_weight + model.gain(variant)).collect();
-                let taken = |variant: usize| {
-                    others.iter().any(|other| other.candidate == own.candidate && other.variant == variant)
-                };
-                let free = (0..gains.len()).filter(|variant| !taken(*variant));
-                let best = free.max_by(|a, b| gains[*a].total_cmp(&gains[*b]))?;
-                members[place].variant = best;
-                averaged[place] = log_sum_exp(gains.iter().copied()) - (gains[best] - variants[best].log_weight);
+                let gains = self.gains(&model, own.candidate);
+                members[place] = best_beside(&others, own.candidate, &gains)?;
+                let best = members[place].variant;
+                let unweighted = gains[best] - self.variant(members[place]).log_weight;
+                averaged[place] = log_sum_exp(gains.iter().copied()) - unweighted;
             }
             if members == before {
                 break;
@@ -130,16 +125,15 @@ impl Field<'_> {
     }
 
     /// The candidates that add most to some members, best first.
-    fn extensions(&self, members: &[Member]) -> Vec<(f64, usize)> {
-        let Some(model) = self.model(members) else { return Vec::new() };
+    fn extensions(&self, model: &Model, members: &[Member]) -> Vec<(f64, usize)> {
         let may_join = |candidate: &usize| {
             self.candidates[*candidate].repeats || members.iter().all(|member| member.candidate != *candidate)
         };
         let weighed = (0..self.candidates.len()).into_par_iter().filter(may_join);
         let mut gains: Vec<(f64, usize)> = weighed
             .map(|candidate| {
-                let gain = self.temper * self.gain(&model, candidate) + self.candidates[candidate].log_prior;
-                (gain, candidate)
+                let gain = log_sum_exp(self.gains(model, candidate).iter().copied());
+                (self.temper * gain + self.candidates[candidate].log_prior, candidate)
             })
             .collect();
         gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -167,14 +161,13 @@ impl Field<'_> {
         let nothing = Set { members: Vec::new(), log_evidence: 0.0 };
         let models: Vec<Model> = leading.iter().chain([&nothing]).filter_map(|set| self.model(&set.members)).collect();
         let of_candidate = |candidate: usize| -> Vec<Member> {
-            let variants = &self.candidates[candidate].variants;
-            let mut useful = vec![false; variants.len()];
+            let mut useful = vec![false; self.candidates[candidate].variants.len()];
             for model in &models {
-                let gains: Vec<f64> = variants.iter().map(|variant| variant.log_weight + model.gain(variant)).collect();
+                let gains = self.gains(model, candidate);
                 let best = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 useful.iter_mut().zip(&gains).for_each(|(useful, gain)| *useful |= *gain > best - within);
             }
-            (0..variants.len()).filter(|v| useful[*v]).map(|variant| Member { candidate, variant }).collect()
+            (0..useful.len()).filter(|v| useful[*v]).map(|variant| Member { candidate, variant }).collect()
         };
         let mut members: Vec<Member> = (0..self.candidates.len()).into_par_iter().flat_map_iter(of_candidate).collect();
         members.extend(leading.iter().flat_map(|set| set.members.iter().copied()));
@@ -188,13 +181,7 @@ impl Field<'_> {
         let mut known = BTreeMap::from([(Vec::new(), Set { members: Vec::new(), log_evidence: 0.0 })]);
         let mut followed = vec![Set { members: Vec::new(), log_evidence: 0.0 }];
         for size in 1..=MOST_MEMBERS {
-            let extended = |set: &Set| -> Vec<Vec<Member>> {
-                let with = |(_, candidate): &(f64, usize)| {
-                    [set.members.clone(), vec![Member { candidate: *candidate, variant: usize::MAX }]].concat()
-                };
-                self.extensions(&set.members).iter().map(with).collect()
-            };
-            let proposed = followed.iter().flat_map(extended).map(|members| self.with_shapes(members)).collect();
+            let proposed = followed.iter().flat_map(|set| self.extended(&set.members)).collect();
             self.settle_new(proposed, &mut known);
             let mut of_size: Vec<&Set> = known.values().filter(|set| set.members.len() == size).collect();
             of_size.sort_by(|a, b| self.weight(b).total_cmp(&self.weight(a)));
@@ -221,28 +208,21 @@ impl Field<'_> {
             for place in 0..leader.members.len() {
                 let mut others = leader.members.clone();
                 others.remove(place);
-                proposed.push(others.clone());
-                for (_, candidate) in self.extensions(&others) {
-                    let members = [others.clone(), vec![Member { candidate, variant: usize::MAX }]].concat();
-                    proposed.push(self.with_shapes(members));
-                }
+                proposed.extend(self.extended(&others));
+                proposed.push(others);
             }
             self.settle_new(proposed, known);
         }
     }
 
-    /// Gives a member without a shape the likeliest one beside the others.
-    fn with_shapes(&self, mut members: Vec<Member>) -> Vec<Member> {
-        let Some(place) = members.iter().position(|member| member.variant == usize::MAX) else { return members };
-        let candidate = members.remove(place).candidate;
-        let taken = |variant: usize| members.contains(&Member { candidate, variant });
-        let variants = &self.candidates[candidate].variants;
-        let best = self.model(&members).and_then(|model| {
-            let gains: Vec<f64> = variants.iter().map(|variant| variant.log_weight + model.gain(variant)).collect();
-            (0..gains.len()).filter(|variant| !taken(*variant)).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))
-        });
-        members.push(Member { candidate, variant: best.unwrap_or(0) });
-        members
+    /// Members with each of the candidates that add most to them, at its likeliest shape.
+    fn extended(&self, members: &[Member]) -> Vec<Vec<Member>> {
+        let Some(model) = self.model(members) else { return Vec::new() };
+        let with = |(_, candidate): (f64, usize)| {
+            let new = best_beside(members, candidate, &self.gains(&model, candidate))?;
+            Some([members, &[new]].concat())
+        };
+        self.extensions(&model, members).into_iter().filter_map(with).collect()
     }
 
     fn ranked(&self, known: BTreeMap<Vec<usize>, Set>) -> Vec<Set> {
@@ -250,6 +230,13 @@ impl Field<'_> {
         sets.sort_by(|a, b| self.weight(b).total_cmp(&self.weight(a)).then_with(|| a.key().cmp(&b.key())));
         sets
     }
+}
+
+/// The likeliest shape of a candidate that is not among the members yet, by the gains of its shapes.
+fn best_beside(members: &[Member], candidate: usize, gains: &[f64]) -> Option<Member> {
+    let shapes = (0..gains.len()).map(|variant| Member { candidate, variant });
+    let free = shapes.filter(|member| !members.contains(member));
+    free.max_by(|a, b| gains[a.variant].total_cmp(&gains[b.variant]))
 }
 
 #[cfg(test)]

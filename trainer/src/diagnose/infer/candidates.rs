@@ -202,6 +202,11 @@ impl Candidates {
         relative.iter().map(|r| (EXPECTED_SHARE * friction).powi(2) * r / sum).collect()
     }
 
+    /// Places of the columns of some members, one after the other.
+    pub fn places(&self, members: &[Member]) -> Vec<usize> {
+        members.iter().flat_map(|m| self.entries[m.candidate].shapes[m.variant].columns.clone()).collect()
+    }
+
     /// What `inference` weighs; beside a simulation a candidate has a coefficient on all rows too, unless a random effect stands for it.
     pub fn weighed(&self, friction: f64, random: Option<&[usize]>) -> Vec<Candidate> {
         let shared = |shaped: &Shaped| match random {

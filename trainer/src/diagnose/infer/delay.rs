@@ -95,11 +95,8 @@ impl<'a> Profile<'a> {
         let field = Field { reduced: &reduced, candidates: &self.weighed, price: FIRST_PRICE, temper: 1.0 };
         let members = field.forward(self.members);
         let common = weighted(weighing.columns(), &weighing.common(&self.weighed, &members));
-        let of_members = members.iter().flat_map(|m| candidates.entries[m.candidate].shapes[m.variant].columns.clone());
-        let beside: Vec<Vec<f64>> =
-            weighing.base().iter().cloned().chain(of_members.map(|place| weighing.columns()[place].clone())).collect();
         let all = std::iter::once(0..common.len()).collect::<Vec<_>>();
-        let basis = orthonormal(&beside, &all);
+        let basis = orthonormal(&weighing.beside(candidates, &members), &all);
         let left = |delay_s: f64| {
             let mut left: Vec<f64> =
                 white(delay_s).iter().zip(&common).map(|(target, common)| target - common).collect();

@@ -111,9 +111,7 @@ fn refine_shapes(
             let own = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
             own.for_each(|place| coefficients[place] = beside_others[place]);
             let target = weighing.less(&coefficients);
-            let places = others.iter().flat_map(|m| candidates.entries[m.candidate].shapes[m.variant].columns.clone());
-            let of_others = places.map(|place| weighing.columns()[place].clone());
-            let beside: Vec<Vec<f64>> = weighing.base().iter().cloned().chain(of_others).collect();
+            let beside = weighing.beside(candidates, &others);
             let entry = &candidates.entries[member.candidate];
             let start = &entry.shapes[member.variant];
             let weight = start.log_weight.min(-(entry.shapes.len() as f64).ln());

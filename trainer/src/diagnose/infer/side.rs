@@ -29,13 +29,7 @@ impl<'a> Side<'a> {
         if matches!(base.delay, Delay::OfSampling(_)) {
             columns.pop();
         }
-        Self {
-            runs: prepared.open_runs(),
-            features: noise_features(prepared),
-            columns,
-            target: base.target.clone(),
-            prepared,
-        }
+        Self::of_open_rows(prepared, base, columns)
     }
 
     /// The open rows of a recording whose torque is in step with the motion but for a part of a sample.
@@ -44,13 +38,12 @@ impl<'a> Side<'a> {
         // A part of a sample between torque and motion, as it shows in the recorded torque itself: where friction turns over at another
         // instant than the base has it, the rate of the predicted torque is that of another.
         columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.torque)));
-        Self {
-            runs: prepared.open_runs(),
-            features: noise_features(prepared),
-            columns,
-            target: base.target.clone(),
-            prepared,
-        }
+        Self::of_open_rows(prepared, base, columns)
+    }
+
+    fn of_open_rows(prepared: &'a Prepared, base: &Base, columns: Vec<Vec<f64>>) -> Self {
+        let (runs, features) = (prepared.open_runs(), noise_features(prepared));
+        Self { runs, features, columns, target: base.target.clone(), prepared }
     }
 
     /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.

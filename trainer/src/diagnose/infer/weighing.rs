@@ -85,7 +85,7 @@ impl Weighing {
             let field = Field { reduced: &of_simulated, candidates: &alone, price: FIRST_PRICE, temper: 1.0 };
             let shown = field.forward(MOST_SHOWN);
             let (places, precision) = candidates.shared(friction, &shown);
-            let random = RandomEffects::new(&all, places, &precision)?;
+            let random = RandomEffects::new(&all, &of_real, places, &precision)?;
             Some((random.integrated_out(&all, &of_real), all, random, shown))
         });
         match beside {
@@ -104,6 +104,12 @@ impl Weighing {
     /// Whitened columns of the candidates.
     pub fn columns(&self) -> &[Vec<f64>] {
         &self.white[self.base..self.white.len() - 1]
+    }
+
+    /// Whitened columns of the base and of some members.
+    pub fn beside(&self, candidates: &Candidates, members: &[Member]) -> Vec<Vec<f64>> {
+        let of_members = candidates.places(members).into_iter().map(|place| self.columns()[place].clone());
+        self.base().iter().cloned().chain(of_members).collect()
     }
 
     /// The whitened target less the torque of coefficients of all columns.
@@ -129,9 +135,9 @@ impl Weighing {
         let energy = dot(&left, &left, &all) - dot(&before, &before, &all);
         let mut reduced = self.reduced.clone();
         match &self.both {
-            Some((both, random)) => {
+            Some((_, random)) => {
                 reduced.energy += energy - random.energy_change(&moments);
-                reduced.moments += random.beside(both, &self.real, &moments).row(0).transpose();
+                reduced.moments += random.beside(&moments).row(0).transpose();
             }
             None => {
                 reduced.energy += energy;
@@ -152,7 +158,7 @@ impl Weighing {
         let across = DMatrix::from_fn(basis.len(), columns.len(), |i, j| dot(&basis[i], &columns[j], &all));
         let own = replay.moments(columns) - replay.moments(&basis) * across;
         let moments = match &self.both {
-            Some((all, random)) => random.beside(all, &self.real, &own),
+            Some((_, random)) => random.beside(&own),
             None => own,
         };
         NullEvidence::new(&self.reduced, &moments, weighed)
@@ -198,9 +204,8 @@ impl Weighing {
         let torque = weighted(&candidates.real, &self.coefficients(weighed, members));
         let mut target = real.target.clone();
         target.iter_mut().zip(&torque).for_each(|(target, torque)| *target -= torque);
-        let members = members.iter().flat_map(|m| candidates.entries[m.candidate].shapes[m.variant].columns.clone());
-        let columns: Vec<Vec<f64>> =
-            real.columns.iter().cloned().chain(members.map(|place| candidates.real[place].clone())).collect();
+        let of_members = candidates.places(members).into_iter().map(|place| candidates.real[place].clone());
+        let columns: Vec<Vec<f64>> = real.columns.iter().cloned().chain(of_members).collect();
         fit_residual(&columns, &target, &real.runs).unwrap_or(target)
     }
 

@@ -1,9 +1,10 @@
 //! JSON: an object a line, a list of objects, or one object of lists.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use serde_json::{Deserializer, Map, Value};
 
+use super::names::Names;
 use super::{MOST_CELLS, damaged};
 use crate::error::{Error, Result, codes};
 use crate::recording::table::{RawTable, TableBuilder};
@@ -20,8 +21,7 @@ const SAMPLE_ROWS: usize = 200;
 /// Rows whose cells are named by the path to them.
 #[derive(Default)]
 struct Rows {
-    names: Vec<String>,
-    places: HashMap<String, usize>,
+    names: Names,
     rows: Vec<Vec<(usize, String)>>,
 }
 
@@ -45,22 +45,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
             }
         }
     }
-    if rows.names.len().saturating_mul(rows.rows.len()) > MOST_CELLS {
+    if rows.names.in_order.len().saturating_mul(rows.rows.len()) > MOST_CELLS {
         let message = format!("its objects have more than {MOST_CELLS} cells together; every row has other keys");
         return Err(Error::new(&codes::FILE_TOO_LARGE, message));
     }
     let mut cells: Vec<&str> = Vec::new();
     let full = |row: &Vec<(usize, String)>| {
-        let mut cells = vec![String::new(); rows.names.len()];
+        let mut cells = vec![String::new(); rows.names.in_order.len()];
         row.iter().for_each(|(place, text)| cells[*place].clone_from(text));
         cells
     };
     let sample: Vec<Vec<String>> = rows.rows.iter().take(SAMPLE_ROWS).map(full).collect();
     let sample: Vec<Vec<&str>> = sample.iter().map(|row| row.iter().map(String::as_str).collect()).collect();
-    let mut builder = TableBuilder::new(rows.names.clone(), 1, &sample)?;
+    let mut builder = TableBuilder::new(rows.names.in_order.clone(), 1, &sample)?;
     for (index, row) in rows.rows.iter().enumerate() {
         cells.clear();
-        cells.resize(rows.names.len(), "");
+        cells.resize(rows.names.in_order.len(), "");
         row.iter().for_each(|(place, text)| cells[*place] = text);
         builder.push(index as u64 + 1, cells.iter().copied())?;
     }
@@ -76,16 +76,6 @@ fn is_columns(object: &Map<String, Value>) -> bool {
 }
 
 impl Rows {
-    fn place(&mut self, name: &str) -> usize {
-        if let Some(place) = self.places.get(name) {
-            return *place;
-        }
-        let place = self.names.len();
-        self.names.push(name.to_owned());
-        self.places.insert(name.to_owned(), place);
-        place
-    }
-
     fn push(&mut self, value: &Value) {
         let mut row = Vec::new();
         match value {
@@ -138,6 +128,6 @@ impl Rows {
                 return;
             }
         };
-        row.push((self.place(name), text));
+        row.push((self.names.place(name), text));
     }
 }

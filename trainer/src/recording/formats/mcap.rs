@@ -1,12 +1,11 @@
 //! MCAP, what ROS 2 records its bags in: every joint state becomes columns such as `/joint_states/elbow/position`.
 
-use std::collections::HashMap;
-
 use mcap::MessageStream;
 use mcap::read::Options;
 
 use super::cursor::Number;
 use super::joint_state::{JointState, of_ros1, of_ros2};
+use super::names::Names;
 use super::{MOST_CELLS, damaged};
 use crate::error::{Error, Result, codes};
 use crate::recording::table::{RawTable, TableBuilder};
@@ -17,8 +16,7 @@ const FIELDS: [&str; 3] = ["position", "velocity", "effort"];
 /// Joint states in the order of their stamps.
 #[derive(Default)]
 struct States {
-    names: Vec<String>,
-    places: HashMap<String, usize>,
+    names: Names,
     rows: Vec<(i128, Vec<(usize, f64)>)>,
 }
 
@@ -74,7 +72,7 @@ impl States {
             for (field, values) in FIELDS.iter().zip(&state.values) {
                 // What a driver does not know it leaves out, or fills with NaN.
                 if let Some(value) = values.get(joint).filter(|value| value.is_finite()) {
-                    row.push((self.place(&format!("{topic}/{name}/{field}")), *value));
+                    row.push((self.names.place(&format!("{topic}/{name}/{field}")), *value));
                 }
             }
         }
@@ -82,24 +80,14 @@ impl States {
         self.rows.push((stamp, row));
     }
 
-    fn place(&mut self, name: &str) -> usize {
-        if let Some(place) = self.places.get(name) {
-            return *place;
-        }
-        let place = self.names.len();
-        self.names.push(name.to_owned());
-        self.places.insert(name.to_owned(), place);
-        place
-    }
-
     fn table(mut self) -> Result<RawTable> {
         self.rows.sort_by_key(|(stamp, _)| *stamp);
-        let width = self.names.len() + 1;
+        let width = self.names.in_order.len() + 1;
         if width.saturating_mul(self.rows.len()) > MOST_CELLS {
             let message = format!("its joint states have more than {MOST_CELLS} cells together");
             return Err(Error::new(&codes::FILE_TOO_LARGE, message));
         }
-        let header = std::iter::once("time_ns".to_owned()).chain(self.names).collect();
+        let header = std::iter::once("time_ns".to_owned()).chain(self.names.in_order).collect();
         let mut builder = TableBuilder::new(header, 1, &[])?;
         let mut cells = vec![String::new(); width];
         for (index, (stamp, row)) in self.rows.iter().enumerate() {

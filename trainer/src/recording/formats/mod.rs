@@ -8,6 +8,7 @@ mod json;
 mod matlab;
 #[cfg(feature = "mcap")]
 mod mcap;
+mod names;
 mod numpy;
 #[cfg(feature = "parquet")]
 mod parquet;
