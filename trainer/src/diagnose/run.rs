@@ -21,7 +21,7 @@ use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::infer::candidates::Candidates;
-use crate::diagnose::infer::delay::{TorqueDelay, shifted, torque_delay};
+use crate::diagnose::infer::delay::{Start, TorqueDelay, shifted};
 use crate::diagnose::infer::inferred::{Inferred, infer};
 use crate::diagnose::infer::side::Side;
 use crate::diagnose::measurement::signals::Signals;
@@ -256,16 +256,23 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
     let real = Side::without_delay(&prepared, &base);
     let candidates = Candidates::new(&hypotheses, &real, side.as_ref());
-    let (late, noise) = torque_delay(&candidates, &real, side.as_ref());
+    let start = Start::new(&candidates, &real, side.as_ref());
+    let late = start.torque_delay(&candidates, &real);
     let is_own = late.delay_s.abs() <= LONGEST_SAMPLING_DELAY * period;
     // The drive answers to the grain of its encoder some samples later.
-    let explained = 2.0 * late.gain_nats * noise.rms * noise.rms;
+    let explained = 2.0 * late.gain_nats * start.noise.rms * start.noise.rms;
     let is_shown = late.gain_nats > DELAY_NATS && late.shown_deviations > DELAY_DEVIATIONS;
     let is_told = !is_own && is_shown && explained > position_error_energy(&prepared, comparison);
     let longest = if is_told { f64::INFINITY } else { LONGEST_SAMPLING_DELAY * period };
     let late = TorqueDelay { delay_s: late.delay_s.clamp(-longest, longest), ..late };
     let in_step = shifted(&Side::new(&prepared, &base), late.delay_s);
-    let inferred = infer(&hypotheses, candidates, (&in_step, side.as_ref()), noise, options.settings.seed);
+    let inferred = infer(
+        &hypotheses,
+        candidates,
+        (&in_step, side.as_ref()),
+        start.put_back(&real, late.delay_s),
+        options.settings.seed,
+    );
     let mut diagnosis = diagnose_locked(&comparison.realigned(late.delay_s), request, Some(&inferred))?;
     diagnosis.realigned_by_s = late.delay_s;
     if !is_told {

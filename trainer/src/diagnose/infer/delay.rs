@@ -33,20 +33,49 @@ pub(crate) struct TorqueDelay {
     pub shown_deviations: f64,
 }
 
-/// The likeliest delay, beside the few effects that explain most at that delay, and the noise that it leaves. First with white noise,
-/// which reversals decide; then with the noise of what that delay leaves.
-pub(crate) fn torque_delay(candidates: &Candidates, real: &Side, simulated: Option<&Side>) -> (TorqueDelay, Noise) {
-    let step = STEP_PERIODS / real.prepared.filter.cut_off_hz;
-    let longest = (LONGEST_S / step).floor() as i32;
-    let roughly = {
-        let profile = Profile::new(candidates, real, simulated, white_noise(candidates, real), 0);
-        profile.likeliest(0.0, step, longest).delay_s
-    };
-    let noise = first_noise(candidates, &shifted(real, roughly), simulated);
-    let profile = Profile::new(candidates, real, simulated, noise.clone(), MEMBERS);
-    let found = profile.likeliest(roughly, step, NEIGHBOURS);
-    let gain_nats = profile.at(found.delay_s) - profile.at(0.0);
-    (TorqueDelay { gain_nats, shown_deviations: profile.shown_deviations(candidates, found.delay_s), ..found }, noise)
+/// Where the search for a delay begins: noise beside a rough delay, and the products of all shapes for that noise.
+pub(crate) struct Start {
+    pub noise: Noise,
+    pub weighing: Weighing,
+    roughly_s: f64,
+}
+
+impl Start {
+    /// A rough delay by white noise, which reversals decide, beside smooth functions alone; then the noise that it leaves.
+    pub fn new(candidates: &Candidates, real: &Side, simulated: Option<&Side>) -> Self {
+        let friction = friction_of(real);
+        let roughly_s = {
+            let functions = candidates.only(|_| false);
+            let noise = white_noise(&functions, real);
+            let weighing = Weighing::new(&functions, real, simulated, &noise, friction);
+            Profile { real, noise: &noise, weighing: &weighing, weighed: Vec::new(), members: 0 }
+                .likeliest(0.0, step_s(real), (LONGEST_S / step_s(real)).floor() as i32)
+                .delay_s
+        };
+        let noise = first_noise(candidates, &shifted(real, roughly_s), simulated);
+        Self { weighing: Weighing::new(candidates, real, simulated, &noise, friction), noise, roughly_s }
+    }
+
+    /// The likeliest delay, beside the few effects that explain most at that delay.
+    pub fn torque_delay(&self, candidates: &Candidates, real: &Side) -> TorqueDelay {
+        let Self { noise, weighing, roughly_s } = self;
+        let weighed = candidates.weighed(friction_of(real), weighing.random());
+        let profile = Profile { real, noise, weighing, weighed, members: MEMBERS };
+        let found = profile.likeliest(*roughly_s, step_s(real), NEIGHBOURS);
+        let gain_nats = profile.at(found.delay_s) - profile.at(0.0);
+        TorqueDelay { gain_nats, shown_deviations: profile.shown_deviations(candidates, found.delay_s), ..found }
+    }
+
+    /// The products with the torque put back by a delay.
+    pub fn put_back(mut self, real: &Side, delay_s: f64) -> (Weighing, Noise) {
+        self.weighing.set_target(real.on_rows(&self.noise.whitened(&shifted_target(real, delay_s), &real.runs)));
+        (self.weighing, self.noise)
+    }
+}
+
+/// Time between two delays that are tried, s.
+fn step_s(real: &Side) -> f64 {
+    STEP_PERIODS / real.prepared.filter.cut_off_hz
 }
 
 /// A side with its torque put back by a delay.
@@ -57,26 +86,13 @@ pub(crate) fn shifted<'a>(real: &Side<'a>, delay_s: f64) -> Side<'a> {
 /// The likelihood over the delay.
 struct Profile<'a> {
     real: &'a Side<'a>,
-    noise: Noise,
-    weighing: Weighing,
+    noise: &'a Noise,
+    weighing: &'a Weighing,
     weighed: Vec<Candidate>,
     members: usize,
 }
 
-impl<'a> Profile<'a> {
-    fn new(
-        candidates: &Candidates,
-        real: &'a Side<'a>,
-        simulated: Option<&Side>,
-        noise: Noise,
-        members: usize,
-    ) -> Self {
-        let friction = friction_of(real);
-        let weighing = Weighing::new(candidates, real, simulated, &noise, friction);
-        let weighed = candidates.weighed(friction, weighing.random());
-        Self { real, noise, weighing, weighed, members }
-    }
-
+impl Profile<'_> {
     /// Log likelihood of a delay, beside the effects that explain most there.
     fn at(&self, delay_s: f64) -> f64 {
         let Self { real, noise, .. } = self;

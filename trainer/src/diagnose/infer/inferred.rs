@@ -33,18 +33,17 @@ pub(crate) struct Inferred {
     pub price: f64,
 }
 
-/// Weighs all candidates on the torque of `real`, beginning with a noise; `seed` is that of the replays.
+/// Weighs all candidates on the torque of `real`, beginning with the products for a noise; `seed` is that of the replays.
 pub(crate) fn infer(
     hypotheses: &[Box<dyn Hypothesis + Send>],
     mut candidates: Candidates,
     (real, simulated): (&Side, Option<&Side>),
-    mut noise: Noise,
+    (mut weighing, mut noise): (Weighing, Noise),
     seed: u64,
 ) -> Inferred {
     let friction = friction_of(real);
     let mut null = None;
     for _ in 0..ROUNDS {
-        let weighing = Weighing::new(&candidates, real, simulated, &noise, friction);
         let weighed = candidates.weighed(friction, weighing.random());
         let field = Field { reduced: &weighing.reduced, candidates: &weighed, price: FIRST_PRICE, temper: 1.0 };
         let sets = field.search();
@@ -63,8 +62,8 @@ pub(crate) fn infer(
                 || weighing.shown.contains(&member)
         });
         noise = Noise::fit(&left, &real.runs, &real.features);
+        weighing = Weighing::new(&candidates, real, simulated, &noise, friction);
     }
-    let weighing = Weighing::new(&candidates, real, simulated, &noise, friction);
     let weighed = candidates.weighed(friction, weighing.random());
     let price_at = |temper: f64| null.as_ref().map_or(FIRST_PRICE, |null| null.price(temper));
     let field = Field { reduced: &weighing.reduced, candidates: &weighed, price: price_at(1.0), temper: 1.0 };
