@@ -229,6 +229,7 @@ fn diagnose_locked(
         proof,
         rollout: roll_out(workbench, &baseline, &improved),
         findings,
+        sets: inferred.map(Inferred::sets).unwrap_or_default(),
         discarded,
         rivals: last_round,
         cut_off_hz: prepared.filter.cut_off_hz,

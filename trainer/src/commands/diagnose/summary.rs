@@ -54,6 +54,8 @@ pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
         "undetermined": diagnosis.discarded.undetermined,
         "localisation": { "where": excess.iter().map(region_json).collect::<Vec<_>>(), "when_s": excess_when },
         "detection_limits": diagnosis.limits,
+        "sets": diagnosis.sets,
+        "rest": 1.0 - diagnosis.sets.iter().map(|set| set.probability).sum::<f64>(),
         "rivals": diagnosis.rivals.iter().map(rival_json).collect::<Vec<_>>(),
         "base": match diagnosis.base {
             BaseKind::CoulombViscous => "coulomb_viscous",

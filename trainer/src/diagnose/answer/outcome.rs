@@ -110,6 +110,15 @@ pub struct Finding {
     pub locked_gain_nats: Option<f64>,
 }
 
+/// Effects that may be missing together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbableSet {
+    /// Effects of the catalogue, `unknown` among them; none where nothing is missing.
+    pub effects: Vec<EffectId>,
+    /// Their probability.
+    pub probability: f64,
+}
+
 /// The amplitude that would have been seen.
 #[derive(Clone, Debug, Serialize)]
 pub struct DetectionLimit {
@@ -128,6 +137,9 @@ pub struct Diagnosis {
     pub health: Vec<HealthNote>,
     /// Findings in the order in which they were accepted.
     pub findings: Vec<Finding>,
+    /// Sets of effects that may be missing together, each with its probability, likeliest first; no effect is a set too. Sets of less
+    /// than one in a hundred are left out. Empty where sets were not weighed.
+    pub sets: Vec<ProbableSet>,
     /// What was found and is no finding.
     pub discarded: Discarded,
     /// Torque of each effect from which it would have been found.

@@ -1,5 +1,6 @@
 //! What is named of the sets that were weighed, and how sure each name is.
 
+use crate::diagnose::answer::outcome::ProbableSet;
 use crate::diagnose::evidence::score::GroupEvidence;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::infer::inferred::Inferred;
@@ -11,7 +12,28 @@ use crate::physics::EffectId;
 /// Probability of an effect together with all that may stand in for it, above which it is told: more likely than not.
 const TOLD_FROM: f64 = 0.5;
 
+/// Probability from which a set is told.
+const LEAST_SET_PROBABILITY: f64 = 0.01;
+
 impl Inferred {
+    /// Sets of effects with their probabilities, whatever shape or channel each effect has.
+    pub fn sets(&self) -> Vec<ProbableSet> {
+        let mut sets: Vec<ProbableSet> = Vec::new();
+        for (set, probability) in &self.posterior.sets {
+            let effect = |candidate: usize| self.candidates.entries[candidate].label.effect();
+            let mut effects: Vec<EffectId> = set.key().into_iter().map(effect).collect();
+            effects.sort_unstable();
+            effects.dedup();
+            match sets.iter_mut().find(|known| known.effects == effects) {
+                Some(known) => known.probability += probability,
+                None => sets.push(ProbableSet { effects, probability: *probability }),
+            }
+        }
+        sets.retain(|set| set.probability >= LEAST_SET_PROBABILITY);
+        sets.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        sets
+    }
+
     /// The members of the likeliest set of which something is more likely than not to be missing.
     pub fn accepted(&self) -> Vec<Accepted> {
         let Some(set) = self.posterior.likeliest() else { return Vec::new() };

@@ -95,6 +95,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
             rows: 300,
         }),
         rollout: None,
+        sets: Vec::new(),
         rivals: Vec::new(),
         baseline_refit: refit(),
         improved_refit: refit(),
