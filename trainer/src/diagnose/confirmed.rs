@@ -21,6 +21,8 @@ pub(crate) struct Confirmed {
     pub accepted: Vec<Accepted>,
     /// Effects that do not.
     pub withdrawn: Vec<EffectId>,
+    /// Effects that are too small to be named, with their torque (root mean square).
+    pub negligible: Vec<(EffectId, f64)>,
     /// Table of scores of the last round.
     pub last_round: Vec<Scored>,
     /// Noise of the last round.
@@ -31,13 +33,14 @@ impl Confirmed {
     /// Of a search that was not made.
     pub fn nothing(search: &Search) -> Self {
         let SearchOutcome { accepted, last_round, noise } = search.nothing();
-        Self { accepted, withdrawn: Vec::new(), last_round, noise }
+        Self { accepted, withdrawn: Vec::new(), negligible: Vec::new(), last_round, noise }
     }
 
-    /// What the likeliest set says.
-    pub fn by_likelihood(inferred: &Inferred) -> Self {
-        let (accepted, noise) = (inferred.accepted(), inferred.noise.clone());
-        Self { accepted, withdrawn: Vec::new(), last_round: inferred.table(), noise }
+    /// What the likeliest set says of effects above a share of the friction.
+    pub fn by_likelihood(inferred: &Inferred, least: f64) -> Self {
+        let (accepted, negligible) = inferred.accepted(least);
+        let noise = inferred.noise.clone();
+        Self { accepted, withdrawn: Vec::new(), negligible, last_round: inferred.table(), noise }
     }
 
     /// Searches, and again without the structures that have no name where the locked rows bear out nothing at all: a function of one channel
@@ -54,7 +57,7 @@ impl Confirmed {
             let unnamed: Vec<Label> = labels.filter(|label| label.channel().is_some()).collect();
             withdrawn.extend(withdraw_unproven(workbench, &search.settings, baseline, &mut accepted));
             if !accepted.is_empty() || unnamed.is_empty() || searches_left == 0 {
-                return Self { accepted, withdrawn, last_round, noise };
+                return Self { accepted, withdrawn, negligible: Vec::new(), last_round, noise };
             }
             search.refused.extend(unnamed);
         }

@@ -20,6 +20,7 @@ use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
 use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::infer::answer::LEAST_NAMED_SHARE;
 use crate::diagnose::infer::candidates::Candidates;
 use crate::diagnose::infer::delay::{Start, TorqueDelay, shifted};
 use crate::diagnose::infer::inferred::{Inferred, infer};
@@ -28,8 +29,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::discarded::{
-    Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, set_aside_small,
-    withdraw_without_shown_gain,
+    Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -175,14 +175,12 @@ fn diagnose_locked(
     let blocked = health.iter().any(|note| note.blocking);
     let found = match inferred {
         _ if blocked => Confirmed::nothing(&search),
-        Some(inferred) => Confirmed::by_likelihood(inferred),
+        Some(inferred) => Confirmed::by_likelihood(inferred, options.least_effect.unwrap_or(LEAST_NAMED_SHARE)),
         None => Confirmed::of(&mut search, &baseline),
     };
-    let Confirmed { mut accepted, withdrawn, last_round, noise } = found;
-    let mut discarded = Discarded { withdrawn, ..Discarded::default() };
-    if options.by_likelihood {
-        discarded.negligible = set_aside_small(workbench, &mut accepted, options.least_effect);
-    } else {
+    let Confirmed { mut accepted, withdrawn, negligible, last_round, noise } = found;
+    let mut discarded = Discarded { withdrawn, negligible, ..Discarded::default() };
+    if !options.by_likelihood {
         // In this order: what is set aside later is weighed beside what stays.
         discarded.doubtful = set_aside_doubtful(workbench, &mut accepted);
         discarded.minor = set_aside_minor(workbench, &mut accepted, &baseline);

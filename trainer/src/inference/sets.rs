@@ -216,7 +216,7 @@ impl Field<'_> {
     }
 
     /// Members with each of the candidates that add most to them, at its likeliest shape.
-    fn extended(&self, members: &[Member]) -> Vec<Vec<Member>> {
+    pub(crate) fn extended(&self, members: &[Member]) -> Vec<Vec<Member>> {
         let Some(model) = self.model(members) else { return Vec::new() };
         let with = |(_, candidate): (f64, usize)| {
             let new = best_beside(members, candidate, &self.gains(&model, candidate))?;

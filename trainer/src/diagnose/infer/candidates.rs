@@ -42,7 +42,7 @@ pub(crate) struct Entry {
 
 impl Entry {
     /// Whether it is a smooth function without a name.
-    fn is_function(&self) -> bool {
+    pub fn is_function(&self) -> bool {
         matches!(&self.label, Label::Generic(rival) if rival.form == Form::Free)
     }
 }

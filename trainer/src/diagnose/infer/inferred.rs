@@ -6,9 +6,11 @@ use crate::diagnose::infer::refined::refined;
 use crate::diagnose::infer::side::Side;
 use crate::diagnose::infer::weighing::{FIRST_PRICE, Weighing, friction_of};
 use crate::diagnose::noise::autoregression::Noise;
-use crate::inference::evidence::{Candidate, Model};
+use crate::inference::evidence::Model;
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
+use crate::numerics::least_squares::fit_residual;
+use crate::numerics::statistics::root_mean_square;
 use crate::physics::Hypothesis;
 
 /// Rounds of noise, sets and refined shapes: the second has the noise of what the first found. A limit of the computing time.
@@ -19,11 +21,19 @@ const LEADING_SETS: usize = 6;
 const USEFUL_NATS: f64 = 15.0;
 /// Probability of a candidate from which its shape is refined.
 const REFINED_FROM: f64 = 0.01;
+/// Probability of a set from which its functions without a name are compared with refined effects.
+const INSTEAD_OF_FUNCTIONS_FROM: f64 = 0.2;
+/// Effects that are refined in the place of a function. A limit of the computing time.
+const INSTEAD_OF_FUNCTIONS: usize = 4;
 
 /// What was inferred.
 pub(crate) struct Inferred {
     pub candidates: Candidates,
     pub posterior: Posterior,
+    /// Torque of each member of the likeliest set beyond what base and common columns could take, root mean square over the weighed rows.
+    pub sizes: Vec<f64>,
+    /// Friction of the base, root mean square over the same rows.
+    pub friction: f64,
     /// Log evidence (nats, tempered) of each candidate alone.
     pub alone: Vec<f64>,
     pub noise: Noise,
@@ -55,7 +65,7 @@ pub(crate) fn infer(
             null = Some(weighing.null(&weighed, &likeliest, seed));
         }
         let left = weighing.left(&candidates, real, &weighed, &likeliest);
-        refine_shapes(hypotheses, &mut candidates, (real, simulated), &weighing, &weighed, &posterior, &noise);
+        refine_shapes(hypotheses, &mut candidates, (real, simulated), &weighing, &field, &posterior, &noise);
         candidates = candidates.only(|member| {
             weighed[member.candidate].variants.len() <= member.variant
                 || useful.binary_search(&member).is_ok()
@@ -80,7 +90,44 @@ pub(crate) fn infer(
             temper * gains.fold(f64::NEG_INFINITY, f64::max)
         })
         .collect();
-    Inferred { candidates, posterior, alone, noise, temper, price }
+    let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
+        let own = weighing.own(&weighed, &likeliest.members);
+        let of_member = |member: &Member| {
+            let places = candidates.places(std::slice::from_ref(member));
+            let columns: Vec<&Vec<f64>> = places.iter().map(|&place| &candidates.real[place]).collect();
+            let torque: Vec<f64> = (0..real.target.len())
+                .map(|i| columns.iter().zip(&places).map(|(column, &place)| own[place] * column[i]).sum())
+                .collect();
+            root_mean_square(&real.on_rows(&fit_residual(&real.columns, &torque, &real.runs).unwrap_or(torque)))
+        };
+        likeliest.members.iter().map(of_member).collect()
+    });
+    Inferred { candidates, posterior, sizes, friction, alone, noise, temper, price }
+}
+
+/// Sets with the member of each whose shape is refined: members of probable sets, and effects with a name in the place of a function
+/// without one, which has no shape to refine.
+fn to_refine(candidates: &Candidates, field: &Field, posterior: &Posterior) -> Vec<(Vec<Member>, Member)> {
+    let is_function = |member: &Member| candidates.entries[member.candidate].is_function();
+    let mut sets: Vec<(Vec<Member>, Member)> = Vec::new();
+    let mut add = |set: &[Member], member: Member| {
+        let is_done = sets.iter().any(|(_, done)| done.candidate == member.candidate);
+        if !is_function(&member) && (!is_done || candidates.entries[member.candidate].repeats) {
+            sets.push((set.to_vec(), member));
+        }
+    };
+    for (set, probability) in posterior.sets.iter().take_while(|(_, probability)| *probability >= REFINED_FROM) {
+        set.members.iter().for_each(|member| add(&set.members, *member));
+        if *probability < INSTEAD_OF_FUNCTIONS_FROM {
+            continue;
+        }
+        for function in set.members.iter().filter(|member| is_function(member)) {
+            let others: Vec<Member> = set.members.iter().copied().filter(|other| other != function).collect();
+            let instead = field.extended(&others).into_iter().filter(|set| set.last().is_some_and(|m| !is_function(m)));
+            instead.take(INSTEAD_OF_FUNCTIONS).for_each(|set| set.last().into_iter().for_each(|m| add(&set, *m)));
+        }
+    }
+    sets
 }
 
 /// Adds refined shapes of the candidates that are probable.
@@ -89,36 +136,27 @@ fn refine_shapes(
     candidates: &mut Candidates,
     (real, simulated): (&Side, Option<&Side>),
     weighing: &Weighing,
-    weighed: &[Candidate],
+    field: &Field,
     posterior: &Posterior,
     noise: &Noise,
 ) {
-    let mut done: Vec<usize> = Vec::new();
-    for (set, probability) in posterior.sets.clone() {
-        if probability < REFINED_FROM {
-            break;
-        }
-        for member in &set.members {
-            if done.contains(&member.candidate) && !candidates.entries[member.candidate].repeats {
-                continue;
-            }
-            done.push(member.candidate);
-            let others: Vec<Member> = set.members.iter().copied().filter(|other| other != member).collect();
-            // The common part and the others are taken off; what is left is for the shape.
-            let mut coefficients = weighing.coefficients(weighed, &set.members);
-            let beside_others = weighing.coefficients(weighed, &others);
-            let own = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
-            own.for_each(|place| coefficients[place] = beside_others[place]);
-            let target = weighing.less(&coefficients);
-            let beside = weighing.beside(candidates, &others);
-            let entry = &candidates.entries[member.candidate];
-            let start = &entry.shapes[member.variant];
-            let weight = start.log_weight.min(-(entry.shapes.len() as f64).ln());
-            let term = (&entry.label.clone(), &start.shape.clone()[..]);
-            if let Some(better) = refined(hypotheses, real, term, (&beside, &target), noise) {
-                let log_weight = weight + better.log_width;
-                candidates.extend(hypotheses, real, simulated, member.candidate, vec![better.shape], log_weight);
-            }
+    let weighed = field.candidates;
+    for (set, member) in to_refine(candidates, field, posterior) {
+        let others: Vec<Member> = set.iter().copied().filter(|other| *other != member).collect();
+        // The common part and the others are taken off; what is left is for the shape.
+        let mut coefficients = weighing.coefficients(weighed, &set);
+        let beside_others = weighing.coefficients(weighed, &others);
+        let own = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
+        own.for_each(|place| coefficients[place] = beside_others[place]);
+        let target = weighing.less(&coefficients);
+        let beside = weighing.beside(candidates, &others);
+        let entry = &candidates.entries[member.candidate];
+        let start = &entry.shapes[member.variant];
+        let weight = start.log_weight.min(-(entry.shapes.len() as f64).ln());
+        let term = (&entry.label.clone(), &start.shape.clone()[..]);
+        if let Some(better) = refined(hypotheses, real, term, (&beside, &target), noise) {
+            let log_weight = weight + better.log_width;
+            candidates.extend(hypotheses, real, simulated, member.candidate, vec![better.shape], log_weight);
         }
     }
 }

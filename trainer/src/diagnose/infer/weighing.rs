@@ -213,9 +213,16 @@ impl Weighing {
     /// Coefficients of the common columns alone, beside some members.
     pub fn common(&self, weighed: &[Candidate], members: &[Member]) -> Vec<f64> {
         let mut coefficients = self.coefficients(weighed, members);
+        coefficients.iter_mut().zip(self.own(weighed, members)).for_each(|(of, own)| *of -= own);
+        coefficients
+    }
+
+    /// Coefficients of what the recording has beyond the common columns, in a model of some members.
+    pub fn own(&self, weighed: &[Candidate], members: &[Member]) -> Vec<f64> {
+        let mut coefficients = vec![0.0; self.columns().len()];
         let width = coefficients.len();
         let own = self.of_members(weighed, members).into_iter().filter(|(place, _)| *place < width);
-        own.for_each(|(place, value)| coefficients[place] -= value);
+        own.for_each(|(place, value)| coefficients[place] += value);
         coefficients
     }
 
