@@ -3,10 +3,12 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Columns side by side in a tile: two tiles of eight sums each stay in the registers of a processor without vectors of its own.
+/// Columns side by side in a tile: the vectors of most processors hold four or eight.
 const TILE: usize = 8;
+/// Columns of one tile whose products with another are summed at a time: with four, all sums stay in sixteen vector registers of four.
+const LANES: usize = 4;
 /// Rows of a panel: two panels of a tile stay in the first cache.
-const PANEL_ROWS: usize = 512;
+const PANEL_ROWS: usize = 256;
 
 /// Products of every column with every other, `X'X`; columns of one length. Every sum runs over the rows in order, panel by panel, so
 /// that neither the number of threads nor the width of the processor's vectors changes a bit.
@@ -60,8 +62,19 @@ fn tile_product(a: &[[f64; TILE]], b: &[[f64; TILE]]) -> [[f64; TILE]; TILE] {
 #[inline(always)]
 fn panel_product(a: &[[f64; TILE]], b: &[[f64; TILE]]) -> [[f64; TILE]; TILE] {
     let mut sums = [[0.0; TILE]; TILE];
+    for first in (0..TILE).step_by(LANES) {
+        let part: [[f64; TILE]; LANES] = part_product(a, b, first);
+        sums[first..first + LANES].copy_from_slice(&part);
+    }
+    sums
+}
+
+/// Products of some columns of one panel, from `first` on, with all of another.
+#[inline(always)]
+fn part_product(a: &[[f64; TILE]], b: &[[f64; TILE]], first: usize) -> [[f64; TILE]; LANES] {
+    let mut sums = [[0.0; TILE]; LANES];
     for (a, b) in a.iter().zip(b) {
-        for (sums, x) in sums.iter_mut().zip(a) {
+        for (sums, x) in sums.iter_mut().zip(&a[first..first + LANES]) {
             for (sum, y) in sums.iter_mut().zip(b) {
                 *sum += x * y;
             }
