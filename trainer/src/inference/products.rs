@@ -1,12 +1,11 @@
 //! Products of many columns with one another, in a fixed order: the same bits on every processor.
 
 use nalgebra::DMatrix;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Columns side by side in a tile: the vectors of most processors hold four or eight.
 const TILE: usize = 8;
-/// Columns of one tile whose products with another are summed at a time: with four, all sums stay in sixteen vector registers of four.
-const LANES: usize = 4;
 /// Rows of a panel: two panels of a tile stay in the first cache.
 const PANEL_ROWS: usize = 256;
 
@@ -51,7 +50,7 @@ fn packed(columns: &[Vec<f64>], tile: usize, rows: usize) -> Vec<[f64; TILE]> {
 fn tile_product(a: &[[f64; TILE]], b: &[[f64; TILE]]) -> [[f64; TILE]; TILE] {
     let mut total = [[0.0; TILE]; TILE];
     for (a, b) in a.chunks(PANEL_ROWS).zip(b.chunks(PANEL_ROWS)) {
-        let panel = pulp::Arch::new().dispatch(|| panel_product(a, b));
+        let panel = pulp::Arch::new().dispatch(Panels { a, b });
         for (total, panel) in total.iter_mut().flatten().zip(panel.iter().flatten()) {
             *total += panel;
         }
@@ -59,28 +58,33 @@ fn tile_product(a: &[[f64; TILE]], b: &[[f64; TILE]]) -> [[f64; TILE]; TILE] {
     total
 }
 
-#[inline(always)]
-fn panel_product(a: &[[f64; TILE]], b: &[[f64; TILE]]) -> [[f64; TILE]; TILE] {
-    let mut sums = [[0.0; TILE]; TILE];
-    for first in (0..TILE).step_by(LANES) {
-        let part: [[f64; TILE]; LANES] = part_product(a, b, first);
-        sums[first..first + LANES].copy_from_slice(&part);
-    }
-    sums
+/// Two panels of rows whose columns are multiplied with the vectors that the processor has.
+struct Panels<'a> {
+    a: &'a [[f64; TILE]],
+    b: &'a [[f64; TILE]],
 }
 
-/// Products of some columns of one panel, from `first` on, with all of another.
-#[inline(always)]
-fn part_product(a: &[[f64; TILE]], b: &[[f64; TILE]], first: usize) -> [[f64; TILE]; LANES] {
-    let mut sums = [[0.0; TILE]; LANES];
-    for (a, b) in a.iter().zip(b) {
-        for (sums, x) in sums.iter_mut().zip(&a[first..first + LANES]) {
-            for (sum, y) in sums.iter_mut().zip(b) {
-                *sum += x * y;
+impl WithSimd for Panels<'_> {
+    type Output = [[f64; TILE]; TILE];
+
+    // A product and a sum each round by themselves: a fused one would give other bits where there is none.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut products = [[0.0; TILE]; TILE];
+        for place in 0..TILE / S::F64_LANES {
+            let mut sums = [simd.splat_f64s(0.0); TILE];
+            for (a, b) in self.a.iter().zip(self.b) {
+                let b = S::as_simd_f64s(b).0[place];
+                for (sum, x) in sums.iter_mut().zip(a) {
+                    *sum = simd.add_f64s(*sum, simd.mul_f64s(simd.splat_f64s(*x), b));
+                }
+            }
+            for (row, sum) in products.iter_mut().zip(sums) {
+                S::as_mut_simd_f64s(row).0[place] = sum;
             }
         }
+        products
     }
-    sums
 }
 
 #[cfg(test)]
