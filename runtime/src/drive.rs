@@ -5,7 +5,7 @@ use crate::bounds::limited;
 use crate::compensator::Compensator;
 use crate::controller::Controller;
 use crate::measurement::Measurement;
-use crate::supervised::{Sample, Supervisor};
+use crate::supervised::{Sample, SupervisionError, Supervisor};
 
 mod sample;
 mod words;
@@ -27,16 +27,18 @@ pub struct JointDrive<const CELLS: usize> {
 
 impl<const CELLS: usize> JointDrive<CELLS> {
     /// At rest, set to `settings`; their limits are in force for the compensator.
-    #[must_use]
-    pub fn new(settings: &DriveSettings, mut compensator: Compensator<CELLS>) -> Self {
+    ///
+    /// # Errors
+    /// [`SupervisionError`] where a setting of the supervision is out of range.
+    pub fn new(settings: &DriveSettings, mut compensator: Compensator<CELLS>) -> Result<Self, SupervisionError> {
         compensator.set_limits(settings.limits);
-        Self {
+        Ok(Self {
             controller: Controller::new(settings.controller),
             compensator,
-            supervisor: Supervisor::new(settings.supervision),
+            supervisor: Supervisor::new(settings.supervision)?,
             loop_torque: [0.0; 2],
             dt: settings.dt,
-        }
+        })
     }
 
     /// The compensator, for its model, its warmth and its reset.

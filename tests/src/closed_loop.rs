@@ -93,7 +93,7 @@ pub fn rows<const CELLS: usize>(
     settings.supervision.adaptation = adapts.then(|| adaptation_settings(joint).expect("a friction"));
     let course = Course::Standard(motion);
     let bench = Bench { joint: joint.clone(), seed, friction_scale, course, duration: motion.duration(), swap: None };
-    run(&bench, &mut host_drive(model.clone(), &settings)).expect("a run")
+    run(&bench, &mut host_drive(model.clone(), &settings).expect("settings")).expect("a run")
 }
 
 /// Scores with a share of the blended compensation by `model`.

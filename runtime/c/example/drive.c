@@ -16,9 +16,10 @@ static const uint8_t secret[FRIKAN_KEY_BYTES] = {DRIVE_KEY};
 #define KEY ((const uint8_t *)0)
 #endif
 
-/* Inertia and friction of the joint, roughly: what the supervisor compares with. */
+/* Inertia and friction of the joint, roughly: what the supervisor compares with; and what a count of its encoder of 20 bits is. */
 #define INERTIA_KGM2 0.5f
 #define FRICTION_NM 20.0f
+#define COUNT_RAD (6.2831853f / 1048576.0f)
 
 static FrikanCompensator elbow;
 static FrikanSupervisor watch;
@@ -26,7 +27,7 @@ static FrikanSupervisor watch;
 FrikanStatus drive_start(void) {
     /* A library built with other features than this file. */
     if (frikan_compensator_bytes() != sizeof elbow) return FRIKAN_STATUS_NOT_STARTED;
-    const FrikanSupervision settings = frikan_supervision(INERTIA_KGM2, FRICTION_NM);
+    const FrikanSupervision settings = frikan_supervision(INERTIA_KGM2, FRICTION_NM, COUNT_RAD);
     FrikanStatus status = frikan_supervise(&watch, &settings);
     if (status != FRIKAN_STATUS_ACTIVE) return status;
     return frikan_start(&elbow, _image_start, (size_t)(_image_end - _image_start), KEY, &limits);

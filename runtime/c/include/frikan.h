@@ -69,12 +69,15 @@ enum FrikanStatus
   FRIKAN_STATUS_INVALID_MODEL = 12,
   // A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
   FRIKAN_STATUS_BAD_LIMITS = 13,
-  // Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+  // Velocity and position have contradicted each other for too long: the torque ramps down to 0 and stays there until frikan_clear_fault.
   FRIKAN_STATUS_IMPLAUSIBLE = 14,
   // A setting of the supervision is out of range: nothing was changed.
   FRIKAN_STATUS_BAD_SUPERVISION = 15,
   // The image needs a part that this library was built without.
   FRIKAN_STATUS_NOT_BUILT_IN = 16,
+  // Compensated, but by less than half of what the gain asks for, since more would feed the joint; or slowly, with an encoder that has too few
+  // counts to tell whether the joint sticks.
+  FRIKAN_STATUS_DEGRADED = 17,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -89,6 +92,8 @@ typedef uint32_t FrikanStatus;
 typedef struct {
   // Whether there is a compensator in the memory.
   uint32_t started;
+  // How often one was started.
+  uint32_t starts;
   // Its memory.
   uint64_t storage[FRIKAN_STORAGE_WORDS];
 } FrikanCompensator;
@@ -160,15 +165,19 @@ typedef struct {
   float trusted_torque;
 } FrikanAdaptation;
 
-// Settings of the supervision, from frikan_supervision. All are finite, none is negative, and all but the inertia are above 0.
+// Settings of the supervision, from frikan_supervision. Inertia and count are from 0 to 1e9, the others from 1e-9 to 1e9.
 typedef struct {
   // Inertia of the joint, kg m^2.
   float inertia;
-  // Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+  // Angle of a count of the encoder, rad; 0 where the position is not made of counts.
+  float count;
+  // Speed of the reference up to which friction is compensated at it, rad/s, and below which the torque is held where it stands still.
   float rest_velocity;
+  // Speed below which nothing is said of friction: the joint may as well stand still, rad/s.
+  float standstill;
   // Way after a reversal in which the contact is elastic, rad.
   float presliding;
-  // Time constant of the low-pass behind which the net friction is observed, s.
+  // Delay of the low-pass behind which the net friction is observed, s; that of a coarse encoder is longer.
   float observer_time;
   // Time in which the gain falls from full to none where all friction is over-compensated once more, s.
   float fall_time;
@@ -313,9 +322,11 @@ bool frikan_slot_header(uint32_t sequence,
                         size_t bytes,
                         uint8_t *header);
 
-// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, without adaptation.
+// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad (2 pi over
+// the counts of a turn, 0 where the position is not made of counts), without adaptation.
 FrikanSupervision frikan_supervision(float inertia,
-                                     float friction);
+                                     float friction,
+                                     float count);
 
 // Starts a supervisor. BadSupervision leaves the memory as it was.
 //
@@ -332,11 +343,18 @@ FrikanSupervised frikan_supervised_step(FrikanSupervisor *supervisor,
                                         const FrikanSample *sample,
                                         float dt);
 
-// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease.
+// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease. What was learnt before a compensator was
+// started again is forgotten anyway.
 //
 // # Safety
 // The pointer is null or good.
 void frikan_forget(FrikanSupervisor *supervisor);
+
+// Compensates again after FRIKAN_STATUS_IMPLAUSIBLE: for whoever has found out why velocity and position contradicted each other.
+//
+// # Safety
+// The pointer is null or good.
+void frikan_clear_fault(FrikanSupervisor *supervisor);
 
 #ifdef __cplusplus
 }  // extern "C"

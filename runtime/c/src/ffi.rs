@@ -22,6 +22,8 @@ use crate::types::{
 pub struct FrikanCompensator {
     /// Whether there is a compensator in the memory.
     started: u32,
+    /// How often one was started.
+    pub(crate) starts: u32,
     /// Its memory.
     storage: [u64; FRIKAN_STORAGE_WORDS],
 }
@@ -48,11 +50,19 @@ unsafe impl Memory for FrikanCompensator {
 /// Puts a compensator into its memory and says whether it has a model.
 ///
 /// # Safety
-/// `memory` is null or may be written to.
+/// `memory` is null or may be read and written to.
 pub(crate) unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanStatus {
     let status = compensator.status().into();
     // SAFETY: the caller's word.
-    if unsafe { memory::start(memory, compensator) } { status } else { FrikanStatus::NotStarted }
+    if !unsafe { memory::start(memory, compensator) } {
+        return FrikanStatus::NotStarted;
+    }
+    // SAFETY: the pointer is not null, and any number is one.
+    unsafe {
+        let starts = &raw mut (*memory).starts;
+        starts.write(starts.read().wrapping_add(1));
+    }
+    status
 }
 
 /// Bytes of C; none for a null pointer.

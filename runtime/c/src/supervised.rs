@@ -1,10 +1,12 @@
 //! Supervision as C calls it: a supervisor beside a compensator that was started, with memory of its own.
 
+use frikan_runtime::compensator::{Compensate, Compensation, Limits};
+use frikan_runtime::measurement::Measurement;
 use frikan_runtime::supervised::adaptation::Correction;
 use frikan_runtime::supervised::adaptation_settings::AdaptationSettings;
 use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
 
-use crate::ffi::FrikanCompensator;
+use crate::ffi::{FrikanCompensator, Inner};
 use crate::memory::{self, Memory, content};
 use crate::types::{FrikanMeasurement, FrikanStatus};
 
@@ -35,6 +37,38 @@ unsafe impl Memory for FrikanSupervisor {
     }
 }
 
+/// A compensator to be supervised.
+struct Started<'a> {
+    inner: &'a mut Inner,
+    starts: u32,
+}
+
+impl Compensate for Started<'_> {
+    fn limits(&self) -> &Limits {
+        self.inner.limits()
+    }
+
+    fn changes(&self) -> u32 {
+        self.starts
+    }
+
+    fn step(&mut self, measurement: &Measurement, dt: f32) -> Compensation {
+        self.inner.step(measurement, dt)
+    }
+}
+
+/// The compensator in a memory, where it was started.
+///
+/// # Safety
+/// As [`content`].
+unsafe fn started<'a>(memory: *mut FrikanCompensator) -> Option<Started<'a>> {
+    // SAFETY: the caller's word; the second is read where the memory was started.
+    unsafe {
+        let inner = content(memory)?;
+        Some(Started { inner, starts: (&raw const (*memory).starts).read() })
+    }
+}
+
 /// How far the compensation may follow a friction that changes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,17 +87,21 @@ pub struct FrikanAdaptation {
     pub trusted_torque: f32,
 }
 
-/// Settings of the supervision, from frikan_supervision. All are finite, none is negative, and all but the inertia are above 0.
+/// Settings of the supervision, from frikan_supervision. Inertia and count are from 0 to 1e9, the others from 1e-9 to 1e9.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrikanSupervision {
     /// Inertia of the joint, kg m^2.
     pub inertia: f32,
-    /// Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+    /// Angle of a count of the encoder, rad; 0 where the position is not made of counts.
+    pub count: f32,
+    /// Speed of the reference up to which friction is compensated at it, rad/s, and below which the torque is held where it stands still.
     pub rest_velocity: f32,
+    /// Speed below which nothing is said of friction: the joint may as well stand still, rad/s.
+    pub standstill: f32,
     /// Way after a reversal in which the contact is elastic, rad.
     pub presliding: f32,
-    /// Time constant of the low-pass behind which the net friction is observed, s.
+    /// Delay of the low-pass behind which the net friction is observed, s; that of a coarse encoder is longer.
     pub observer_time: f32,
     /// Time in which the gain falls from full to none where all friction is over-compensated once more, s.
     pub fall_time: f32,
@@ -121,7 +159,7 @@ impl FrikanSupervised {
     };
 }
 
-/// The supervision of a settings struct of C; none where a setting is out of range.
+/// The supervision of a settings struct of C; none where a setting of the adaptation is out of range.
 fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
     let FrikanAdaptation { lowest_level, highest_level, viscous, offset, memory, trusted_torque } = settings.adaptation;
     let adaptation = if memory == 0.0 {
@@ -129,9 +167,9 @@ fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
     } else {
         Some(AdaptationSettings::new([lowest_level, highest_level], [viscous, offset], memory, trusted_torque).ok()?)
     };
-    let supervision = Supervision {
-        inertia: settings.inertia,
+    Some(Supervision {
         rest_velocity: settings.rest_velocity,
+        standstill: settings.standstill,
         presliding: settings.presliding,
         observer_time: settings.observer_time,
         fall_time: settings.fall_time,
@@ -139,18 +177,20 @@ fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
         least_friction: settings.least_friction,
         implausible_time: settings.implausible_time,
         adaptation,
-        ..Supervision::new(settings.inertia, settings.least_friction)
-    };
-    supervision.is_within_range().then_some(supervision)
+        ..Supervision::new(settings.inertia, settings.least_friction, settings.count)
+    })
 }
 
-/// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, without adaptation.
+/// Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad (2 pi over
+/// the counts of a turn, 0 where the position is not made of counts), without adaptation.
 #[unsafe(no_mangle)]
-pub extern "C" fn frikan_supervision(inertia: f32, friction: f32) -> FrikanSupervision {
-    let defaults = Supervision::new(inertia, friction);
+pub extern "C" fn frikan_supervision(inertia: f32, friction: f32, count: f32) -> FrikanSupervision {
+    let defaults = Supervision::new(inertia, friction, count);
     FrikanSupervision {
         inertia: defaults.inertia,
+        count: defaults.count,
         rest_velocity: defaults.rest_velocity,
+        standstill: defaults.standstill,
         presliding: defaults.presliding,
         observer_time: defaults.observer_time,
         fall_time: defaults.fall_time,
@@ -171,15 +211,12 @@ pub unsafe extern "C" fn frikan_supervise(
     settings: *const FrikanSupervision,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let Some(settings) = (unsafe { settings.as_ref() }).and_then(supervision) else {
+    let settings = (unsafe { settings.as_ref() }).and_then(supervision);
+    let Some(started) = settings.and_then(|settings| Supervisor::new(settings).ok()) else {
         return FrikanStatus::BadSupervision;
     };
     // SAFETY: the caller's word.
-    if unsafe { memory::start(supervisor, Supervisor::new(settings)) } {
-        FrikanStatus::Active
-    } else {
-        FrikanStatus::NotStarted
-    }
+    if unsafe { memory::start(supervisor, started) } { FrikanStatus::Active } else { FrikanStatus::NotStarted }
 }
 
 /// The compensation under supervision after a sample period of `dt` seconds, in place of frikan_step. Call it at a fixed rate.
@@ -194,8 +231,8 @@ pub unsafe extern "C" fn frikan_supervised_step(
     dt: f32,
 ) -> FrikanSupervised {
     // SAFETY: the caller's word.
-    let (Some(supervisor), Some(compensator), Some(sample)) =
-        (unsafe { (content(supervisor), content(compensator), sample.as_ref()) })
+    let (Some(supervisor), Some(mut compensator), Some(sample)) =
+        (unsafe { (content(supervisor), started(compensator), sample.as_ref()) })
     else {
         return FrikanSupervised::NOT_STARTED;
     };
@@ -205,17 +242,19 @@ pub unsafe extern "C" fn frikan_supervised_step(
         reference_velocity: (!reference.is_nan()).then_some(reference),
         loop_torque: sample.loop_torque,
     };
-    let answer = supervisor.step(compensator, &sample, dt);
+    let answer = supervisor.step(&mut compensator, &sample, dt);
     let Correction { level, viscous, offset } = answer.correction;
     let status = match answer.status {
         Supervised::Compensator(status) => status.into(),
+        Supervised::Degraded => FrikanStatus::Degraded,
         Supervised::Implausible => FrikanStatus::Implausible,
     };
     let (torque, position, gain_share) = (answer.torque, answer.position, answer.gain_share);
     FrikanSupervised { torque, position, gain_share, level, viscous, offset, status }
 }
 
-/// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease.
+/// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease. What was learnt before a compensator was
+/// started again is forgotten anyway.
 ///
 /// # Safety
 /// The pointer is null or good.
@@ -224,5 +263,17 @@ pub unsafe extern "C" fn frikan_forget(supervisor: *mut FrikanSupervisor) {
     // SAFETY: the caller's word.
     if let Some(supervisor) = unsafe { content(supervisor) } {
         supervisor.forget();
+    }
+}
+
+/// Compensates again after FRIKAN_STATUS_IMPLAUSIBLE: for whoever has found out why velocity and position contradicted each other.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_clear_fault(supervisor: *mut FrikanSupervisor) {
+    // SAFETY: the caller's word.
+    if let Some(supervisor) = unsafe { content(supervisor) } {
+        supervisor.clear_fault();
     }
 }

@@ -58,12 +58,15 @@ pub enum FrikanStatus {
     InvalidModel = 12,
     /// A limit is missing, negative or not finite, or the slew is 0: nothing was changed.
     BadLimits = 13,
-    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0 and stays there until frikan_clear_fault.
     Implausible = 14,
     /// A setting of the supervision is out of range: nothing was changed.
     BadSupervision = 15,
     /// The image needs a part that this library was built without.
     NotBuiltIn = 16,
+    /// Compensated, but by less than half of what the gain asks for, since more would feed the joint; or slowly, with an encoder that has too few
+    /// counts to tell whether the joint sticks.
+    Degraded = 17,
 }
 
 impl From<ImageError> for FrikanStatus {

@@ -11,8 +11,8 @@ use frikan::ffi::{
 };
 use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_start_from_slots};
 use frikan::supervised::{
-    FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_forget, frikan_supervise,
-    frikan_supervised_step, frikan_supervision,
+    FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_clear_fault, frikan_forget,
+    frikan_supervise, frikan_supervised_step, frikan_supervision,
 };
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
 
@@ -79,10 +79,12 @@ fn a_supervisor_watches_over_a_compensator() {
         };
         assert_eq!(step(&mut watch, &mut elbow).status, FrikanStatus::NotStarted);
         assert_eq!(start(&mut elbow, IMAGE, None), FrikanStatus::Active);
-        let settings = frikan_supervision(0.5, 20.0);
+        let settings = frikan_supervision(0.5, 20.0, 6.0e-6);
         for bad in [
             FrikanSupervision { inertia: -1.0, ..settings },
             FrikanSupervision { fall_time: 0.0, ..settings },
+            FrikanSupervision { count: f32::INFINITY, ..settings },
+            FrikanSupervision { standstill: 0.0, ..settings },
             FrikanSupervision { rest_velocity: f32::NAN, ..settings },
             FrikanSupervision { adaptation: FrikanAdaptation { memory: 1.0, ..settings.adaptation }, ..settings },
         ] {
@@ -98,6 +100,9 @@ fn a_supervisor_watches_over_a_compensator() {
         let later: Vec<_> = (0..1000).map(|_| step(&mut watch, &mut elbow)).collect();
         assert_eq!(later.last().unwrap().status, FrikanStatus::Implausible);
         assert_eq!(later.last().unwrap().torque, 0.0);
+        frikan_clear_fault(&mut *watch);
+        frikan_clear_fault(null_mut());
+        assert!(step(&mut watch, &mut elbow).torque > 10.0);
         frikan_forget(&mut *watch);
         frikan_forget(null_mut());
         assert_eq!(frikan_supervised_step(&mut *watch, &mut *elbow, null(), 1.0e-3).status, FrikanStatus::NotStarted);

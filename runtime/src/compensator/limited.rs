@@ -26,6 +26,9 @@ pub trait Compensate {
     /// The limits in force.
     fn limits(&self) -> &Limits;
 
+    /// How often the model was changed: what was learnt on one says nothing of the next.
+    fn changes(&self) -> u32;
+
     /// The compensation after a sample period of `dt` seconds.
     fn step(&mut self, measurement: &Measurement, dt: f32) -> Compensation;
 }
@@ -35,13 +38,14 @@ pub trait Compensate {
 pub struct Limited<M> {
     pub(super) model: Result<M, ImageError>,
     pub(super) output: Output,
+    changes: u32,
 }
 
 impl<M: FrictionModel> Limited<M> {
     /// Compensation by a model, or off for the reason given.
     #[must_use]
     pub fn by(model: Result<M, ImageError>, limits: Limits) -> Self {
-        Self { model, output: Output::new(limits) }
+        Self { model, output: Output::new(limits), changes: 0 }
     }
 
     /// Goes on with another model, at the torque put out last, from where the slew limit leads.
@@ -50,6 +54,7 @@ impl<M: FrictionModel> Limited<M> {
             self.output.release();
         }
         self.model = model;
+        self.changes = self.changes.wrapping_add(1);
     }
 
     /// The limits in force.
@@ -96,6 +101,10 @@ impl<M: FrictionModel> Limited<M> {
 impl<M: FrictionModel> Compensate for Limited<M> {
     fn limits(&self) -> &Limits {
         self.limits()
+    }
+
+    fn changes(&self) -> u32 {
+        self.changes
     }
 
     fn step(&mut self, measurement: &Measurement, dt: f32) -> Compensation {

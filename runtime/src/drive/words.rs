@@ -13,7 +13,7 @@ pub const INPUT_WORDS: usize = 6;
 /// Words of a [`DriveOutput`].
 pub const OUTPUT_WORDS: usize = 8;
 /// Words of [`DriveSettings`].
-pub const SETTINGS_WORDS: usize = 27;
+pub const SETTINGS_WORDS: usize = 29;
 
 /// All that a drive is set to, but for its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ impl DriveInput {
 
 impl DriveOutput {
     /// Torque, velocity, compensation, its gain share, the correction of the adaptation (level, viscous, offset), and the status: 0 active,
-    /// 1 no model, 2 not finite, 3 implausible.
+    /// 1 no model, 2 not finite, 3 implausible, 4 degraded.
     #[must_use]
     pub fn to_words(&self) -> [u32; OUTPUT_WORDS] {
         let status = match self.compensation.status {
@@ -59,6 +59,7 @@ impl DriveOutput {
             Supervised::Compensator(Status::NoModel(_)) => 1,
             Supervised::Compensator(Status::NotFinite) => 2,
             Supervised::Implausible => 3,
+            Supervised::Degraded => 4,
         };
         let SupervisedCompensation { torque: compensation, gain_share, correction, .. } = self.compensation;
         let Correction { level, viscous, offset } = correction;
@@ -95,7 +96,9 @@ impl DriveSettings {
             limits.slew(),
             limits.position(),
             watch.inertia,
+            watch.count,
             watch.rest_velocity,
+            watch.standstill,
             watch.presliding,
             watch.observer_time,
             watch.fall_time,
@@ -127,7 +130,9 @@ impl DriveSettings {
             slew,
             position,
             watched_inertia,
+            watched_count,
             rest_velocity,
+            standstill,
             presliding,
             observer_time,
             fall_time,
@@ -151,9 +156,11 @@ impl DriveSettings {
         };
         let supervision = Supervision {
             inertia: watched_inertia,
+            count: watched_count,
             source,
             monitored: monitored != 0,
             rest_velocity,
+            standstill,
             presliding,
             observer_time,
             fall_time,
@@ -164,7 +171,7 @@ impl DriveSettings {
         };
         let controller = Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit };
         let limits = Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()?;
-        supervision.is_within_range().then_some(Self { controller, limits, supervision, dt })
+        supervision.validate().is_ok().then_some(Self { controller, limits, supervision, dt })
     }
 }
 
@@ -185,7 +192,7 @@ mod tests {
         let limits = Limits::new(0.7, 8.0, 9.0).unwrap().with_position(0.1).unwrap();
         for source in [VelocitySource::Measured, VelocitySource::Reference, VelocitySource::Blended] {
             for adaptation in [None, AdaptationSettings::new([0.5, 1.5], [0.1, 0.2], 3.0, 0.05).ok()] {
-                let supervision = Supervision { source, adaptation, ..Supervision::new(0.5, 2.0) };
+                let supervision = Supervision { source, adaptation, ..Supervision::new(0.5, 2.0, 1.0e-5) };
                 let settings = DriveSettings { controller, limits, supervision, dt: 1e-3 };
                 assert_eq!(DriveSettings::from_words(&settings.to_words()), Some(settings));
             }

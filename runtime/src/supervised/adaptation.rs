@@ -5,7 +5,7 @@
 //! data, the state is bounded because every regressor is, and the firmware bounds the solution.
 
 use super::adaptation_settings::AdaptationSettings;
-use super::observer::Observation;
+use super::observer::{Observation, follow};
 use super::pace::Pace;
 use crate::bounds::within;
 
@@ -47,8 +47,8 @@ pub(super) struct Torques {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptation {
     /// Friction of the model and compensation behind the low-pass of the observer, N m.
-    friction: f32,
-    compensation: f32,
+    friction: [f32; 2],
+    compensation: [f32; 2],
     /// Mean products of the regressors, each the torque of an unknown at its bound: 11, 12, 13, 22, 23, 33, (N m)^2.
     products: [f32; 6],
     /// Mean products of the regressors with what the model leaves, (N m)^2.
@@ -61,8 +61,8 @@ impl Adaptation {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            friction: 0.0,
-            compensation: 0.0,
+            friction: [0.0; 2],
+            compensation: [0.0; 2],
             products: [0.0; 6],
             projections: [0.0; 3],
             correction: Correction::NONE,
@@ -84,17 +84,18 @@ impl Adaptation {
         pace: &Pace,
         is_sliding: bool,
     ) {
-        self.friction += pace.observer * (within(torques.friction, LARGEST) - self.friction);
-        self.compensation += pace.observer * (within(torques.compensation, LARGEST) - self.compensation);
+        follow(&mut self.friction, pace.observer, within(torques.friction, LARGEST));
+        follow(&mut self.compensation, pace.observer, within(torques.compensation, LARGEST));
+        let ([_, friction], [_, compensation]) = (self.friction, self.compensation);
         if !is_sliding {
             return;
         }
-        let regressors = [settings.reach() * self.friction, settings.viscous * observed.velocity, settings.offset]
+        let regressors = [settings.reach() * friction, settings.viscous * observed.velocity, settings.offset]
             .map(|regressor| within(regressor, LARGEST));
         let [a, b, c] = regressors;
         // What no correction within the bounds explains is a knock or a push.
         let explainable = a.abs() + b.abs() + c.abs();
-        let left = within(observed.net_friction + self.compensation - self.friction, explainable);
+        let left = within(observed.net_friction + compensation - friction, explainable);
         let share = pace.memory;
         for (mean, product) in self.products.iter_mut().zip([a * a, a * b, a * c, b * b, b * c, c * c]) {
             *mean += share * (product - *mean);

@@ -4,7 +4,7 @@
 //! Around whatever can [`Compensate`], whose step costs what it costs without supervision. Branches depend on the sample here.
 
 use crate::bounds::limited;
-use crate::compensator::{Compensate, Status};
+use crate::compensator::{Compensate, Limits, Status};
 use crate::measurement::Measurement;
 
 pub mod adaptation;
@@ -15,6 +15,7 @@ pub mod observer;
 pub mod pace;
 pub mod plausibility;
 mod settings;
+pub mod velocity;
 
 use adaptation::{Adaptation, Correction, Torques};
 use blend::{blended, share_without_reference};
@@ -23,8 +24,9 @@ use observer::{Observation, Observer};
 use pace::Pace;
 use plausibility::Plausibility;
 use settings::FASTEST;
+use velocity::Velocity;
 
-pub use settings::{DEFAULT_GAIN, Supervision, VelocitySource};
+pub use settings::{DEFAULT_GAIN, Supervision, SupervisionError, VelocitySource};
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +42,13 @@ pub struct Sample {
 /// Whether the torque is a compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supervised {
-    /// As the compensator says.
+    /// As the compensator says. Where it gives none, the torque falls to 0 within its slew limit.
     Compensator(Status),
-    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0.
+    /// Compensated, but by less than half of what the gain asks for, since more would feed the joint; or slowly, with an encoder that has too few
+    /// counts to tell whether the joint sticks.
+    Degraded,
+    /// Velocity and position have contradicted each other for too long: the torque ramps down to 0 and stays there until
+    /// [`Supervisor::clear_fault`].
     Implausible,
 }
 
@@ -71,25 +77,38 @@ pub struct Supervisor {
     monitor: Monitor,
     adaptation: Adaptation,
     plausibility: Plausibility,
+    is_implausible: bool,
+    velocity: Velocity,
+    /// Position of the last sample that was one, rad, and how long before the one before this it was, s.
+    position: Option<(f32, f32)>,
     /// What was put out last, before the share of the monitor.
     held: f32,
     torque: f32,
+    /// Which of the compensator's models the adaptation has learnt on.
+    changes: u32,
 }
 
 impl Supervisor {
     /// Nothing observed yet.
-    #[must_use]
-    pub fn new(settings: Supervision) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// [`SupervisionError`] where a setting is out of range.
+    pub fn new(settings: Supervision) -> Result<Self, SupervisionError> {
+        settings.validate()?;
+        Ok(Self {
             settings,
             pace: Pace::NONE,
             observer: Observer::default(),
             monitor: Monitor::new(),
             adaptation: Adaptation::new(),
             plausibility: Plausibility::default(),
+            is_implausible: false,
+            velocity: Velocity::default(),
+            position: None,
             held: 0.0,
             torque: 0.0,
-        }
+            changes: 0,
+        })
     }
 
     /// How the friction differs from the model, as far as it was learnt; a reset of the compensator does not touch it.
@@ -98,14 +117,25 @@ impl Supervisor {
         self.adaptation.correction()
     }
 
-    /// Forgets what was learnt, for a joint that was idle for long or has another gear or grease.
+    /// Forgets what was learnt, for a joint that was idle for long or has another gear or grease. What was learnt on one model is forgotten
+    /// with the next anyway.
     pub fn forget(&mut self) {
         self.adaptation = Adaptation::new();
+    }
+
+    /// Compensates again after [`Supervised::Implausible`]: for whoever has found out why velocity and position contradicted each other.
+    pub fn clear_fault(&mut self) {
+        (self.plausibility, self.is_implausible) = (Plausibility::default(), false);
     }
 
     /// The compensation by `compensator`, within its limits, after a sample period of `dt` seconds.
     #[must_use]
     pub fn step(&mut self, compensator: &mut impl Compensate, sample: &Sample, dt: f32) -> SupervisedCompensation {
+        if compensator.changes() != self.changes {
+            self.changes = compensator.changes();
+            self.forget();
+        }
+        let limits = *compensator.limits();
         let Measurement { velocity, position, .. } = sample.measurement;
         let reference = sample.reference_velocity;
         let is_finite = velocity.is_finite()
@@ -114,44 +144,56 @@ impl Supervisor {
             && reference.is_none_or(f32::is_finite)
             && dt > 0.0;
         if !is_finite {
-            return self.off(Status::NotFinite);
+            return self.off(Status::NotFinite, &limits, dt);
         }
-        let limits = *compensator.limits();
-        let rest = self.settings.rest_velocity;
-        let chosen = match (self.settings.source, reference) {
-            (VelocitySource::Measured, _) | (VelocitySource::Blended, None) => velocity,
-            (VelocitySource::Reference, reference) => reference.unwrap_or(0.0),
-            (VelocitySource::Blended, Some(reference)) => blended(&self.settings, velocity, reference),
-        };
-        let answer = compensator.step(&Measurement { velocity: chosen, ..sample.measurement }, dt);
-        if answer.status != Status::Active {
-            return self.off(answer.status);
-        }
-        // What no joint does must not overflow what the filters remember.
-        let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
         if dt != self.pace.dt {
             self.pace = Pace::at(&self.settings, dt);
         }
-        let observed = self.observer.observe(&self.settings, &self.pace, velocity, loop_torque);
+        // What no joint does must not overflow what the filters remember.
+        let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
+        let reference = reference.map(|reference| limited(reference, FASTEST));
+        let rest = self.settings.rest_velocity;
+        let believed = self.velocity.take(&self.pace, velocity, reference);
+        let chosen = match (self.settings.source, reference) {
+            (VelocitySource::Measured, _) => velocity,
+            (VelocitySource::Blended, None) => believed,
+            (VelocitySource::Reference, reference) => reference.unwrap_or(0.0),
+            (VelocitySource::Blended, Some(reference)) => blended(&self.settings, believed, reference),
+        };
+        let answer = compensator.step(&Measurement { velocity: chosen, ..sample.measurement }, dt);
+        if answer.status != Status::Active {
+            return self.off(answer.status, &limits, dt);
+        }
+        let of_position = limited(self.velocity_of(position), FASTEST);
+        self.position = Some((position, 0.0));
+        let observed = self.observer.observe(&self.settings, &self.pace, of_position, loop_torque);
         self.monitor.take(&self.settings, &self.pace, &observed, answer.torque);
-        let is_plausible = self.plausibility.observe(&self.settings, &self.pace, velocity, position);
+        self.is_implausible |= !self.plausibility.observe(&self.settings, &self.pace, velocity, of_position);
+        let is_plausible = !self.is_implausible;
         // Without a reference somebody pushes, and what the push does would pass for friction.
         let is_sliding = observed.slides && observed.velocity.abs() > 2.0 * rest;
-        let may_learn = is_plausible && is_sliding && reference.is_some();
+        // Without a reference somebody pushes, and what the push does would pass for friction; where it stands, the observer still remembers
+        // the motion.
+        let may_learn = is_plausible && is_sliding && reference.is_some_and(|reference| reference.abs() > 2.0 * rest);
         let compensated = self.adapted(&observed, (answer.torque, limits.gain()), chosen, may_learn);
         let is_blended = self.settings.source == VelocitySource::Blended;
         let wanted = match reference {
             // At rest the torque stays as it is: to switch it would move the joint.
-            Some(reference) if is_blended && reference.abs() < HOLD * rest && velocity.abs() < rest => self.held,
-            None if is_blended => share_without_reference(&self.settings, velocity) * compensated,
+            Some(reference) if is_blended && reference.abs() < HOLD * rest && believed.abs() < rest => self.held,
+            None if is_blended => share_without_reference(&self.settings, believed) * compensated,
             _ => compensated,
         };
         self.held = wanted;
         let share = if self.settings.monitored { self.monitor.share() } else { 1.0 };
-        let believed = if is_plausible { share * wanted } else { 0.0 };
+        let allowed = if is_plausible { share * wanted } else { 0.0 };
         let reach = if is_plausible { limits.slew() * dt } else { self.ramp(limits.torque(), dt) };
-        self.torque = limits.approach(self.torque, believed, reach);
-        let status = if is_plausible { Supervised::Compensator(Status::Active) } else { Supervised::Implausible };
+        self.torque = limits.approach(self.torque, allowed, reach);
+        let is_unseen = self.pace.is_coarse && observed.velocity.abs() < rest;
+        let status = match (is_plausible, share < LEAST_SHARE || is_unseen) {
+            (false, _) => Supervised::Implausible,
+            (true, true) => Supervised::Degraded,
+            (true, false) => Supervised::Compensator(Status::Active),
+        };
         let correction = self.correction();
         SupervisedCompensation { torque: self.torque, position: answer.position, gain_share: share, correction, status }
     }
@@ -164,19 +206,33 @@ impl Supervisor {
         gain * self.adaptation.correction().applied(torques.friction, velocity)
     }
 
+    /// Velocity on the way to a position since the last one, rad/s.
+    fn velocity_of(&self, position: f32) -> f32 {
+        match self.position {
+            Some((before, 0.0)) => (position - before) * self.pace.rate,
+            Some((before, missed)) => (position - before) / (self.pace.dt + missed),
+            None => 0.0,
+        }
+    }
+
     /// Largest change of an implausible torque in `dt`: all of its limit in the time in which the contradiction was found.
     fn ramp(&self, limit: f32, dt: f32) -> f32 {
         limit * dt / self.settings.implausible_time
     }
 
-    /// No torque, at once.
-    fn off(&mut self, status: Status) -> SupervisedCompensation {
-        (self.torque, self.held) = (0.0, 0.0);
+    /// No torque, as soon as the slew limit allows; what was held stays so, for the sample after one that is missing.
+    fn off(&mut self, status: Status, limits: &Limits, dt: f32) -> SupervisedCompensation {
+        let dt = if dt > 0.0 { dt } else { self.pace.dt };
+        self.torque = limits.approach(self.torque, 0.0, limits.slew() * dt);
+        self.position = self.position.map(|(position, missed)| (position, missed + dt));
         let (gain_share, correction) = (self.monitor.share(), self.correction());
         let status = Supervised::Compensator(status);
-        SupervisedCompensation { torque: 0.0, position: 0.0, gain_share, correction, status }
+        SupervisedCompensation { torque: self.torque, position: 0.0, gain_share, correction, status }
     }
 }
+
+/// Share of the gain below which a compensation is degraded.
+const LEAST_SHARE: f32 = 0.5;
 
 /// Gain below which the friction of the model cannot be told from its compensation.
 const LEAST_GAIN: f32 = 0.05;

@@ -1,7 +1,8 @@
 //! What the motion tells of friction: the net friction of a joint without its acceleration being measured.
 //!
 //! `loop torque - J dv/dt`, where the loop torque is all that acts on the joint but friction, compensation and outside forces, both sides
-//! of the difference behind the same low-pass (Hsu, Bodson, Sastry & Paden 1987). It is friction less compensation.
+//! of the difference behind the same low-pass (Hsu, Bodson, Sastry & Paden 1987). It is friction less compensation. The low-pass has two
+//! stages, so that a count of the encoder is a bounded torque ([`Pace::at`]).
 
 use super::pace::Pace;
 use super::settings::Supervision;
@@ -9,10 +10,10 @@ use super::settings::Supervision;
 /// The filters of the observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observer {
-    /// Loop torque behind the low-pass, N m.
-    torque: f32,
-    /// Velocity behind the low-pass, rad/s.
-    velocity: f32,
+    /// Loop torque behind both stages of the low-pass, N m.
+    torque: [f32; 2],
+    /// Velocity of the position behind both, rad/s.
+    velocity: [f32; 2],
     /// Way since the velocity changed its sign or the joint stood still, rad.
     way: f32,
 }
@@ -29,17 +30,27 @@ pub struct Observation {
 }
 
 impl Observer {
-    /// Takes the measured velocity and the loop torque that acted until now, both finite.
+    /// Takes the velocity of the position since the sample before and the loop torque that acted meanwhile, both finite.
     pub fn observe(&mut self, supervision: &Supervision, pace: &Pace, velocity: f32, loop_torque: f32) -> Observation {
-        let above = velocity - self.velocity;
-        self.velocity += pace.observer * above;
-        self.torque += pace.observer * (loop_torque - self.torque);
-        let goes_on = velocity * self.velocity > 0.0 && self.velocity.abs() > supervision.rest_velocity;
-        self.way = if goes_on { self.way + velocity.abs() * pace.dt } else { 0.0 };
+        let share = pace.observer;
+        follow(&mut self.torque, share, loop_torque);
+        let above = follow(&mut self.velocity, share, velocity);
+        let [early, late] = self.velocity;
+        let goes_on = early * late > 0.0 && late.abs() > pace.standstill;
+        self.way = if goes_on { self.way + early.abs() * pace.dt } else { 0.0 };
         Observation {
-            net_friction: self.torque - pace.inertia * above,
-            velocity: self.velocity,
+            net_friction: self.torque[1] - pace.inertia * above,
+            velocity: late,
             slides: self.way > supervision.presliding,
         }
     }
+}
+
+/// Moves both stages of a low-pass by a share of what lies before each, and returns how far the first was above the second.
+pub(super) fn follow(stages: &mut [f32; 2], share: f32, value: f32) -> f32 {
+    let [early, late] = stages;
+    *early += share * (value - *early);
+    let above = *early - *late;
+    *late += share * above;
+    above
 }

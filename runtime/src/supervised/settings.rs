@@ -26,15 +26,19 @@ pub enum VelocitySource {
 pub struct Supervision {
     /// Inertia of the joint, kg m^2; an error of it of a tenth is seen as friction of a tenth of the inertial torque.
     pub inertia: f32,
+    /// Angle of a count of the encoder, rad: what is smaller is not seen as motion. 0 where the position is not made of counts.
+    pub count: f32,
     /// Which velocity is compensated.
     pub source: VelocitySource,
     /// Whether the gain follows the monitor.
     pub monitored: bool,
-    /// Speed below which the joint counts as at rest, rad/s. Above the noise of the measured velocity.
+    /// Speed of the reference up to which friction is compensated at it, rad/s, and below which the torque is held where it stands still.
     pub rest_velocity: f32,
+    /// Speed below which nothing is said of friction: the joint may as well stand still, rad/s.
+    pub standstill: f32,
     /// Way after a reversal in which the contact is elastic, rad.
     pub presliding: f32,
-    /// Time constant of the observer's low-pass, s.
+    /// Delay of the observer's low-pass, s; that of a coarse encoder is longer, see [`super::pace::Pace::at`].
     pub observer_time: f32,
     /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
     pub fall_time: f32,
@@ -49,14 +53,16 @@ pub struct Supervision {
 }
 
 impl Supervision {
-    /// Defaults for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m.
+    /// Defaults for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad.
     #[must_use]
-    pub fn new(inertia: f32, friction: f32) -> Self {
+    pub fn new(inertia: f32, friction: f32, count: f32) -> Self {
         Self {
             inertia,
+            count,
             source: VelocitySource::Blended,
             monitored: true,
             rest_velocity: 0.02,
+            standstill: 2.0e-3,
             presliding: 2.0e-3,
             observer_time: 0.01,
             fall_time: 0.02,
@@ -67,19 +73,72 @@ impl Supervision {
         }
     }
 
-    /// Whether all settings are finite, the inertia not negative and the others above 0.
-    #[must_use]
-    pub fn is_within_range(&self) -> bool {
-        let above_0 = [
-            self.rest_velocity,
-            self.presliding,
-            self.observer_time,
-            self.fall_time,
-            self.rise_time,
-            self.least_friction,
-            self.implausible_time,
+    /// Whether the settings can be kept: inertia and count from 0 to 1e9, the others from 1e-9 to 1e9, where no product of them overflows.
+    ///
+    /// # Errors
+    /// [`SupervisionError`] names the first one that cannot.
+    pub fn validate(&self) -> Result<(), SupervisionError> {
+        let ranges = [
+            (0.0, self.inertia, SupervisionError::Inertia),
+            (0.0, self.count, SupervisionError::Count),
+            (SMALLEST, self.rest_velocity, SupervisionError::RestVelocity),
+            (SMALLEST, self.standstill, SupervisionError::Standstill),
+            (SMALLEST, self.presliding, SupervisionError::Presliding),
+            (SMALLEST, self.observer_time, SupervisionError::ObserverTime),
+            (SMALLEST, self.fall_time, SupervisionError::FallTime),
+            (SMALLEST, self.rise_time, SupervisionError::RiseTime),
+            (SMALLEST, self.least_friction, SupervisionError::LeastFriction),
+            (SMALLEST, self.implausible_time, SupervisionError::ImplausibleTime),
         ];
-        let is_above_0 = |setting: &f32| *setting > 0.0 && setting.is_finite();
-        self.inertia >= 0.0 && self.inertia.is_finite() && above_0.iter().all(is_above_0)
+        let beyond = ranges.into_iter().find(|(least, setting, _)| !(*least..=LARGEST).contains(setting));
+        beyond.map_or(Ok(()), |(_, _, error)| Err(error))
     }
 }
+
+/// Smallest and largest setting, in its unit: beyond any drive's to either side.
+const SMALLEST: f32 = 1.0e-9;
+const LARGEST: f32 = 1.0e9;
+
+/// Which setting of a supervision cannot be kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SupervisionError {
+    /// The inertia is not from 0 to 1e9 kg m^2.
+    Inertia,
+    /// The angle of a count is not from 0 to 1e9 rad.
+    Count,
+    /// The rest velocity is not from 1e-9 to 1e9 rad/s.
+    RestVelocity,
+    /// The standstill is not from 1e-9 to 1e9 rad/s.
+    Standstill,
+    /// The way of presliding is not from 1e-9 to 1e9 rad.
+    Presliding,
+    /// The delay of the observer is not from 1e-9 to 1e9 s.
+    ObserverTime,
+    /// The time in which the gain falls is not from 1e-9 to 1e9 s.
+    FallTime,
+    /// The time in which it rises is not from 1e-9 to 1e9 s.
+    RiseTime,
+    /// The least friction is not from 1e-9 to 1e9 N m: that of a joint without friction has to be given.
+    LeastFriction,
+    /// The time of a contradiction is not from 1e-9 to 1e9 s.
+    ImplausibleTime,
+}
+
+impl core::fmt::Display for SupervisionError {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        formatter.write_str(match self {
+            Self::Inertia => "the inertia is out of range",
+            Self::Count => "the angle of a count is out of range",
+            Self::RestVelocity => "the rest velocity is out of range",
+            Self::Standstill => "the standstill is out of range",
+            Self::Presliding => "the way of presliding is out of range",
+            Self::ObserverTime => "the delay of the observer is out of range",
+            Self::FallTime => "the time in which the gain falls is out of range",
+            Self::RiseTime => "the time in which the gain rises is out of range",
+            Self::LeastFriction => "the least friction is out of range",
+            Self::ImplausibleTime => "the time of a contradiction is out of range",
+        })
+    }
+}
+
+impl core::error::Error for SupervisionError {}

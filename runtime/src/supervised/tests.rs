@@ -6,6 +6,8 @@ use std::vec::Vec;
 
 const DT: f32 = 1.0e-3;
 const INERTIA: f32 = 0.5;
+/// Angle of a count of the encoder, rad: 20 bits.
+const COUNT: f32 = 6.0e-6;
 /// Friction of the model, N m.
 const COULOMB: f32 = 2.0;
 
@@ -17,7 +19,7 @@ pub(super) struct Joint16 {
 
 impl Joint16 {
     pub(super) fn new(compensator: Compensator<16>, settings: Supervision) -> Self {
-        Self { compensator, supervisor: Supervisor::new(settings) }
+        Self { compensator, supervisor: Supervisor::new(settings).unwrap() }
     }
 
     pub(super) fn step(&mut self, sample: &Sample, dt: f32) -> SupervisedCompensation {
@@ -28,7 +30,7 @@ impl Joint16 {
 fn supervised(source: VelocitySource, monitored: bool) -> Joint16 {
     let limits = Limits::new(DEFAULT_GAIN, 10.0, 1.0e4).unwrap();
     let compensator = Compensator::new(&image_of(coulomb_model(COULOMB, &[])), limits);
-    let supervision = Supervision { source, monitored, ..Supervision::new(INERTIA, COULOMB) };
+    let supervision = Supervision { source, monitored, ..Supervision::new(INERTIA, COULOMB, COUNT) };
     Joint16::new(compensator, supervision)
 }
 
@@ -91,13 +93,17 @@ fn a_velocity_that_stands_still_or_a_position_that_does_ramps_the_torque_down() 
             torques.push(torque);
         }
         assert_eq!((torques[150] > 1.8, torques[999]), (true, 0.0), "{travelled} rad/s");
-        // Once they agree again, so does the compensation.
-        let answers: Vec<_> = (0..500)
-            .map(|_| {
-                position += 0.5 * DT;
-                compensator.step(&sample(0.5, position, None), DT)
-            })
-            .collect();
+        // That they agree again is no reason to trust them: somebody has to say so.
+        let mut go_on = |compensator: &mut Joint16| {
+            position += 0.5 * DT;
+            compensator.step(&sample(0.5, position, None), DT)
+        };
+        for _ in 0..500 {
+            let answer = go_on(&mut compensator);
+            assert_eq!((answer.torque, answer.status), (0.0, Supervised::Implausible));
+        }
+        compensator.supervisor.clear_fault();
+        let answers: Vec<_> = (0..500).map(|_| go_on(&mut compensator)).collect();
         assert!(answers[499].torque > 1.8 && answers[499].status == Supervised::Compensator(Status::Active));
     }
 }
@@ -111,6 +117,10 @@ fn at_rest_the_torque_is_held_and_no_noise_switches_it() {
         position += reference * DT;
         let _ = compensator.step(&sample(reference, position, Some(reference)), DT);
     }
+    // The observer still remembers the motion.
+    for _ in 0..100 {
+        let _ = compensator.step(&sample(0.0, position, Some(0.0)), DT);
+    }
     let held = compensator.supervisor.torque;
     assert!(held > 0.0);
     for step in 0..1000 {
@@ -120,8 +130,68 @@ fn at_rest_the_torque_is_held_and_no_noise_switches_it() {
 }
 
 #[test]
+fn a_sample_that_is_missing_takes_the_torque_away_within_the_slew_and_not_what_was_held() {
+    let mut compensator = supervised(VelocitySource::Blended, true);
+    compensator.compensator.set_limits(Limits::new(DEFAULT_GAIN, 10.0, 50.0).unwrap());
+    let mut position = 0.0;
+    let sample = |velocity, position, reference| Sample { loop_torque: 2.0, ..sample(velocity, position, reference) };
+    for step in 0..1000 {
+        let reference = 0.3 * (std::f32::consts::PI * 1.0e-3 * step as f32).sin();
+        position += reference * DT;
+        let _ = compensator.step(&sample(reference, position, Some(reference)), DT);
+    }
+    let at_rest = sample(0.0, position, Some(0.0));
+    for _ in 0..100 {
+        let _ = compensator.step(&at_rest, DT);
+    }
+    let held = compensator.supervisor.torque;
+    let missing = compensator.step(&sample(f32::NAN, position, Some(0.0)), DT);
+    assert_eq!(missing.status, Supervised::Compensator(Status::NotFinite));
+    assert!(held > 0.1 && (held - missing.torque - 0.05).abs() < 1.0e-6, "{held} to {}", missing.torque);
+    let _ = compensator.step(&at_rest, DT);
+    assert_eq!(compensator.supervisor.torque, held);
+    for period in [DT, 0.0, f32::NAN, DT, f32::INFINITY] {
+        let _ = compensator.step(&sample(f32::NAN, position, Some(0.0)), period);
+    }
+    assert_eq!(compensator.supervisor.torque, 0.0);
+}
+
+#[test]
+fn settings_that_cannot_be_kept_are_refused_by_name() {
+    let good = Supervision::new(INERTIA, COULOMB, COUNT);
+    assert!(Supervisor::new(good).is_ok());
+    assert!(Supervisor::new(Supervision { inertia: 0.0, count: 0.0, ..good }).is_ok());
+    for bad in [f32::NAN, -1.0, f32::INFINITY, 1.0e30] {
+        for (settings, error) in [
+            (Supervision { inertia: bad, ..good }, SupervisionError::Inertia),
+            (Supervision { count: bad, ..good }, SupervisionError::Count),
+            (Supervision { rest_velocity: bad, ..good }, SupervisionError::RestVelocity),
+            (Supervision { observer_time: bad, ..good }, SupervisionError::ObserverTime),
+            (Supervision { implausible_time: bad, ..good }, SupervisionError::ImplausibleTime),
+        ] {
+            assert_eq!(Supervisor::new(settings).err(), Some(error));
+        }
+    }
+    assert_eq!(Supervisor::new(Supervision::new(INERTIA, 0.0, COUNT)).err(), Some(SupervisionError::LeastFriction));
+}
+
+#[test]
+fn a_velocity_of_another_scale_is_found() {
+    for scale in [0.0, 0.6, 2.0, -1.0] {
+        let mut compensator = supervised(VelocitySource::Blended, true);
+        let mut last = Supervised::Degraded;
+        for step in 0..3000 {
+            let (sine, cosine) = (2.0 * DT * step as f32).sin_cos();
+            let (position, reference) = (0.4 * sine, 0.8 * cosine);
+            last = compensator.step(&sample(scale * reference, position, Some(reference)), DT).status;
+        }
+        assert_eq!(last, Supervised::Implausible, "{scale}");
+    }
+}
+
+#[test]
 fn the_reference_leads_through_zero_and_the_joint_in_sliding() {
-    let supervision = Supervision::new(INERTIA, COULOMB);
+    let supervision = Supervision::new(INERTIA, COULOMB, COUNT);
     let rest = supervision.rest_velocity;
     for measured in [-0.3, 0.0, 0.01, 0.3] {
         for reference in [0.0, 0.5 * rest, -rest] {

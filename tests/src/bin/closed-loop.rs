@@ -51,8 +51,13 @@ exponential forgetting (Astrom & Wittenmark 1995), within bounds that the firmwa
 acceleration. A change is followed to a tenth in three times its memory (1.5 s of sliding here). It learns nothing at rest, without a
 reference, or from a sample that is refused; a push from outside under a position loop is taken for friction within the bounds.
 
-**Faults.** Torque is zero at once where a channel is missing or not finite or the image is none, and ramps down where velocity and position
-contradict each other for 0.2 s. A new image goes on from the torque of the one before, within the slew limit.
+**Which encoder.** The supervisor is told the angle of a count: what a count looks like is neither torque nor motion. With 12 and 13 bits it
+cannot tell below 20 mrad/s whether the joint sticks, and says so (`degraded`); so does a drive of which the monitor leaves less than
+half ([encoders.md](encoders.md)).
+
+**Faults.** Torque falls to zero within the slew limit where a channel is missing or not finite or the image is none, and ramps down where
+velocity and position contradict each other for 0.2 s (one stands still, another sign, another scale); that stays until the firmware clears it. A
+new image goes on from the torque of the one before, within the slew limit, and without what was learnt on it.
 
 Errors are root mean squares of reference less position after the first second. *Coulomb + viscous* is the joint's own law without its
 Stribeck peak, *static* what `trainer fit` makes of a recording, *diagnosed* what `trainer diagnose` makes of the same recording.

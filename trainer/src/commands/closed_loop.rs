@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use frikan_runtime::drive::DriveSettings;
 use frikan_runtime::shared::image::Image;
 use frikan_runtime::shared::units::Unit;
-use frikan_runtime::supervised::{DEFAULT_GAIN, VelocitySource};
+use frikan_runtime::supervised::{DEFAULT_GAIN, SupervisionError, VelocitySource};
 
 use super::output::{Outputs, print};
 use super::progress::Reporter;
@@ -126,9 +126,13 @@ pub fn run(arguments: &Loop) -> Result<()> {
     let reporter = Reporter::new(arguments.quiet);
     let off = drive_settings(&bench.joint, 0.0, model.output_limit).unwrap_or(settings);
     let alone = Bench { swap: None, ..bench.clone() };
-    let uncompensated = run_bench(&alone, &mut host_drive(model.clone(), &off)).map_err(of_joint)?;
+    let on_host = |model, settings: &DriveSettings| {
+        let out_of_range = |error: SupervisionError| Error::new(&codes::BAD_JOINT_FILE, error.to_string());
+        host_drive(model, settings).map_err(out_of_range).map_err(of_joint)
+    };
+    let uncompensated = run_bench(&alone, &mut on_host(model.clone(), &off)?).map_err(of_joint)?;
     let (compensated, instructions) = if arguments.target == "host" {
-        (run_bench(&bench, &mut host_drive(model, &settings)).map_err(of_joint)?, None)
+        (run_bench(&bench, &mut on_host(model, &settings)?).map_err(of_joint)?, None)
     } else {
         reporter.say("building the firmware and running it in lockstep");
         let mut drive = Lockstep::start(&arguments.target, &image, &settings.to_words(), true)?;

@@ -4,6 +4,7 @@ use frikan_runtime::compensator::{Compensator, Limits};
 use frikan_runtime::drive::{DriveInput, DriveSettings, JointDrive, OUTPUT_WORDS};
 use frikan_runtime::shared::image::decode;
 use frikan_runtime::shared::model::Model;
+use frikan_runtime::supervised::SupervisionError;
 use frikan_runtime::supervised::adaptation::Correction;
 
 use crate::emulator::Lockstep;
@@ -22,7 +23,7 @@ pub struct Answer {
     pub gain_share: f32,
     /// How the friction differs from the model, as far as the drive has learnt it.
     pub correction: Correction,
-    /// 0 active, 1 no model, 2 not finite, 3 implausible.
+    /// 0 active, 1 no model, 2 not finite, 3 implausible, 4 degraded.
     pub status: u32,
 }
 
@@ -72,7 +73,12 @@ impl DriveUnderTest for Lockstep {
 }
 
 /// The drive with `model` on the host.
-#[must_use]
-pub fn host_drive<const CELLS: usize>(model: Model<CELLS>, settings: &DriveSettings) -> JointDrive<CELLS> {
+///
+/// # Errors
+/// [`SupervisionError`] where a setting of the supervision is out of range.
+pub fn host_drive<const CELLS: usize>(
+    model: Model<CELLS>,
+    settings: &DriveSettings,
+) -> std::result::Result<JointDrive<CELLS>, SupervisionError> {
     JointDrive::new(settings, Compensator::with_model(Ok(model), Limits::OFF))
 }

@@ -40,7 +40,7 @@ pub fn with_contact(joint: &Joint) -> Joint {
 }
 
 /// Settings of the drive of `joint`: the position loop of its description (bandwidth, damping, filter, encoder, torque limit), a
-/// compensation of `gain` times at most `largest` N m, and the defaults of the supervision. None where these limits cannot be kept.
+/// compensation of `gain` times at most `largest` N m, and the defaults of the supervision. None where limits or supervision cannot be kept.
 #[must_use]
 pub fn drive_settings(joint: &Joint, gain: f32, largest: f32) -> Option<DriveSettings> {
     let omega = TAU * joint.control.bandwidth_hz;
@@ -53,10 +53,12 @@ pub fn drive_settings(joint: &Joint, gain: f32, largest: f32) -> Option<DriveSet
         velocity_corner: (TAU * joint.control.velocity_corner_hz) as f32,
         torque_limit: if limit > 0.0 { limit as f32 } else { f32::MAX },
     };
+    let supervision = Supervision::new(joint.inertia_kgm2 as f32, coulomb_torque(joint), controller.count);
+    supervision.validate().ok()?;
     Some(DriveSettings {
         controller,
         limits: Limits::new(gain, largest, largest / SLEW_TIME_S).ok()?,
-        supervision: Supervision::new(joint.inertia_kgm2 as f32, coulomb_torque(joint)),
+        supervision,
         dt: (1.0 / joint.drive.rate_hz) as f32,
     })
 }

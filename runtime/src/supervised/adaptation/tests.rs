@@ -23,7 +23,7 @@ fn settings() -> AdaptationSettings {
 fn supervised(adaptation: Option<AdaptationSettings>) -> Joint16 {
     let limits = Limits::new(1.0, 10.0, 1.0e4).unwrap();
     let compensator = Compensator::new(&image_of(coulomb_model(COULOMB, &[])), limits);
-    Joint16::new(compensator, Supervision { adaptation, ..Supervision::new(INERTIA, COULOMB) })
+    Joint16::new(compensator, Supervision { adaptation, ..Supervision::new(INERTIA, COULOMB, 6.0e-6) })
 }
 
 /// A joint that follows its reference exactly, and the loop that makes it.
@@ -81,6 +81,18 @@ fn a_friction_that_falls_is_followed_in_three_memories_and_back() {
     assert!(is_close(compensator.supervisor.correction(), warm));
     compensator.supervisor.forget();
     assert_eq!(compensator.supervisor.correction(), Correction::NONE);
+}
+
+#[test]
+fn what_was_learnt_on_one_model_does_not_multiply_the_next() {
+    let mut compensator = supervised(Some(settings()));
+    let mut joint = Driven { time: 0.0, compensation: 0.0 };
+    let more = Correction { level: 1.25, ..Correction::NONE };
+    joint.run(&mut compensator, 3.0 * MEMORY, more);
+    assert!(compensator.supervisor.correction().level > 1.15);
+    compensator.compensator.replace_model(Ok(coulomb_model(1.25 * COULOMB, &[])));
+    joint.run(&mut compensator, DT, more);
+    assert!((compensator.supervisor.correction().level - 1.0).abs() < 0.01);
 }
 
 #[test]

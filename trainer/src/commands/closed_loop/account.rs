@@ -23,7 +23,8 @@ pub(super) struct Account<'a> {
 }
 
 /// Names of the drive's status by its number.
-const STATUS: [&str; 4] = ["active", "no_model", "not_finite", "implausible"];
+const STATUS: [&str; 5] = ["active", "no_model", "not_finite", "implausible", DEGRADED];
+const DEGRADED: &str = "degraded";
 
 impl Account<'_> {
     /// CRC-32 (ISO-HDLC) of the numbers of the trace.
@@ -94,7 +95,11 @@ impl Account<'_> {
             ));
         }
         for (name, count) in self.statuses().skip(1) {
-            if count > 0 {
+            if count > 0 && name == DEGRADED {
+                lines.push(format!(
+                    "the drive says of {count} samples that it compensates by less than half, or cannot see"
+                ));
+            } else if count > 0 {
                 lines.push(format!("no compensation in {count} samples: {}", name.replace('_', " ")));
             }
         }

@@ -62,7 +62,7 @@ fn compensate(joint: &mut Joint) -> ! {
 
 #[cfg(feature = "watched")]
 fn compensate(joint: &mut Joint) -> ! {
-    let mut supervisor = Supervisor::new(black_box(Supervision::new(1.0, 1.0)));
+    let Ok(mut supervisor) = Supervisor::new(black_box(Supervision::new(1.0, 1.0, 1.0e-5))) else { loop {} };
     let mut sample = Sample { measurement: Measurement::MISSING, reference_velocity: None, loop_torque: 0.0 };
     loop {
         black_box(&mut sample);

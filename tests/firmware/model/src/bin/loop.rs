@@ -39,8 +39,9 @@ fn serve(uart: &mut Uart) {
     let [empty, nops] = calibration();
     let Some(settings) = DriveSettings::from_words(&words) else { return uart.send(&[BAD_SETTINGS, empty, nops]) };
     let compensator = Compensator::<CELLS>::new(image(0, length), Limits::OFF);
-    uart.send(&[status(&compensator), empty, nops]);
-    let mut drive = JointDrive::new(&settings, compensator);
+    let status = status(&compensator);
+    let Ok(mut drive) = JointDrive::new(&settings, compensator) else { return uart.send(&[BAD_SETTINGS, empty, nops]) };
+    uart.send(&[status, empty, nops]);
     loop {
         let mut frame = [0; 1 + INPUT_WORDS];
         uart.receive(&mut frame);
