@@ -1,5 +1,6 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
+mod actuator;
 mod columns;
 mod keys;
 mod urdf;
@@ -8,6 +9,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+pub use actuator::{ActuatorTable, OfRecording, OfRecordings, Payload};
 pub use columns::{ColumnMapping, Columns, Side, Simulation};
 
 use crate::error::{Error, Result, codes};
@@ -46,6 +48,14 @@ pub struct Joint {
     /// Limits within which the joint may be moved.
     #[serde(default)]
     pub limits: Limits,
+    /// What makes the torque, where that is not recorded.
+    #[serde(default)]
+    pub actuator: ActuatorTable,
+    /// A known mass at the joint.
+    pub payload: Option<Payload>,
+    /// What differs from recording to recording.
+    #[serde(default)]
+    pub recordings: OfRecordings,
     /// Tables that other commands read (the simulated plant, for one), untouched.
     #[serde(flatten)]
     pub other: toml::Table,
@@ -236,7 +246,7 @@ impl Joint {
                 x.is_finite() && x.abs() > 0.0
             })?;
         }
-        Ok(())
+        self.check_actuator()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Frikan trainer: a recording walks through these rooms in one direction,
 //! `recording -> checks -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
 
+pub mod actuator;
 pub mod checks;
 pub mod commands;
 pub mod compile;
@@ -24,4 +25,5 @@ pub mod plant;
 pub mod recording;
 pub mod report;
 pub mod rig;
+pub mod rollout;
 pub mod samples;

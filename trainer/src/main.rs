@@ -4,7 +4,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use frikan_trainer::commands::output::print;
-use frikan_trainer::commands::{closed_loop, diagnose, explain, export, fit, init, predict, show, simulate, verify};
+use frikan_trainer::commands::{
+    closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
+};
 use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
@@ -24,6 +26,7 @@ enum Command {
     Fit(fit::Fit),
     Show(show::Show),
     Predict(predict::Predict),
+    Rollout(rollout::Rollout),
     Verify(verify::Verify),
     Export(export::Export),
     Diagnose(diagnose::Diagnose),
@@ -38,6 +41,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Fit(arguments) => fit::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),
+        Command::Rollout(arguments) => rollout::run(arguments).map(|()| 0),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Diagnose(arguments) => diagnose::run(arguments),

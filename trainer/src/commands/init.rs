@@ -70,7 +70,7 @@ mod tests {
     fn a_proposal_reads_what_it_was_made_for() {
         let folder = tempfile::tempdir().unwrap();
         let (path, output) = (folder.path().join("log.csv"), folder.path().join("joint.toml"));
-        let mut text = String::from("t,q1,dq1,tau1,kp\n");
+        let mut text = String::from("t,q1,dq1,tau1,mode\n");
         for row in 0..200 {
             let time = 0.004 * f64::from(row);
             writeln!(text, "{},{},{},{},80", 1000.0 * time, time.sin(), time.cos().to_degrees(), 0.5 * time.cos())
@@ -86,7 +86,8 @@ mod tests {
         let (proposal, recording) = recording::propose(&path).unwrap();
         let lines = told(&recording, &proposal);
         assert!(
-            lines.contains("the derivative of the position in deg_s") && lines.contains("channels by their names: kp"),
+            lines.contains("the derivative of the position in deg_s")
+                && lines.contains("channels by their names: mode"),
             "{lines}"
         );
         let over = run(&Init { output: path.clone(), ..init }).unwrap_err();

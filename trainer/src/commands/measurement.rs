@@ -1,5 +1,6 @@
 //! Recordings as they are safe to use, and what was wrong with them in sentences.
 
+use crate::actuator::Kind;
 use crate::checks::{self, Fault, Note, Reviewed};
 use crate::compile::profile::{PROFILES, Profile};
 use crate::diagnose::checks::note::{HealthNote, Observation, RecordingNote};
@@ -30,6 +31,30 @@ pub(super) fn joint(path: Option<&Path>, quiet: bool) -> Result<Joint> {
     let joint = Joint::load(path)?;
     if !quiet {
         joint.unknown_keys().iter().for_each(|sentence| eprintln!("{} {sentence}", codes::UNKNOWN_KEY.id));
+    }
+    Ok(joint)
+}
+
+/// The file in which `fit` writes what it identified of the actuator, beside its image.
+pub(super) fn actuator_file(image: &Path) -> PathBuf {
+    image.with_extension("actuator.toml")
+}
+
+/// The joint with the constants of the actuator that `fit` identified with an image, as far as its own file leaves them open.
+///
+/// # Errors
+/// As [`Joint::load`].
+pub(super) fn with_identified(mut joint: Joint, image: &Path) -> Result<Joint> {
+    let path = actuator_file(image);
+    if joint.actuator.kind == Kind::Torque || !path.exists() {
+        return Ok(joint);
+    }
+    let identified = Joint::load(&path)?.actuator.constants;
+    let own = &mut joint.actuator.constants;
+    for (constant, known) in identified {
+        if own.get(&constant).and_then(|known| known.given()).is_none() {
+            own.insert(constant, known);
+        }
     }
     Ok(joint)
 }

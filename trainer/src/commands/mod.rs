@@ -1,6 +1,7 @@
 //! One file a subcommand: parse, call, print. No arithmetic here.
 
 pub mod closed_loop;
+mod columns;
 pub mod diagnose;
 pub mod explain;
 pub mod export;
@@ -10,6 +11,7 @@ mod measurement;
 pub mod output;
 pub mod predict;
 mod progress;
+pub mod rollout;
 pub mod show;
 pub mod simulate;
 pub mod verify;

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::columns::with_columns;
 use super::measurement::{self, motion};
 use super::output::Outputs;
-use crate::error::{Error, Result, codes};
+use crate::error::Result;
 use crate::fit::predict::{every_row, predict};
 use crate::fit::{HostModel, model};
 use crate::recording::{self, Channel, Quantity, Recording};
@@ -78,28 +79,10 @@ fn target<'a>(recording: &'a Recording, model: &HostModel) -> (String, String, f
 
 fn table(recording: &Recording, model: &HostModel, predicted: &[f64]) -> Result<Vec<u8>> {
     let (quantity, unit, si_per_unit, measured) = target(recording, model);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut header: Vec<String> = recording.table.header().to_vec();
-    let (predicted_name, residual_name) = (format!("predicted_{quantity}_{unit}"), format!("residual_{unit}"));
-    // A recording that was predicted before gets fresh columns in place of the old ones.
-    let kept: Vec<usize> =
-        (0..header.len()).filter(|&i| header[i] != predicted_name && header[i] != residual_name).collect();
-    header = kept.iter().map(|&i| header[i].clone()).collect();
-    header.push(predicted_name);
-    header.extend(measured.map(|_| residual_name));
-    let failed = |error: csv::Error| Error::new(&codes::INPUT_OUTPUT, error.to_string());
-    writer.write_record(&header).map_err(failed)?;
-    for (row, value) in predicted.iter().enumerate() {
-        let fields: Vec<&str> = recording.table.row(row).collect();
-        let mut record: Vec<String> = kept.iter().map(|&i| fields[i].to_owned()).collect();
-        record.push(number(value / si_per_unit));
-        record.extend(measured.map(|channel| number((channel.values[row] - value) / si_per_unit)));
-        writer.write_record(&record).map_err(failed)?;
+    let mut added = vec![(format!("predicted_{quantity}_{unit}"), predicted.iter().map(|x| x / si_per_unit).collect())];
+    if let Some(channel) = measured {
+        let residual = channel.values.iter().zip(predicted).map(|(measured, x)| (measured - x) / si_per_unit);
+        added.push((format!("residual_{unit}"), residual.collect()));
     }
-    writer.into_inner().map_err(|error| Error::new(&codes::INPUT_OUTPUT, error.to_string()))
-}
-
-/// Nine significant digits, as a recording's own numbers.
-fn number(value: f64) -> String {
-    crate::law::significant(value, 9)
+    with_columns(recording, &added)
 }

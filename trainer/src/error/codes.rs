@@ -179,6 +179,14 @@ registry! {
         "The law that the recording asks for has a negative inertia, or friction that drives the joint.",
         "A torque of the wrong sign, a column that is not what it is taken for, or a force from outside: a spring, another joint.",
         "Look at sign and columns. Where the torque seems reversed no image is written; `--force` writes it all the same.";
+    DIVERGED = "FRK-N004" NotIdentifiable "simulation diverged",
+        "The simulated joint left all bounds under the recorded commands.",
+        "A gain, an inertia or a delay that is not that of the joint, a reference of the wrong sign or unit, or a position loop that is unstable with these constants.",
+        "Check `[actuator]`, `[payload]` and `[rigid_body]` of joint.toml, and sign and unit of the reference.";
+    NO_SCALE = "FRK-N005" NotIdentifiable "constant of the actuator not determined",
+        "The recordings leave a constant of the actuator open: torque, inertia and friction may all be larger by the same factor, or two constants act alike.",
+        "Neither torque constant nor gain is known, and no payload, inertia or gravity torque; or all recordings have one gain and one payload.",
+        "Weigh the payload (`[payload] mass_kg, distance_m`), give a constant, or record a second time with another gain or payload and fit both.";
     INPUT_OUTPUT = "FRK-I001" InputOutput "file cannot be read or written",
         "The operating system refused to read or write a file.",
         "Missing rights, a full disk, or a device that went away.",

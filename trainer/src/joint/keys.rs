@@ -3,10 +3,11 @@
 use super::Joint;
 
 /// Names at the top of `joint.toml` that are read here.
-const TABLES: [&str; 6] = ["name", "columns", "simulation", "rigid_body", "drive", "limits"];
+const TABLES: [&str; 9] =
+    ["name", "columns", "simulation", "rigid_body", "drive", "limits", "actuator", "payload", "recordings"];
 
-/// Tables that others read: the simulated plant, and what is known of the actuator.
-const READ_ELSEWHERE: [&str; 2] = ["plant", "actuator"];
+/// Tables that others read: the simulated plant.
+const READ_ELSEWHERE: [&str; 1] = ["plant"];
 
 /// Likeness by Jaro and Winkler (0..1) from which on a name is proposed for another, as the command line proposes options.
 const DID_YOU_MEAN: f64 = 0.8;

@@ -3,6 +3,7 @@
 pub(crate) mod between_samples;
 pub(crate) mod covariance;
 pub(crate) mod derivatives;
+pub(crate) mod dry_friction;
 pub mod filter;
 pub(crate) mod hat_functions;
 pub(crate) mod least_squares;

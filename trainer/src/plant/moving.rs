@@ -3,11 +3,11 @@
 use super::concealed::Concealed;
 use super::effects::mechanism::Moment;
 use super::joint::Joint;
+use crate::numerics::dry_friction::{DryLevels, Motion1D};
 use crate::plant::measurement::sensors::encoder_step;
 use crate::plant::mechanics::channels::{Housing, Neighbour, NeighbourMotion};
 use crate::plant::mechanics::contact::{Contact, STEPS_PER_SECOND};
 use crate::plant::mechanics::control::round_to;
-use crate::plant::mechanics::friction::{DryLevels, Motion1D};
 use crate::plant::mechanics::transmission::{Load, Push};
 
 /// A joint with its state.

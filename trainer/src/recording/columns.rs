@@ -258,10 +258,18 @@ pub(super) fn joint_side_factor(known: &Known, column: &str, joint: &Joint) -> R
     if known.side == Side::Motor {
         let ratio = joint.drive.gear_ratio.ok_or_else(|| missing("gear_ratio"))?;
         match known.quantity {
-            Quantity::Position | Quantity::Velocity | Quantity::Acceleration | Quantity::ReferencePosition => {
+            Quantity::Position
+            | Quantity::Velocity
+            | Quantity::Acceleration
+            | Quantity::ReferencePosition
+            | Quantity::ReferenceVelocity => {
                 factor /= ratio;
             }
-            Quantity::Torque | Quantity::FrictionTorque | Quantity::RigidBodyTorque | Quantity::LoadTorque => {
+            Quantity::Torque
+            | Quantity::FrictionTorque
+            | Quantity::RigidBodyTorque
+            | Quantity::LoadTorque
+            | Quantity::FeedForward => {
                 factor *= ratio;
             }
             _ => {}

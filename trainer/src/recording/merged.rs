@@ -48,7 +48,7 @@ pub(super) fn onto_one_clock(channels: &mut [Channel]) -> Result<Vec<usize>> {
 
 /// What changes slowly is held where it is not known.
 fn is_slow(quantity: Quantity) -> bool {
-    matches!(quantity, Quantity::Temperature | Quantity::Voltage)
+    matches!(quantity, Quantity::Temperature | Quantity::Voltage | Quantity::TorqueEnabled | Quantity::Kp)
 }
 
 /// Values at every row on lines between those that are known, held before the first and after the last, and where the known ones

@@ -240,8 +240,7 @@ impl Recording {
         Err(match misnamed {
             Some((quantity, column)) => columns::unknown_unit(*quantity, column),
             None => {
-                let names: Vec<String> =
-                    wanted.iter().map(|q| format!("{}_{}", q.name(), q.units()[0].suffix)).collect();
+                let names: Vec<String> = wanted.iter().map(|quantity| quantity.column()).collect();
                 let message = format!("{purpose} needs a column such as {}", names.join(" or "));
                 Error::new(&codes::MISSING_COLUMN, message).at_row(1).in_column(names[0].clone())
             }

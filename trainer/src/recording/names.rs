@@ -83,7 +83,8 @@ impl<'a> JointState<'a> {
 /// Every `<quantity>_<unit>` of the contract, beside it in small letters.
 static KNOWN: LazyLock<Vec<(Quantity, String, String)>> = LazyLock::new(|| {
     let of = |(quantity, word): (Quantity, &str)| {
-        let names = quantity.units().iter().map(|unit| format!("{word}_{}", unit.suffix));
+        let named = quantity.units().iter().filter(|unit| !unit.suffix.is_empty());
+        let names = named.map(|unit| format!("{word}_{}", unit.suffix));
         names.map(|name| (quantity, name.to_lowercase(), name)).collect::<Vec<_>>()
     };
     Quantity::ALL.into_iter().flat_map(of).collect()

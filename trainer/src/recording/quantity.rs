@@ -33,8 +33,18 @@ pub enum Quantity {
     LinkPosition,
     /// Commanded position, rad or m.
     ReferencePosition,
-    /// Voltage, V.
+    /// Voltage: of the supply, or of a motor without a duty, V.
     Voltage,
+    /// Commanded velocity, rad/s or m/s.
+    ReferenceVelocity,
+    /// Torque that a controller adds, N m.
+    FeedForward,
+    /// Share of the supply voltage at the motor, -1 to 1.
+    Duty,
+    /// Whether the actuator is switched on, 0 or 1.
+    TorqueEnabled,
+    /// Gain of the position controller: N m/rad, or as the firmware counts it.
+    Kp,
 }
 
 /// Which kind of axis a unit belongs to.
@@ -108,16 +118,16 @@ const TORQUES: &[Unit] =
 const FORCES: &[Unit] = &[unit("N", "N", 1.0), unit("mN", "N", 1e-3), unit("uN", "N", 1e-6), unit("kN", "N", 1e3)];
 const CURRENTS: &[Unit] = &[unit("A", "A", 1.0), unit("mA", "A", 1e-3)];
 const LOADS: &[Unit] = &[
-    unit("Nm", "Nm", 1.0),
-    unit("mNm", "Nm", 1e-3),
-    unit("uNm", "Nm", 1e-6),
-    unit("kNm", "Nm", 1e3),
-    unit("N", "N", 1.0),
-    unit("mN", "N", 1e-3),
-    unit("uN", "N", 1e-6),
-    unit("kN", "N", 1e3),
-    unit("A", "A", 1.0),
-    unit("mA", "A", 1e-3),
+    TORQUES[0],
+    TORQUES[1],
+    TORQUES[2],
+    TORQUES[3],
+    FORCES[0],
+    FORCES[1],
+    FORCES[2],
+    FORCES[3],
+    CURRENTS[0],
+    CURRENTS[1],
 ];
 const TEMPERATURES: &[Unit] = &[
     unit("C", "C", 1.0),
@@ -125,6 +135,9 @@ const TEMPERATURES: &[Unit] = &[
     Unit { suffix: "K", si: "C", factor: 1.0, offset: -273.15, axis: None },
 ];
 const VOLTAGES: &[Unit] = &[unit("V", "V", 1.0), unit("mV", "V", 1e-3)];
+/// Without a unit in the name of the column.
+const NUMBERS: &[Unit] = &[unit("", "", 1.0)];
+const DUTIES: &[Unit] = &[unit("", "", 1.0), unit("percent", "", 1e-2), unit("permille", "", 1e-3)];
 
 /// Other ways to write a unit, with its suffix.
 const WRITTEN_UNITS: &[(&str, &str)] = &[
@@ -167,7 +180,7 @@ impl Quantity {
     }
 
     /// Every quantity with its name in column names.
-    pub const ALL: [(Self, &'static str); 15] = [
+    pub const ALL: [(Self, &'static str); 20] = [
         (Self::Time, "time"),
         (Self::Position, "position"),
         (Self::Velocity, "velocity"),
@@ -183,12 +196,24 @@ impl Quantity {
         (Self::LinkPosition, "link_position"),
         (Self::ReferencePosition, "reference_position"),
         (Self::Voltage, "voltage"),
+        (Self::ReferenceVelocity, "reference_velocity"),
+        (Self::FeedForward, "feed_forward"),
+        (Self::Duty, "duty"),
+        (Self::TorqueEnabled, "torque_enabled"),
+        (Self::Kp, "kp"),
     ];
 
     /// Name in column names, in `[columns]` and as an input of a model.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(quantity, _)| *quantity == self).map_or("", |(_, name)| name)
+    }
+
+    /// Name of a column of it in SI, as in `time_s`.
+    #[must_use]
+    pub fn column(self) -> String {
+        let suffix = self.units()[0].suffix;
+        if suffix.is_empty() { self.name().to_owned() } else { format!("{}_{suffix}", self.name()) }
     }
 
     /// The quantity of this name; `load` is short for `load_torque`.
@@ -204,14 +229,16 @@ impl Quantity {
         match self {
             Self::Time => TIMES,
             Self::Position | Self::LinkPosition | Self::ReferencePosition => POSITIONS,
-            Self::Velocity => VELOCITIES,
+            Self::Velocity | Self::ReferenceVelocity => VELOCITIES,
             Self::Acceleration => ACCELERATIONS,
-            Self::Torque | Self::FrictionTorque => TORQUES,
+            Self::Torque | Self::FrictionTorque | Self::FeedForward => TORQUES,
             Self::Force | Self::FrictionForce => FORCES,
             Self::Current => CURRENTS,
             Self::RigidBodyTorque | Self::LoadTorque => LOADS,
             Self::Temperature => TEMPERATURES,
             Self::Voltage => VOLTAGES,
+            Self::Duty => DUTIES,
+            Self::TorqueEnabled | Self::Kp => NUMBERS,
         }
     }
 
@@ -249,7 +276,11 @@ pub(super) enum ColumnName {
 pub(super) fn read_column_name(name: &str) -> ColumnName {
     for (quantity, prefix) in Quantity::ALL {
         if name == prefix {
-            return ColumnName::UnknownUnit(quantity);
+            let dimensionless = quantity.units().iter().find(|unit| unit.suffix.is_empty());
+            return dimensionless.map_or(ColumnName::UnknownUnit(quantity), |unit| ColumnName::Known(quantity, unit));
+        }
+        if quantity.units()[0].suffix.is_empty() && !name.ends_with("percent") && !name.ends_with("permille") {
+            continue;
         }
         let Some(suffix) = name.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('_')) else { continue };
         if let Some(unit) = quantity.unit(suffix) {
@@ -279,6 +310,9 @@ mod tests {
             ("rigid_body_torque_A", Quantity::RigidBodyTorque, 1.0),
             ("link_position_rad", Quantity::LinkPosition, 1.0),
             ("position_mm", Quantity::Position, 1e-3),
+            ("torque_enabled", Quantity::TorqueEnabled, 1.0),
+            ("duty_percent", Quantity::Duty, 1e-2),
+            ("kp", Quantity::Kp, 1.0),
         ] {
             match read_column_name(name) {
                 ColumnName::Known(found, unit) => {
@@ -292,7 +326,7 @@ mod tests {
 
     #[test]
     fn foreign_names_are_channels_and_foreign_units_are_seen() {
-        for name in ["reference_m", "torque_enabled", "load_register", "normal_force_uN", "goal_position_rad"] {
+        for name in ["reference_m", "duty_cycle", "load_register", "normal_force_uN", "goal_position_rad", "kp_gain"] {
             assert_eq!(read_column_name(name), ColumnName::Other, "{name}");
         }
         for name in ["velocity", "velocity_mph", "torque_rad_s", "position_inch"] {

@@ -1,6 +1,6 @@
 //! A recording with some of its rows, or with the values of a channel put right: what the checks hand on.
 
-use super::{Channel, Health, Quantity, Recording};
+use super::{Axis, Channel, Health, Quantity, Recording};
 
 /// What becomes of the motion where rows are left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,26 @@ impl Recording {
             channel.si_per_column_unit *= amperes_per_torque;
             channel.values.iter_mut().for_each(|value| *value *= amperes_per_torque);
         }
+        self.with_health()
+    }
+
+    /// The motion of the recording, with its temperature, under a torque of the actuator, N m or N, one value a row, beside other channels by
+    /// their names; what was commanded is left out.
+    #[must_use]
+    pub fn with_torque(mut self, torque: Vec<f64>, others: Vec<(String, Vec<f64>)>) -> Self {
+        use Quantity::{Acceleration, Force, LinkPosition, Position, Temperature, Time, Torque, Velocity};
+        let stays = [Time, Position, Velocity, Acceleration, LinkPosition, Temperature];
+        self.channels.retain(|channel| channel.quantity.is_some_and(|quantity| stays.contains(&quantity)));
+        let (quantity, unit) = if self.axis == Axis::Rotary { (Torque, "Nm") } else { (Force, "N") };
+        let channel = |quantity: Option<Quantity>, name: String, unit: &'static str, values| {
+            let column = quantity.map_or_else(|| name.clone(), Quantity::column);
+            Channel { quantity, name, column, unit, column_unit: unit.to_owned(), si_per_column_unit: 1.0, values }
+        };
+        self.channels.push(channel(Some(quantity), quantity.name().to_owned(), unit, torque));
+        self.channels.extend(others.into_iter().map(|(name, values)| {
+            let quantity = Quantity::from_name(&name);
+            channel(quantity, name, if quantity.is_some() { unit } else { "" }, values)
+        }));
         self.with_health()
     }
 

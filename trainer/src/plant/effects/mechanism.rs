@@ -1,9 +1,9 @@
 //! Where an effect acts: as a torque at the joint, as inertia, as a transmission, in the actuator, or in the measurement chain.
 
+use crate::numerics::dry_friction::DryLevels;
 use crate::plant::joint::Joint;
 use crate::plant::measurement::sensors::SensorFault;
 use crate::plant::mechanics::channels::Neighbour;
-use crate::plant::mechanics::friction::DryLevels;
 use crate::plant::mechanics::transmission::Transmission;
 use crate::plant::random::Draws;
 

@@ -1,6 +1,6 @@
 //! A contact that yields before it slips.
 
-use super::friction::DryLevels;
+use crate::numerics::dry_friction::DryLevels;
 
 /// Integration steps in a second that a stiff contact needs: 50 us are a hundredth of the period of a joint that swings at 200 Hz on it.
 pub(crate) const STEPS_PER_SECOND: f64 = 20_000.0;

@@ -1,6 +1,6 @@
 //! How the motor moves the link: rigidly, through a gear with kinematic error, or through a compliant gear.
 
-use super::friction::{DryLevels, Motion1D, advance};
+use crate::numerics::dry_friction::{DryLevels, Motion1D, advance};
 use crate::plant::joint::Joint;
 
 /// What acts on the motor side during one step.

@@ -1,0 +1,248 @@
+//! From command, motion and constants to the torque on the joint, and what of it each identified constant makes.
+
+use super::kind::Kind;
+
+/// What an actuator is told at an instant; what its kind does not read may hold anything.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// What it has to put out: torque in N m, current in A, duty (-1 to 1), or voltage in V.
+    pub effort: f64,
+    /// Whether the effort of a motor is a voltage and not a duty.
+    pub is_voltage: bool,
+    /// Where the joint shall be, rad.
+    pub reference: f64,
+    /// How fast it shall move, rad/s.
+    pub reference_velocity: f64,
+    /// Torque that the controller adds, N m.
+    pub feed_forward: f64,
+    /// Supply voltage, V.
+    pub supply: f64,
+    /// Gain of the controller: kp in N m/rad, or that of the firmware.
+    pub kp: f64,
+    /// Whether the actuator is switched on.
+    pub enabled: bool,
+}
+
+/// Position, rad, and velocity, rad/s, of the joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// rad
+    pub position: f64,
+    /// rad/s
+    pub velocity: f64,
+}
+
+/// What an actuator never exceeds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest duty, above 0 to 1.
+    pub duty: f64,
+    /// Largest torque, N m.
+    pub torque: f64,
+}
+
+/// An actuator with its constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Actuator {
+    /// What it does.
+    pub kind: Kind,
+    /// Torque per effort, N m per A of a current, per V of a motor (torque constant over resistance); 1 of the others.
+    pub gain: f64,
+    /// Torque that a motor loses per velocity, N m s/rad: torque constant squared over resistance. Zero of the others, and where
+    /// it is counted as viscous friction.
+    pub back_emf: f64,
+    /// Gain of the position error where no column has it: N m/rad, or as the firmware counts it.
+    pub kp: f64,
+    /// Torque per velocity error, N m s/rad.
+    pub kd: f64,
+    /// Duty per rad of position error and unit of the firmware's gain.
+    pub error_gain: f64,
+    /// Position error up to which nothing happens, rad.
+    pub dead_band: f64,
+    /// Share of the supply voltage that is lost per unit of duty squared: resistance of the supply over that of the winding.
+    pub sag: f64,
+    /// Supply voltage where no column has it, V.
+    pub supply: f64,
+    /// Time from the command to its effect, s.
+    pub delay_s: f64,
+    /// Speed at which the reference moves at most, rad/s.
+    pub velocity_limit: f64,
+    /// What it never exceeds.
+    pub limits: Limits,
+}
+
+/// The torque that acts on the joint: `torque - damping * velocity`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Applied {
+    /// At the velocity zero, N m.
+    pub torque: f64,
+    /// Torque lost per velocity, N m s/rad.
+    pub damping: f64,
+    /// What of the torque one unit of [`Actuator::gain`] makes, N m per its unit: the derivative by it.
+    pub by_gain: f64,
+    /// The derivative by [`Actuator::back_emf`], rad/s; zero where the actuator is off.
+    pub by_back_emf: f64,
+    /// The derivative by the gain of the position error of a PD controller, rad.
+    pub by_kp: f64,
+    /// The derivative by [`Actuator::kd`], rad/s.
+    pub by_kd: f64,
+    /// Whether duty or torque stand at their limit.
+    pub limited: bool,
+}
+
+impl Actuator {
+    /// An actuator of a kind with unit gain, without losses, limits or dead band.
+    #[must_use]
+    pub fn ideal(kind: Kind) -> Self {
+        let limits = Limits { duty: 1.0, torque: f64::INFINITY };
+        Self {
+            kind,
+            gain: 1.0,
+            back_emf: 0.0,
+            kp: 0.0,
+            kd: 0.0,
+            error_gain: 0.0,
+            dead_band: 0.0,
+            sag: 0.0,
+            supply: 0.0,
+            delay_s: 0.0,
+            velocity_limit: f64::INFINITY,
+            limits,
+        }
+    }
+
+    /// The torque on the joint. Nothing acts while the actuator is off.
+    #[must_use]
+    pub fn apply(&self, command: &Command, motion: Motion) -> Applied {
+        if !command.enabled {
+            return Applied::default();
+        }
+        match self.kind {
+            Kind::Torque => Applied { torque: command.effort, ..Applied::default() },
+            Kind::Current => self.limited(Applied {
+                torque: self.gain * command.effort,
+                by_gain: command.effort,
+                ..Applied::default()
+            }),
+            Kind::DcMotor if command.is_voltage => self.motor(command.effort, false, motion),
+            Kind::DcMotor => self.under_duty(command.effort, command, motion),
+            Kind::PositionServo => {
+                let duty = command.kp * self.error_gain * self.error(command, motion);
+                self.under_duty(duty, command, motion)
+            }
+            Kind::Pd => self.controller(command, motion),
+        }
+    }
+
+    /// The position error that is acted upon: none within the dead band, the rest beyond it.
+    fn error(&self, command: &Command, motion: Motion) -> f64 {
+        let error = command.reference - motion.position;
+        if error.abs() <= self.dead_band { 0.0 } else { error - self.dead_band.copysign(error) }
+    }
+
+    fn controller(&self, command: &Command, motion: Motion) -> Applied {
+        let error = self.error(command, motion);
+        let torque = command.kp * error + self.kd * command.reference_velocity + command.feed_forward;
+        let by_kd = command.reference_velocity - motion.velocity;
+        let applied = Applied { torque, damping: self.kd, by_kp: error, by_kd, ..Applied::default() };
+        let whole = torque - self.kd * motion.velocity;
+        if whole.abs() <= self.limits.torque {
+            return applied;
+        }
+        Applied { torque: self.limits.torque.copysign(whole), limited: true, ..Applied::default() }
+    }
+
+    /// A duty cycle of the supply, whose voltage sags with the current: at stall that is duty times voltage over the resistance, and the
+    /// duty takes its share of it from the supply.
+    fn under_duty(&self, duty: f64, command: &Command, motion: Motion) -> Applied {
+        let held = duty.clamp(-self.limits.duty, self.limits.duty);
+        let supply = command.supply / (1.0 + self.sag * held * held);
+        self.motor(held * supply, duty.abs() > self.limits.duty, motion)
+    }
+
+    fn motor(&self, voltage: f64, limited: bool, motion: Motion) -> Applied {
+        Applied {
+            torque: self.gain * voltage,
+            damping: self.back_emf,
+            by_gain: voltage,
+            by_back_emf: -motion.velocity,
+            limited,
+            ..Applied::default()
+        }
+    }
+
+    fn limited(&self, applied: Applied) -> Applied {
+        if applied.torque.abs() <= self.limits.torque {
+            return applied;
+        }
+        Applied { torque: self.limits.torque.copysign(applied.torque), limited: true, ..Applied::default() }
+    }
+}
+
+impl Applied {
+    /// The torque at a velocity, rad/s: N m.
+    #[must_use]
+    pub fn at(&self, velocity: f64) -> f64 {
+        self.torque - self.damping * velocity
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ON: Command = Command {
+        effort: 0.0,
+        is_voltage: false,
+        reference: 0.3,
+        reference_velocity: 0.5,
+        feed_forward: 0.1,
+        supply: 8.0,
+        kp: 20.0,
+        enabled: true,
+    };
+    const MOTION: Motion = Motion { position: 0.1, velocity: 0.4 };
+
+    fn servo() -> Actuator {
+        Actuator { gain: 0.1, back_emf: 0.03, error_gain: 0.1, ..Actuator::ideal(Kind::PositionServo) }
+    }
+
+    #[test]
+    fn a_controller_is_its_formula_until_its_limit() {
+        let pd = Actuator { kd: 0.7, ..Actuator::ideal(Kind::Pd) };
+        let free = pd.apply(&ON, MOTION);
+        assert!((free.at(0.4) - (20.0 * 0.2 + 0.7 * 0.1 + 0.1)).abs() < 1e-12 && !free.limited);
+        let held = Actuator { limits: Limits { torque: 2.0, ..pd.limits }, ..pd }.apply(&ON, MOTION);
+        assert_eq!((held.torque, held.damping, held.limited), (2.0, 0.0, true));
+    }
+
+    #[test]
+    fn a_servo_is_a_motor_under_the_duty_of_its_firmware() {
+        let applied = servo().apply(&ON, MOTION);
+        let duty = 20.0 * 0.1 * 0.2;
+        assert!((applied.at(0.4) - (0.1 * 8.0 * duty - 0.03 * 0.4)).abs() < 1e-12);
+        let stuck = servo().apply(&Command { kp: 1000.0, ..ON }, MOTION);
+        assert!((stuck.torque - 0.8).abs() < 1e-12 && stuck.limited && stuck.damping == 0.03);
+        let band = Actuator { dead_band: 0.2, ..servo() }.apply(&ON, MOTION);
+        assert_eq!(band.torque, 0.0);
+        assert_eq!(servo().apply(&Command { enabled: false, ..ON }, MOTION), Applied::default());
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_torque() {
+        let step = 1e-6;
+        let torque = |actuator: Actuator, command: &Command| actuator.apply(command, MOTION).at(MOTION.velocity);
+        let slope = |up: f64, down: f64| (up - down) / (2.0 * step);
+        let applied = servo().apply(&ON, MOTION);
+        let gain = |gain: f64| torque(Actuator { gain, ..servo() }, &ON);
+        assert!((slope(gain(0.1 + step), gain(0.1 - step)) - applied.by_gain).abs() < 1e-7);
+        let loss = |back_emf: f64| torque(Actuator { back_emf, ..servo() }, &ON);
+        assert!((slope(loss(0.03 + step), loss(0.03 - step)) - applied.by_back_emf).abs() < 1e-7);
+        let pd = Actuator { kd: 0.7, dead_band: 0.05, ..Actuator::ideal(Kind::Pd) };
+        let applied = pd.apply(&ON, MOTION);
+        let kp = |kp: f64| torque(pd, &Command { kp, ..ON });
+        assert!((slope(kp(20.0 + step), kp(20.0 - step)) - applied.by_kp).abs() < 1e-7);
+        let kd = |kd: f64| torque(Actuator { kd, ..pd }, &ON);
+        assert!((slope(kd(0.7 + step), kd(0.7 - step)) - applied.by_kd).abs() < 1e-7);
+    }
+}

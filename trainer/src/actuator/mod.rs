@@ -1,0 +1,14 @@
+//! What an actuator makes of its command and of the motion: the torque on the joint, with its constants, and which of them a recording
+//! may leave open. Knows no command line, no files and no recordings.
+
+mod applied;
+mod constants;
+mod kind;
+mod open;
+mod presets;
+
+pub use applied::{Actuator, Applied, Command, Limits, Motion};
+pub use constants::{Constant, Constants, Known};
+pub use kind::Kind;
+pub use open::{Open, Partial};
+pub use presets::{PRESETS, Preset};

@@ -1,0 +1,164 @@
+//! An actuator as far as its constants are known, and what a recording has to tell of it.
+
+use super::applied::{Actuator, Limits};
+use super::constants::{Constant, Constants, Known};
+use super::kind::Kind;
+
+/// A constant in which the torque is linear and that is not given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Open {
+    /// Torque per current, or per voltage.
+    Gain,
+    /// Torque per position error.
+    Kp,
+    /// Torque per velocity error.
+    Kd,
+}
+
+/// An actuator of which some constants may be open; those are at the middle of their bounds, or at 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Partial {
+    /// The actuator.
+    pub actuator: Actuator,
+    /// What is not given.
+    pub open: Vec<Open>,
+    torque_constant: Option<f64>,
+    resistance: Option<f64>,
+}
+
+impl Partial {
+    /// What `constants` say of an actuator of a kind. The firmware's constants, limits, supply, dead band and delay that are bounded are
+    /// taken at the middle of their bounds.
+    #[must_use]
+    pub fn of(kind: Kind, constants: &Constants) -> Self {
+        let given = |constant| constants.get(&constant).copied().and_then(Known::given);
+        let start = |constant, otherwise| constants.get(&constant).copied().map_or(otherwise, Known::start);
+        let (torque_constant, resistance) = (given(Constant::TorqueConstant), given(Constant::Resistance));
+        let mut actuator = Actuator {
+            kp: start(if kind == Kind::Pd { Constant::Kp } else { Constant::FirmwareKp }, 1.0),
+            kd: start(Constant::Kd, 0.0),
+            error_gain: start(Constant::FirmwareErrorGain, 0.0),
+            dead_band: start(Constant::DeadBand, 0.0),
+            supply: start(Constant::Supply, f64::NAN),
+            delay_s: start(Constant::Delay, 0.0),
+            velocity_limit: start(Constant::VelocityLimit, f64::INFINITY),
+            limits: Limits {
+                duty: start(Constant::DutyLimit, 1.0),
+                torque: start(Constant::TorqueLimit, f64::INFINITY),
+            },
+            ..Actuator::ideal(kind)
+        };
+        let mut open = Vec::new();
+        match kind {
+            Kind::Torque => {}
+            Kind::Current => match torque_constant {
+                Some(constant) => actuator.gain = constant,
+                None => open.push(Open::Gain),
+            },
+            Kind::DcMotor | Kind::PositionServo => {
+                let of_both = torque_constant.zip(resistance).map(|(constant, resistance)| constant / resistance);
+                match given(Constant::TorquePerVolt).or(of_both) {
+                    Some(gain) => actuator.gain = gain,
+                    None => open.push(Open::Gain),
+                }
+                let winding = start(Constant::Resistance, 0.0);
+                if winding > 0.0 {
+                    actuator.sag = start(Constant::SupplyResistance, 0.0) / winding;
+                }
+            }
+            Kind::Pd => {
+                open.extend(given(Constant::Kp).is_none().then_some(Open::Kp));
+                open.extend(given(Constant::Kd).is_none().then_some(Open::Kd));
+            }
+        }
+        let mut partial = Self { actuator, open, torque_constant, resistance };
+        partial.actuator.back_emf = given(Constant::BackEmf).unwrap_or_else(|| partial.back_emf());
+        partial
+    }
+
+    /// The same with a value for what is open.
+    #[must_use]
+    pub fn with(mut self, open: Open, value: f64) -> Self {
+        match open {
+            Open::Gain => {
+                let lost_before = self.back_emf();
+                self.actuator.gain = value;
+                // A loss that was given as such stays.
+                if self.actuator.back_emf == lost_before {
+                    self.actuator.back_emf = self.back_emf();
+                }
+            }
+            Open::Kp => self.actuator.kp = value,
+            Open::Kd => self.actuator.kd = value,
+        }
+        self
+    }
+
+    /// Torque that a motor loses per velocity as far as torque constant or resistance tell it, N m s/rad; else it counts as viscous
+    /// friction.
+    fn back_emf(&self) -> f64 {
+        let gain = self.actuator.gain;
+        match (self.actuator.kind.is_motor(), self.torque_constant, self.resistance) {
+            (true, Some(constant), _) => constant * gain,
+            (true, None, Some(resistance)) => gain * gain * resistance,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the loss by back-EMF is part of the viscous friction, since nothing tells it.
+    #[must_use]
+    pub fn counts_back_emf_as_friction(&self) -> bool {
+        self.actuator.kind.is_motor() && self.actuator.back_emf == 0.0
+    }
+
+    /// The constants that say all of the actuator, for joint.toml: key and value.
+    #[must_use]
+    pub fn in_force(&self) -> Vec<(Constant, f64)> {
+        let actuator = &self.actuator;
+        let finite =
+            |constant, value: f64, unless: f64| (value.is_finite() && value != unless).then_some((constant, value));
+        let mut constants = match actuator.kind {
+            Kind::Torque => Vec::new(),
+            Kind::Current => vec![(Constant::TorqueConstant, actuator.gain)],
+            Kind::DcMotor | Kind::PositionServo => {
+                vec![(Constant::TorquePerVolt, actuator.gain), (Constant::BackEmf, actuator.back_emf)]
+            }
+            Kind::Pd => vec![(Constant::Kp, actuator.kp), (Constant::Kd, actuator.kd)],
+        };
+        constants.extend(finite(Constant::Delay, actuator.delay_s, 0.0));
+        constants
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn partial(kind: Kind, given: &[(Constant, f64)]) -> Partial {
+        Partial::of(kind, &given.iter().map(|(constant, value)| (*constant, Known::Given(*value))).collect())
+    }
+
+    #[test]
+    fn what_is_not_given_is_open() {
+        use Constant::{BackEmf, Kp, Resistance, TorqueConstant, TorquePerVolt};
+        let motor = partial(Kind::DcMotor, &[(TorqueConstant, 0.3), (Resistance, 3.0)]);
+        assert!((motor.actuator.gain - 0.1).abs() < 1e-15 && (motor.actuator.back_emf - 0.03).abs() < 1e-15);
+        assert!(motor.open.is_empty() && !motor.counts_back_emf_as_friction());
+        assert_eq!(partial(Kind::PositionServo, &[]).open, [Open::Gain]);
+        assert!(partial(Kind::PositionServo, &[]).counts_back_emf_as_friction());
+        assert!(partial(Kind::DcMotor, &[(TorquePerVolt, 0.1), (BackEmf, 0.02)]).open.is_empty());
+        assert_eq!(partial(Kind::Pd, &[(Kp, 20.0)]).open, [Open::Kd]);
+        assert_eq!(partial(Kind::Torque, &[]).open, []);
+    }
+
+    #[test]
+    fn the_loss_follows_the_gain_as_far_as_it_is_known() {
+        use Constant::{BackEmf, Resistance, TorqueConstant};
+        let by_constant = partial(Kind::DcMotor, &[(TorqueConstant, 0.3)]).with(Open::Gain, 0.1);
+        assert!((by_constant.actuator.back_emf - 0.03).abs() < 1e-15);
+        let by_resistance = partial(Kind::DcMotor, &[(Resistance, 3.0)]).with(Open::Gain, 0.1);
+        assert!((by_resistance.actuator.back_emf - 0.03).abs() < 1e-15);
+        let given = partial(Kind::DcMotor, &[(BackEmf, 0.02)]).with(Open::Gain, 0.1);
+        assert_eq!(given.actuator.back_emf, 0.02);
+    }
+}

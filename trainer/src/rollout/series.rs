@@ -1,0 +1,108 @@
+//! What an actuator was told over a recording.
+
+use crate::actuator::{Actuator, Command, Kind};
+use crate::error::{Error, Result, codes};
+use crate::recording::{Quantity, Recording};
+
+/// Commands of a recording, one a row.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Time of the rows, s.
+    pub time: Vec<f64>,
+    /// What was commanded from each row on, the delay of the actuator not counted.
+    pub commands: Vec<Command>,
+    /// Degrees Celsius, one a row; empty where nobody measured it.
+    pub temperature: Vec<f64>,
+    /// Whether the effort was measured and lies on a line between rows, instead of being held from one to the next.
+    measured: bool,
+}
+
+impl Series {
+    /// Reads the commands of a recording for an actuator.
+    ///
+    /// # Errors
+    /// `FRK-D009` where a column is missing that the actuator follows, `FRK-D014` where a constant is neither in joint.toml nor a column.
+    pub fn of(recording: &Recording, actuator: &Actuator) -> Result<Self> {
+        let kind = actuator.kind;
+        let purpose = format!("an actuator of kind `{}`", kind.name());
+        let time = recording.require(&[Quantity::Time], &purpose)?.values.clone();
+        let column = |quantity| recording.values(quantity);
+        let mut effort = None;
+        let mut is_voltage = false;
+        match kind {
+            Kind::Torque => {
+                let any = [Quantity::Torque, Quantity::Force, Quantity::Current];
+                effort = Some(recording.require(&any, &purpose)?.values.as_slice());
+            }
+            Kind::Current => effort = Some(recording.require(&[Quantity::Current], &purpose)?.values.as_slice()),
+            Kind::DcMotor => {
+                let either = recording.require(&[Quantity::Duty, Quantity::Voltage], &purpose)?;
+                is_voltage = either.quantity == Some(Quantity::Voltage);
+                effort = Some(either.values.as_slice());
+            }
+            Kind::Pd | Kind::PositionServo => {
+                recording.require(&[Quantity::ReferencePosition], &purpose)?;
+            }
+        }
+        let supply = if is_voltage { None } else { column(Quantity::Voltage) };
+        let needs_supply = kind.is_motor() && !is_voltage && supply.is_none();
+        let missing = |name: &str, what: &str| {
+            let message = format!("{purpose} needs {what}: as `{name}` under [actuator] of joint.toml, or as a column");
+            Error::new(&codes::MISSING_PARAMETER, message)
+                .in_column(format!("actuator.{name}"))
+                .in_file(recording.file())
+        };
+        if needs_supply && actuator.supply.is_nan() {
+            return Err(missing("supply_V", "the voltage of its supply"));
+        }
+        if kind == Kind::PositionServo && actuator.error_gain <= 0.0 {
+            return Err(missing("firmware_error_gain", "the duty that its firmware makes of a position error"));
+        }
+        let reference = column(Quantity::ReferencePosition).map(|values| rate_limited(&time, values, actuator));
+        let at = |values: Option<&[f64]>, row: usize, otherwise: f64| values.map_or(otherwise, |values| values[row]);
+        let commands = (0..time.len()).map(|row| Command {
+            effort: at(effort, row, 0.0),
+            is_voltage,
+            reference: at(reference.as_deref(), row, 0.0),
+            reference_velocity: at(column(Quantity::ReferenceVelocity), row, 0.0),
+            feed_forward: at(column(Quantity::FeedForward), row, 0.0),
+            supply: at(supply, row, actuator.supply),
+            kp: at(column(Quantity::Kp), row, actuator.kp),
+            enabled: at(column(Quantity::TorqueEnabled), row, 1.0) >= 0.5,
+        });
+        Ok(Self {
+            commands: commands.collect(),
+            temperature: column(Quantity::Temperature).map(<[f64]>::to_vec).unwrap_or_default(),
+            measured: matches!(kind, Kind::Torque | Kind::Current),
+            time,
+        })
+    }
+
+    /// What acts at a time, s, that lies at or after that of `row` and before the next; `row` may be moved back by a delay.
+    #[must_use]
+    pub fn at(&self, time: f64, near: usize) -> Command {
+        let mut row = near.min(self.time.len().saturating_sub(1));
+        while row > 0 && self.time[row] > time {
+            row -= 1;
+        }
+        let mut command = self.commands[row];
+        if let Some((next, after)) = self.commands.get(row + 1).zip(self.time.get(row + 1)).filter(|_| self.measured) {
+            let share = ((time - self.time[row]) / (after - self.time[row])).clamp(0.0, 1.0);
+            command.effort += share * (next.effort - command.effort);
+        }
+        command
+    }
+}
+
+/// A reference that moves no faster than the firmware lets it.
+fn rate_limited(time: &[f64], reference: &[f64], actuator: &Actuator) -> Vec<f64> {
+    let mut held = reference.first().copied().unwrap_or(0.0);
+    let mut before = time.first().copied().unwrap_or(0.0);
+    let follow = |(now, wanted): (&f64, &f64)| {
+        let way = actuator.velocity_limit * (now - before);
+        before = *now;
+        held = if way.is_finite() { wanted.clamp(held - way, held + way) } else { *wanted };
+        held
+    };
+    time.iter().zip(reference).map(follow).collect()
+}

@@ -1,0 +1,141 @@
+//! Moves a joint through a recording.
+
+use super::body::Body;
+use super::resistance::{Instant, Resistance};
+use super::series::Series;
+use crate::actuator::{Actuator, Kind, Motion};
+use crate::error::{Error, Result, codes};
+use crate::numerics::dry_friction::{Motion1D, advance};
+use crate::recording::{Quantity, Recording};
+
+/// Longest step of the integration, s: well below the period of a position loop's oscillation. Dry friction, drag and back-EMF are solved
+/// exactly within a step, so that only stiffness limits it.
+const LONGEST_STEP_S: f64 = 1e-3;
+
+/// Beyond this speed the simulation is taken to have diverged, rad/s or m/s.
+const RUNAWAY: f64 = 1e4;
+
+/// Half the time over which the velocity of a start is read off the position, s.
+const START_HALF_S: f64 = 0.01;
+
+/// A row after a pause of more than this many periods starts anew.
+const GAP_PERIODS: f64 = 3.5;
+
+/// Where a joint is, and how fast it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    /// rad or m
+    pub position: f64,
+    /// rad/s or m/s
+    pub velocity: f64,
+}
+
+/// A joint with its actuator.
+#[derive(Clone, Copy, Debug)]
+pub struct Rig {
+    /// What drives it.
+    pub actuator: Actuator,
+    /// What is driven.
+    pub body: Body,
+}
+
+/// Rows of a recording from which its recorded state is taken anew, with that state: the first, those after a gap, and one every
+/// `window_s` where that is given.
+///
+/// # Errors
+/// `FRK-D009` without clock or position.
+pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize, State)>> {
+    let time = &recording.require(&[Quantity::Time], "a forward simulation")?.values;
+    let position = &recording.require(&[Quantity::Position], "a forward simulation")?.values;
+    let velocity = recording.values(Quantity::Velocity);
+    let gap = recording.health.period_s.map_or(f64::INFINITY, |period| GAP_PERIODS * period);
+    let mut rows: Vec<usize> = Vec::new();
+    for row in 0..time.len() {
+        let is_due = rows.last().is_none_or(|last| window_s.is_some_and(|window| time[row] - time[*last] >= window));
+        let interrupted = row > 0 && time[row] - time[row - 1] > gap || recording.health.interruptions.contains(&row);
+        if is_due || interrupted {
+            rows.push(row);
+        }
+    }
+    let state = |row: usize| {
+        let velocity = velocity.map_or_else(|| slope(time, position, row), |velocity| velocity[row]);
+        (row, State { position: position[row], velocity })
+    };
+    Ok(rows.into_iter().map(state).collect())
+}
+
+/// The recorded state at every row.
+///
+/// # Errors
+/// As [`starts`].
+pub fn recorded(recording: &Recording) -> Result<Vec<State>> {
+    Ok(starts(recording, Some(0.0))?.into_iter().map(|(_, state)| state).collect())
+}
+
+/// Slope of the line through the positions around a row.
+fn slope(time: &[f64], position: &[f64], row: usize) -> f64 {
+    let near = |other: &usize| (time[*other] - time[row]).abs() <= START_HALF_S || other.abs_diff(row) <= 1;
+    let first = (0..row).rev().take_while(near).last().unwrap_or(row);
+    let last = (row + 1..time.len()).take_while(near).last().unwrap_or(row);
+    let count = (last - first + 1) as f64;
+    let mean = |values: &[f64]| values[first..=last].iter().sum::<f64>() / count;
+    let (middle, level) = (mean(time), mean(position));
+    let (mut product, mut square) = (0.0, 0.0);
+    for other in first..=last {
+        product += (time[other] - middle) * (position[other] - level);
+        square += (time[other] - middle).powi(2);
+    }
+    if square > 0.0 { product / square } else { 0.0 }
+}
+
+/// The motion at every row, begun anew at `starts` (row and state in order, the first at row 0).
+///
+/// # Errors
+/// `FRK-N004` where the motion leaves all bounds.
+pub fn simulate(
+    rig: &Rig,
+    series: &Series,
+    resistance: &mut impl Resistance,
+    starts: &[(usize, State)],
+) -> Result<Vec<State>> {
+    let mut states = Vec::with_capacity(series.time.len());
+    let mut starts = starts.iter().peekable();
+    let mut moving = Motion1D::default();
+    for row in 0..series.time.len() {
+        if let Some((_, state)) = starts.next_if(|(start, _)| *start == row) {
+            moving = Motion1D { position: state.position, velocity: state.velocity };
+            resistance.restart();
+        } else {
+            pass(rig, series, resistance, row - 1, &mut moving);
+        }
+        if moving.velocity.is_nan() || moving.velocity.abs() > RUNAWAY {
+            let message = "the simulated joint runs away: gains, inertia or friction cannot be those of this joint";
+            return Err(Error::new(&codes::DIVERGED, message).at_row(row as u64 + 1));
+        }
+        states.push(State { position: moving.position, velocity: moving.velocity });
+    }
+    Ok(states)
+}
+
+/// From one row to the next.
+fn pass(rig: &Rig, series: &Series, resistance: &mut impl Resistance, row: usize, moving: &mut Motion1D) {
+    let begin = series.time[row];
+    let span = series.time[row + 1] - begin;
+    let steps = (span / LONGEST_STEP_S - 1e-6).ceil().max(1.0);
+    let step_s = span / steps;
+    let temperature = series.temperature.get(row).copied().unwrap_or(f64::NAN);
+    for step in 0..steps as usize {
+        let time = begin + (step as f64 + 0.5) * step_s;
+        let command = series.at(time - rig.actuator.delay_s, row);
+        // Position in the middle of the step, to which stiffness and gravity are taken: of second order.
+        let position = moving.position + 0.5 * step_s * moving.velocity;
+        let applied = rig.actuator.apply(&command, Motion { position, velocity: moving.velocity });
+        let gravity = rig.body.gravity(position);
+        // What the gear carries: the torque of the motor where that is known, else what gravity asks of it.
+        let load = if rig.actuator.kind == Kind::Torque { gravity } else { applied.at(moving.velocity) };
+        let at = Instant { time, position, velocity: moving.velocity, load, temperature };
+        let levels = resistance.levels(&at, step_s);
+        let push = applied.torque - gravity - rig.body.offset;
+        advance(moving, push, levels.dry, levels.viscous + applied.damping, rig.body.inertia, step_s);
+    }
+}
