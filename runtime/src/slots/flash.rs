@@ -13,6 +13,8 @@ mod nor;
 #[cfg(feature = "embedded-storage")]
 pub use nor::Nor;
 
+use core::num::NonZeroU32;
+
 use frikan_shared::image::{Checksum, ImageError};
 
 use super::{Fields, SLOT_HEADER_BYTES, Which, fields, first_usable, newest_first, slot_header};
@@ -46,8 +48,8 @@ pub trait Flash {
 pub struct Layout {
     slots: [u32; 2],
     slot_bytes: u32,
-    unit: u32,
-    sector: u32,
+    unit: NonZeroU32,
+    sector: NonZeroU32,
     erased: u8,
 }
 
@@ -93,15 +95,12 @@ impl Layout {
     /// # Errors
     /// [`LayoutError`] where the slots cannot be written so.
     pub fn new(slots: [u32; 2], slot_bytes: u32, unit: u32, sector: u32, erased: u8) -> Result<Self, LayoutError> {
-        if !(unit.is_power_of_two() && unit <= LARGEST_UNIT) {
-            return Err(LayoutError::Unit);
-        }
-        if sector == 0 || !sector.is_multiple_of(unit) {
-            return Err(LayoutError::Sector);
-        }
+        let is_unit = unit.is_power_of_two() && unit <= LARGEST_UNIT;
+        let unit = NonZeroU32::new(unit).filter(|_| is_unit).ok_or(LayoutError::Unit)?;
+        let sector = NonZeroU32::new(sector).filter(|sector| sector.get() % unit == 0).ok_or(LayoutError::Sector)?;
         let [first, second] = slots;
-        let is_whole = |start: u32| start.is_multiple_of(sector) && start.checked_add(slot_bytes).is_some();
-        if !(slot_bytes > 0 && slot_bytes.is_multiple_of(sector) && is_whole(first) && is_whole(second)) {
+        let is_whole = |start: u32| start % sector == 0 && start.checked_add(slot_bytes).is_some();
+        if !(slot_bytes > 0 && slot_bytes % sector == 0 && is_whole(first) && is_whole(second)) {
             return Err(LayoutError::Slot);
         }
         if first.abs_diff(second) < slot_bytes {
@@ -124,7 +123,7 @@ impl Layout {
     #[must_use]
     pub fn image_offset(&self) -> u32 {
         let header = SLOT_HEADER_BYTES as u32;
-        if self.unit > header { self.unit } else { header }
+        if self.unit.get() > header { self.unit.get() } else { header }
     }
 
     /// Longest image and tag, bytes.
@@ -134,8 +133,11 @@ impl Layout {
     }
 
     /// `bytes` in whole multiples of `of`.
-    fn whole(bytes: u32, of: u32) -> u32 {
-        bytes.div_ceil(of).saturating_mul(of)
+    fn whole(bytes: u32, of: NonZeroU32) -> u32 {
+        match bytes % of {
+            0 => bytes,
+            begun => bytes.saturating_add(of.get() - begun),
+        }
     }
 }
 

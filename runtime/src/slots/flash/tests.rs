@@ -53,7 +53,7 @@ impl Chip {
     }
 
     fn units(&self, from: u32, to: u32) -> core::ops::Range<usize> {
-        (from / self.layout.unit) as usize..to.div_ceil(self.layout.unit) as usize
+        (from / self.layout.unit.get()) as usize..to.div_ceil(self.layout.unit.get()) as usize
     }
 
     /// Writes bytes, all of them units that are then programmed or erased; or, where it is not done any more, tears them.
@@ -116,7 +116,7 @@ impl Flash for Chip {
     }
 
     fn program(&mut self, at: u32, bytes: &[u8]) -> Result<(), ()> {
-        let unit = self.layout.unit;
+        let unit = self.layout.unit.get();
         assert!(at.is_multiple_of(unit) && bytes.len().is_multiple_of(unit as usize) && !bytes.is_empty());
         for (index, part) in bytes.chunks(unit as usize).enumerate() {
             let at = at + index as u32 * unit;
