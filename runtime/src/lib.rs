@@ -11,6 +11,7 @@
 //! | `expression`, `network`, `effects` | formulas, networks and correction terms, in images that are decoded to memory |
 //! | `supervised` | the supervisor |
 //! | `slots` | two slots in flash |
+//! | `embedded-storage` | slots on the drivers of that crate |
 //! | `auth` | tags behind images |
 //! | `nalgebra` | several joints as vectors |
 //!

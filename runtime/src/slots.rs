@@ -9,11 +9,17 @@
 //! | 8 | 4 | bytes of the image and its tag, little-endian |
 //! | 12 | 4 | CRC-32 (ISO-HDLC) over bytes 0 to 11, the image and its tag, little-endian |
 //!
+//! [`flash`] reads and writes them on flash as it is: program units of up to 32 bytes, words that are written once, reads that fail. What
+//! follows here is for flash that is read by pointers and never fails, with units of up to 16 bytes.
+//!
 //! To update: ask [`next_write_beside`] for the slot and the sequence number, erase that slot, program the image, program the header of
 //! [`slot_header`] last, reset. The slot in use is never touched, so that a cut at any byte leaves it the newest valid one. Sequence
 //! numbers are compared modulo 2^32.
 
 use frikan_shared::image::{ImageError, checksum};
+
+pub mod flash;
+
 #[cfg(feature = "models")]
 use frikan_shared::{authentication::Trust, image::Image};
 
@@ -77,33 +83,62 @@ pub fn slot_header(sequence: u32, image: &[u8]) -> Option<[u8; SLOT_HEADER_BYTES
     Some(header)
 }
 
+/// What a header says, and the bytes of it that the CRC covers.
+pub(crate) struct Fields<'a> {
+    pub(crate) sequence: u32,
+    pub(crate) length: u32,
+    pub(crate) crc32: u32,
+    pub(crate) covered: &'a [u8],
+}
+
+/// The fields of a header; none where it is no header of a slot.
+pub(crate) fn fields(header: &[u8; SLOT_HEADER_BYTES]) -> Option<Fields<'_>> {
+    let covered = header.get(..COVERED_HEADER_BYTES)?;
+    let [magic, sequence, length, crc32] = header.as_chunks().0 else { return None };
+    let [sequence, length, crc32] = [sequence, length, crc32].map(|field| u32::from_le_bytes(*field));
+    (*magic == SLOT_MAGIC).then_some(Fields { sequence, length, crc32, covered })
+}
+
 /// The slot in `bytes`, where its checksum is right.
 fn read(which: Which, bytes: &[u8]) -> Option<Slot<'_>> {
     let (header, rest) = bytes.split_first_chunk::<SLOT_HEADER_BYTES>()?;
-    let &[m0, m1, m2, m3, s0, s1, s2, s3, l0, l1, l2, l3, c0, c1, c2, c3] = header;
-    if [m0, m1, m2, m3] != SLOT_MAGIC {
-        return None;
+    let Fields { sequence, length, crc32, covered } = fields(header)?;
+    let image = rest.get(..usize::try_from(length).ok()?)?;
+    (checksum(&[covered, image]) == crc32).then_some(Slot { which, sequence, image })
+}
+
+/// Slots, the newest first; the first slot where the numbers are equal.
+fn newest_first<S>(first: Option<S>, second: Option<S>, sequence: impl Fn(&S) -> u32) -> [Option<S>; 2] {
+    match (first, second) {
+        (Some(first), Some(second)) => {
+            // Half the circle of numbers counts as later.
+            let second_is_newer = (sequence(&second).wrapping_sub(sequence(&first)) as i32) > 0;
+            if second_is_newer { [Some(second), Some(first)] } else { [Some(first), Some(second)] }
+        }
+        (first, second) => [first.or(second), None],
     }
-    let length = usize::try_from(u32::from_le_bytes([l0, l1, l2, l3])).ok()?;
-    let image = rest.get(..length)?;
-    let covered = header.get(..COVERED_HEADER_BYTES)?;
-    if checksum(&[covered, image]) != u32::from_le_bytes([c0, c1, c2, c3]) {
-        return None;
+}
+
+/// The first slot that can be used, and what `read` makes of it; else why the first one cannot.
+fn first_usable<S, T>(
+    slots: impl Iterator<Item = S>,
+    mut read: impl FnMut(&S) -> Result<T, ImageError>,
+) -> Result<(S, T), ImageError> {
+    let mut error = ImageError::NoImage;
+    for slot in slots {
+        match read(&slot) {
+            Ok(read) => return Ok((slot, read)),
+            Err(fault) if error == ImageError::NoImage => error = fault,
+            Err(_) => {}
+        }
     }
-    Some(Slot { which, sequence: u32::from_le_bytes([s0, s1, s2, s3]), image })
+    Err(error)
 }
 
 /// The slots whose checksums are right, the newest first; the first slot where the numbers are equal.
 #[must_use]
 pub fn valid_slots<'a>(first: &'a [u8], second: &'a [u8]) -> [Option<Slot<'a>>; 2] {
-    match (read(Which::First, first), read(Which::Second, second)) {
-        (Some(first), Some(second)) => {
-            // Half the circle of numbers counts as later.
-            let second_is_newer = (second.sequence.wrapping_sub(first.sequence) as i32) > 0;
-            if second_is_newer { [Some(second), Some(first)] } else { [Some(first), Some(second)] }
-        }
-        (first, second) => [first.or(second), None],
-    }
+    newest_first(read(Which::First, first), read(Which::Second, second), |slot| slot.sequence)
 }
 
 /// The newest slot that can be used, and what `read` makes of its image and tag. Where the newest intact one cannot be used (a later format,
@@ -116,15 +151,7 @@ pub fn newest_usable<'a, T>(
     second: &'a [u8],
     read: impl Fn(&'a [u8]) -> Result<T, ImageError>,
 ) -> Result<(Slot<'a>, T), ImageError> {
-    let mut error = ImageError::NoImage;
-    for slot in valid_slots(first, second).into_iter().flatten() {
-        match read(slot.image) {
-            Ok(read) => return Ok((slot, read)),
-            Err(fault) if error == ImageError::NoImage => error = fault,
-            Err(_) => {}
-        }
-    }
-    Err(error)
+    first_usable(valid_slots(first, second).into_iter().flatten(), |slot| read(slot.image))
 }
 
 /// The slot to write next and the sequence number to write: never the slot in use, which is the newest one that `read` can use, always a

@@ -13,7 +13,7 @@ mod table;
 #[cfg(feature = "models")]
 pub use decoded::{Image, decode, encode};
 pub use header::{
-    FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum, image_bytes, image_crc32,
+    Checksum, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum, image_bytes, image_crc32,
 };
 pub use table::{Cells, TableImage};
 

@@ -21,7 +21,7 @@ const LIMITS: [f32; 3] = [0.9, 40.0, 8000.0];
 const PERIOD: f32 = 1.0e-3;
 const INERTIA: f32 = 0.5;
 const FRICTION: f32 = 20.0;
-const COUNT: f32 = 6.283_185_3 / 1_048_576.0;
+const COUNT: f32 = std::f32::consts::TAU / 1_048_576.0;
 
 /// Most that the library takes with its default features, bytes of flash and of stack.
 const FLASH_BYTES: u64 = 8 << 10;

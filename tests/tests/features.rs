@@ -15,7 +15,18 @@ fn check(firmware: &Firmware, target: &Target, package: &str, features: &[&str])
 fn every_feature_compiles_alone() {
     let firmware = Firmware::find().unwrap();
     let target = firmware.target("cortex-m4f").unwrap();
-    let runtime = ["table", "expression", "network", "effects", "supervised", "slots", "auth", "nalgebra", "models"];
+    let runtime = [
+        "table",
+        "expression",
+        "network",
+        "effects",
+        "supervised",
+        "slots",
+        "embedded-storage",
+        "auth",
+        "nalgebra",
+        "models",
+    ];
     check(&firmware, &target, "frikan-shared", &["models", "elementary", "auth"]);
     check(&firmware, &target, "frikan-runtime", &runtime);
     check(&firmware, &target, "frikan-c", &["supervised", "slots", "auth", "expression", "network", "effects"]);

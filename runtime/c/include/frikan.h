@@ -78,6 +78,10 @@ enum FrikanStatus
   // Compensated, but by less than half of what the gain asks for, since more would feed the joint; or slowly, with an encoder that has too few
   // counts to tell whether the joint sticks.
   FRIKAN_STATUS_DEGRADED = 17,
+  // The slots cannot be kept on such flash, or there is no function to read it.
+  FRIKAN_STATUS_BAD_FLASH = 18,
+  // The flash did not take the image: what was in use before still is.
+  FRIKAN_STATUS_NOT_WRITTEN = 19,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -148,6 +152,42 @@ typedef struct {
   // Number for the slot's header.
   uint32_t sequence;
 } FrikanSlotWrite;
+
+// Reads bytes from an address; false where that cannot be done: an uncorrectable word is no fault of the program.
+typedef bool (*FrikanFlashRead)(void *context, uint32_t address, uint8_t *bytes, size_t length);
+
+// Programs whole units, erased before; false where that cannot be done.
+typedef bool (*FrikanFlashProgram)(void *context,
+                                   uint32_t address,
+                                   const uint8_t *bytes,
+                                   size_t length);
+
+// Erases the sectors from one address to another; false where that cannot be done.
+typedef bool (*FrikanFlashErase)(void *context, uint32_t from, uint32_t to);
+
+// Flash with two slots, and how it is written.
+typedef struct {
+  // Handed over to the functions as it is.
+  void *context;
+  // Reads.
+  FrikanFlashRead read;
+  // Programs; null in a drive that does not write.
+  FrikanFlashProgram program;
+  // Erases; null in a drive that does not write.
+  FrikanFlashErase erase;
+  // Where address 0 is read by pointers: null in most microcontrollers, whose flash addresses are those of the pointers.
+  const uint8_t *mapped;
+  // Addresses of the slots, each the start of a sector.
+  uint32_t slots[2];
+  // Bytes of a slot, whole sectors.
+  uint32_t slot_bytes;
+  // Bytes that are programmed at once, 1, 2, 4, 8, 16 or 32.
+  uint32_t unit;
+  // Bytes that are erased at once.
+  uint32_t sector;
+  // What an erased byte reads: 0xFF or 0x00.
+  uint8_t erased;
+} FrikanFlash;
 
 // How far the compensation may follow a friction that changes.
 typedef struct {
@@ -321,6 +361,31 @@ bool frikan_slot_header(uint32_t sequence,
                         const uint8_t *image,
                         size_t bytes,
                         uint8_t *header);
+
+// Starts a compensator with the newest usable image of two slots: each is read once through the functions, so that a torn word is a bad slot
+// and no bus fault, and the one that is taken is read where it lies from then on.
+//
+// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+//
+// # Safety
+// Pointers are null or good for what their names say, the functions may be called, and the slots may be read where they are mapped as long as
+// the compensator steps.
+FrikanStatus frikan_start_from_flash(FrikanCompensator *compensator,
+                                     const FrikanFlash *flash,
+                                     const uint8_t *key,
+                                     const FrikanLimits *limits);
+
+// Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
+// use. Active once it is there; start the compensator again to go on with it.
+//
+// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
+//
+// # Safety
+// As frikan_start_from_flash, and `image` is null or good for so many bytes.
+FrikanStatus frikan_write_image(const FrikanFlash *flash,
+                                const uint8_t *image,
+                                size_t bytes,
+                                const uint8_t *key);
 
 // Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad (2 pi over
 // the counts of a turn, 0 where the position is not made of counts), without adaptation.

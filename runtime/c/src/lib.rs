@@ -15,6 +15,9 @@ extern crate std;
 
 #[allow(unsafe_code)]
 pub mod ffi;
+#[cfg(feature = "slots")]
+#[allow(unsafe_code)]
+pub mod flash;
 #[allow(unsafe_code)]
 mod memory;
 #[allow(unsafe_code)]

@@ -67,6 +67,10 @@ pub enum FrikanStatus {
     /// Compensated, but by less than half of what the gain asks for, since more would feed the joint; or slowly, with an encoder that has too few
     /// counts to tell whether the joint sticks.
     Degraded = 17,
+    /// The slots cannot be kept on such flash, or there is no function to read it.
+    BadFlash = 18,
+    /// The flash did not take the image: what was in use before still is.
+    NotWritten = 19,
 }
 
 impl From<ImageError> for FrikanStatus {

@@ -78,21 +78,27 @@ impl Supervision {
     /// # Errors
     /// [`SupervisionError`] names the first one that cannot.
     pub fn validate(&self) -> Result<(), SupervisionError> {
-        let ranges = [
-            (0.0, self.inertia, SupervisionError::Inertia),
-            (0.0, self.count, SupervisionError::Count),
-            (SMALLEST, self.rest_velocity, SupervisionError::RestVelocity),
-            (SMALLEST, self.standstill, SupervisionError::Standstill),
-            (SMALLEST, self.presliding, SupervisionError::Presliding),
-            (SMALLEST, self.observer_time, SupervisionError::ObserverTime),
-            (SMALLEST, self.fall_time, SupervisionError::FallTime),
-            (SMALLEST, self.rise_time, SupervisionError::RiseTime),
-            (SMALLEST, self.least_friction, SupervisionError::LeastFriction),
-            (SMALLEST, self.implausible_time, SupervisionError::ImplausibleTime),
+        let may_be_0 = [(self.inertia, SupervisionError::Inertia), (self.count, SupervisionError::Count)];
+        let above_0 = [
+            (self.rest_velocity, SupervisionError::RestVelocity),
+            (self.standstill, SupervisionError::Standstill),
+            (self.presliding, SupervisionError::Presliding),
+            (self.observer_time, SupervisionError::ObserverTime),
+            (self.fall_time, SupervisionError::FallTime),
+            (self.rise_time, SupervisionError::RiseTime),
+            (self.least_friction, SupervisionError::LeastFriction),
+            (self.implausible_time, SupervisionError::ImplausibleTime),
         ];
-        let beyond = ranges.into_iter().find(|(least, setting, _)| !(*least..=LARGEST).contains(setting));
-        beyond.map_or(Ok(()), |(_, _, error)| Err(error))
+        let refused = |least: f32| move |(setting, _): &(f32, SupervisionError)| !is_within(least, *setting);
+        let beyond = may_be_0.into_iter().find(refused(0.0));
+        let beyond = beyond.or_else(|| above_0.into_iter().find(refused(SMALLEST)));
+        beyond.map_or(Ok(()), |(_, error)| Err(error))
     }
+}
+
+/// Whether a setting lies from `least`, which is not negative, to [`LARGEST`]: the patterns of what is negative or no number lie above.
+fn is_within(least: f32, setting: f32) -> bool {
+    (least.to_bits()..=LARGEST.to_bits()).contains(&setting.to_bits())
 }
 
 /// Smallest and largest setting, in its unit: beyond any drive's to either side.

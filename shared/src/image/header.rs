@@ -96,7 +96,37 @@ const REMAINDERS: [u32; 16] = {
 /// takes 1 kB of flash, and so does the code of the crate `crc`, which leaves the choice of the sum to its user.
 #[must_use]
 pub fn checksum(parts: &[&[u8]]) -> u32 {
-    !parts.iter().fold(u32::MAX, |sum, part| sum_over(sum, part))
+    parts.iter().fold(Checksum::new(), |sum, part| sum.over(part)).value()
+}
+
+/// [`checksum`] of parts that are there one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Checksum(u32);
+
+impl Checksum {
+    /// Of nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self(u32::MAX)
+    }
+
+    /// With the next bytes.
+    #[must_use]
+    pub fn over(self, bytes: &[u8]) -> Self {
+        Self(sum_over(self.0, bytes))
+    }
+
+    /// The checksum of all bytes.
+    #[must_use]
+    pub fn value(self) -> u32 {
+        !self.0
+    }
+}
+
+impl Default for Checksum {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 /// Goes on with a sum over bytes.
