@@ -27,3 +27,4 @@ pub mod report;
 pub mod rig;
 pub mod rollout;
 pub mod samples;
+pub mod servo;

@@ -115,8 +115,6 @@ impl Partial {
     #[must_use]
     pub fn in_force(&self) -> Vec<(Constant, f64)> {
         let actuator = &self.actuator;
-        let finite =
-            |constant, value: f64, unless: f64| (value.is_finite() && value != unless).then_some((constant, value));
         let mut constants = match actuator.kind {
             Kind::Torque => Vec::new(),
             Kind::Current => vec![(Constant::TorqueConstant, actuator.gain)],
@@ -125,7 +123,7 @@ impl Partial {
             }
             Kind::Pd => vec![(Constant::Kp, actuator.kp), (Constant::Kd, actuator.kd)],
         };
-        constants.extend(finite(Constant::Delay, actuator.delay_s, 0.0));
+        constants.push((Constant::Delay, actuator.delay_s));
         constants
     }
 }

@@ -1,6 +1,7 @@
 //! `trainer fit`: recordings in, a friction image out.
 
 mod json;
+mod servo;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -8,15 +9,17 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::measurement::{self, Warning, load_all};
+use super::measurement::{self, Warning, actuator_file, load_all};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
+use crate::actuator::Kind;
 use crate::commands::measurement::profile;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
 use crate::kan::{Architecture, Sparsity};
+use crate::servo::{ServoFit, fit_servo};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]
@@ -154,11 +157,17 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);
-    let outcome = in_pool(arguments.threads, || {
-        fit(&recordings, &tests, &joint, &options, &|progress| reporter.say(&line(progress)))
-    })??;
+    let say = |progress: &Progress| reporter.say(&line(progress));
+    let of_servo = match joint.actuator.kind {
+        Kind::Torque => None,
+        _ => Some(in_pool(arguments.threads, || fit_servo(&recordings, &tests, &joint, &options, &say))??),
+    };
+    let outcome = match &of_servo {
+        Some(servo) => servo.outcome.clone(),
+        None => in_pool(arguments.threads, || fit(&recordings, &tests, &joint, &options, &say))??,
+    };
     drop(reporter);
-    write(arguments, &outcome, &warnings, start.elapsed().as_secs_f64())?;
+    write(arguments, &outcome, of_servo.as_ref(), &warnings, start.elapsed().as_secs_f64())?;
     Ok(match &outcome.sound {
         Soundness::Sound => 0,
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
@@ -188,14 +197,23 @@ fn line(progress: &Progress) -> String {
     }
 }
 
-fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Result<()> {
+fn write(
+    arguments: &Fit,
+    outcome: &Outcome,
+    of_servo: Option<&ServoFit>,
+    warnings: &[Warning],
+    seconds: f64,
+) -> Result<()> {
     let mut outputs = Outputs::default();
     let withheld = matches!(outcome.sound, Soundness::NotPhysical { withheld: true, .. }) && !arguments.force;
     if !withheld {
         outputs.add(&arguments.output, outcome.image.clone());
+        if let Some(of_servo) = of_servo {
+            outputs.add(&actuator_file(&arguments.output), servo::table(&of_servo.identified));
+        }
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
+        outputs.add(path, format!("{}\n", json::summary(outcome, of_servo, warnings, seconds)));
     }
     if let Some(path) = &arguments.report {
         let told: Vec<String> = warnings.iter().map(|warning| format!("{warning}.")).collect();
@@ -208,7 +226,10 @@ fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64)
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
-    print(&text::summary(outcome, warnings, &arguments.output, seconds))
+    print(
+        &(text::summary(outcome, warnings, &arguments.output, seconds)
+            + &of_servo.map(servo::text).unwrap_or_default()),
+    )
 }
 
 fn unsound(arguments: &Fit, error: &Error) -> u8 {

@@ -78,6 +78,13 @@ impl Series {
         })
     }
 
+    /// One command for so many rows.
+    #[cfg(test)]
+    pub(super) fn held(command: Command, period_s: f64, rows: usize) -> Self {
+        let time = (0..rows).map(|row| period_s * row as f64).collect();
+        Self { time, commands: vec![command; rows], temperature: Vec::new(), measured: false }
+    }
+
     /// What acts at a time, s, that lies at or after that of `row` and before the next; `row` may be moved back by a delay.
     #[must_use]
     pub fn at(&self, time: f64, near: usize) -> Command {

@@ -139,3 +139,49 @@ fn pass(rig: &Rig, series: &Series, resistance: &mut impl Resistance, row: usize
         advance(moving, push, levels.dry, levels.viscous + applied.damping, rig.body.inertia, step_s);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::Command;
+    use crate::numerics::dry_friction::DryLevels;
+    use crate::rollout::Levels;
+
+    /// Coulomb friction of 0.5 N m.
+    struct Coulomb;
+
+    impl Resistance for Coulomb {
+        fn levels(&mut self, _: &Instant, _: f64) -> Levels {
+            Levels { dry: DryLevels { forward: 0.5, backward: 0.5 }, viscous: 0.0 }
+        }
+    }
+
+    fn under(torque: f64, body: Body, rows: usize) -> Vec<State> {
+        let series = Series::held(Command { effort: torque, enabled: true, ..Command::default() }, 0.01, rows);
+        let rig = Rig { actuator: Actuator::ideal(Kind::Torque), body };
+        simulate(&rig, &series, &mut Coulomb, &[(0, State { position: 0.2, velocity: 0.0 })]).unwrap()
+    }
+
+    #[test]
+    fn a_joint_sticks_below_break_away_and_is_exact_above() {
+        let body = Body { inertia: 0.1, ..Body::default() };
+        assert!(under(0.499, body, 100).iter().all(|state| *state == State { position: 0.2, velocity: 0.0 }));
+        let free = under(0.7, body, 101)[100];
+        assert!((free.velocity - 2.0).abs() < 1e-9 && (free.position - 1.2).abs() < 1e-9, "{free:?}");
+    }
+
+    #[test]
+    fn a_pendulum_keeps_its_energy_but_for_friction() {
+        let body = Body { inertia: 0.1, gravity_sin: 20.0, ..Body::default() };
+        let states = under(0.0, body, 400);
+        let energy = |state: &State| 0.05 * state.velocity.powi(2) + 20.0 * (1.0 - state.position.cos());
+        let mut way = 0.0;
+        for pair in states.windows(2).take(30) {
+            way += (pair[1].position - pair[0].position).abs();
+        }
+        let lost = energy(&states[0]) - energy(&states[30]);
+        assert!((lost - 0.5 * way).abs() < 0.02 * lost, "{lost} {way}");
+        let last = states[399];
+        assert!(last.velocity == 0.0 && (20.0 * last.position.sin()).abs() <= 0.5);
+    }
+}

@@ -3,12 +3,14 @@
 use frikan_shared::image::image_crc32;
 use serde_json::{Value, json};
 
+use super::servo;
 use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Soundness, SplitScore, Trace};
+use crate::servo::ServoFit;
 
 /// The object that `--json` writes.
-pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Value {
+pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: &[Warning], seconds: f64) -> Value {
     let inputs: Vec<&str> = outcome.inputs.iter().map(|input| input.name.as_str()).collect();
     let tests: Vec<Value> = outcome.tests.iter().map(recording).collect();
     let train: Vec<Value> = outcome.train.iter().map(recording).collect();
@@ -62,6 +64,7 @@ pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], seconds: f64) -> 
         "train_recordings": train,
         "test": tests,
         "image": {"bytes": outcome.image.len(), "crc32": image_crc32(&outcome.image).unwrap_or(0)},
+        "rollout": of_servo.map(servo::to_json),
         "seconds": seconds,
         "seed": outcome.seed,
     })

@@ -1,0 +1,83 @@
+//! What recordings tell of an actuator.
+
+use crate::actuator::{Known, Open, Partial};
+use crate::joint::Joint;
+use crate::parameter::Parameter;
+use crate::samples::Preparation;
+
+/// What the recordings tell of an actuator.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The actuator, nothing of it open; constants that differ from recording to recording are those of the first.
+    pub partial: Partial,
+    /// The constants that were identified, with their 95 % intervals.
+    pub parameters: Vec<Parameter>,
+    /// What is not determined and what else was noticed, in sentences.
+    pub remarks: Vec<String>,
+    /// Whether gravity of the joint itself is identified beside that of the payload.
+    pub has_own_gravity: bool,
+    /// How the recordings are filtered.
+    pub(super) preparation: Preparation,
+    /// What was open, with what it is.
+    pub(super) values: Vec<(Open, f64)>,
+    /// What of that was identified.
+    pub(super) open: Vec<Open>,
+    /// Loss of a motor by its velocity where the recordings tell it from viscous friction, N m s/rad.
+    pub(super) back_emf: Option<f64>,
+    /// Delay where that was identified, s.
+    pub(super) delay_s: Option<f64>,
+    /// Friction of the gear per torque of its actuator.
+    pub(super) load: f64,
+}
+
+impl Identified {
+    /// The joint with the constants in force, those kept that its file gives.
+    #[must_use]
+    pub fn joint(&self, joint: &Joint) -> Joint {
+        let mut known = joint.clone();
+        for (constant, value) in self.partial.in_force() {
+            let own = known.actuator.constants.entry(constant).or_insert(Known::Given(value));
+            if own.given().is_none() {
+                *own = Known::Given(value);
+            }
+        }
+        known
+    }
+
+    pub(super) fn value(&self, open: Open) -> Option<f64> {
+        self.values.iter().find(|(constant, _)| *constant == open).map(|(_, value)| *value)
+    }
+
+    /// The same with another value of a constant.
+    pub(super) fn set(&mut self, open: Open, value: f64) {
+        self.values.iter_mut().filter(|(constant, _)| *constant == open).for_each(|(_, own)| *own = value);
+        self.partial = self.partial.clone().with(open, value);
+    }
+
+    /// The same with another loss and delay.
+    pub(super) fn set_rest(&mut self, back_emf: Option<f64>, delay_s: f64) {
+        self.back_emf = back_emf;
+        if let Some(back_emf) = back_emf {
+            self.partial.actuator.back_emf = back_emf;
+        }
+        self.partial.actuator.delay_s = delay_s;
+        self.delay_s = Some(delay_s);
+    }
+
+    /// The actuator of a recording, of which some constants may be its own.
+    pub(super) fn complete(&self, partial: &Partial) -> Partial {
+        let mut complete = partial.clone();
+        for (open, value) in &self.values {
+            if partial.open.contains(open) {
+                complete = complete.with(*open, *value);
+            }
+        }
+        if let Some(back_emf) = self.back_emf {
+            complete.actuator.back_emf = back_emf;
+        }
+        if let Some(delay_s) = self.delay_s {
+            complete.actuator.delay_s = delay_s;
+        }
+        complete
+    }
+}

@@ -1,0 +1,67 @@
+//! A recording of commands as one of a torque, once the actuator is known.
+
+use super::commanded::Commanded;
+use super::identified::Identified;
+use crate::error::Result;
+use crate::fit::Outcome;
+use crate::fit::model::{from_bytes, to_bytes};
+use crate::joint::Joint;
+use crate::recording::{Quantity, Recording};
+use crate::rollout::Body;
+use crate::samples::prepare_every_row;
+
+/// Inertia of the payload of the first recording, kg m2, which the others are brought to.
+pub(super) fn reference_inertia(recordings: &[Recording], joint: &Joint) -> f64 {
+    let payload = |recording: &Recording| {
+        crate::rollout::payload(recording, &joint.in_recording(&recording.label))
+            .map(|payload| Body::of_payload(&payload))
+    };
+    recordings.first().and_then(payload).map_or(0.0, |body| body.inertia)
+}
+
+/// The recording under the torque that its actuator made, less the gravity of its payload and what the inertia of that differs by from
+/// `reference`, kg m2. The load of the gear is that same torque: it stands beside it for a law that is known (`with_load`), and not for one that
+/// is looked for, which would explain the torque by itself.
+///
+/// # Errors
+/// As `identify`.
+pub(super) fn known_torque(
+    recording: &Recording,
+    joint: &Joint,
+    identified: &Identified,
+    reference: f64,
+    with_load: bool,
+) -> Result<Recording> {
+    let commanded = Commanded::of(recording, joint)?;
+    let actuator = identified.complete(&commanded.partial).actuator;
+    let applied = commanded.applied(&actuator);
+    let bare = recording.clone().with_torque(vec![0.0; recording.len()], Vec::new());
+    let motion = prepare_every_row(&bare, &identified.preparation)?;
+    let (velocity, acceleration) = (motion.require_velocity()?, motion.acceleration.as_deref().unwrap_or_default());
+    let position = recording.values(Quantity::Position).unwrap_or_default();
+    let payload = commanded.payload.as_ref().map_or_else(Body::default, Body::of_payload);
+    let excess = payload.inertia - reference;
+    let carried = |row: usize| payload.gravity(position[row]) + excess * acceleration.get(row).copied().unwrap_or(0.0);
+    let whole: Vec<f64> = (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect();
+    let torque = whole.iter().enumerate().map(|(row, torque)| torque - carried(row)).collect();
+    let others = if with_load { vec![(Quantity::LoadTorque.name().to_owned(), whole)] } else { Vec::new() };
+    Ok(recording.clone().with_torque(torque, others))
+}
+
+/// A fit of such recordings as one of the joint without payload: its inertia is less by `reference`, kg m2, and what was identified of the
+/// actuator stands before its other parameters.
+///
+/// # Errors
+/// `FRK-D020` where the image would be refused.
+pub(super) fn without_payload(mut outcome: Outcome, identified: &Identified, reference: f64) -> Result<Outcome> {
+    let mut image = from_bytes(&outcome.image)?;
+    image.model.rigid_body.inertia = (f64::from(image.model.rigid_body.inertia) - reference) as f32;
+    outcome.image = to_bytes(&image)?;
+    for parameter in outcome.parameters.iter_mut().filter(|parameter| parameter.name == "inertia") {
+        parameter.value -= reference;
+        parameter.ci95 = parameter.ci95.map(|bound| bound - reference);
+    }
+    outcome.parameters.splice(0..0, identified.parameters.iter().cloned());
+    outcome.remarks.extend(identified.remarks.iter().cloned());
+    Ok(outcome)
+}

@@ -1,0 +1,20 @@
+//! Joints that report no torque: the constants of their actuators, identified together with rigid body and friction, and the law that makes
+//! the simulated joint move as the recorded one did. Knows no command line and no files.
+//!
+//! `torque_space` finds the constants in one step, `known_torque` turns a recording of commands into one of a torque, which is fitted as any
+//! other, `by_trajectory` moves what was found until the simulation comes closest, and [`fit_servo`] is all of it.
+
+mod adopt;
+mod by_trajectory;
+mod commanded;
+mod friction;
+mod identified;
+mod known_torque;
+mod run;
+mod shooting;
+#[cfg(test)]
+mod tests;
+mod torque_space;
+
+pub use identified::Identified;
+pub use run::{ServoFit, Simulated, fit_servo};
