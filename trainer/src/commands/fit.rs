@@ -63,7 +63,7 @@ pub struct Fit {
     /// Threads to use; all when absent. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Write the image also where the torque seems to have the wrong sign
+    /// Write the image in spite of exit status 4: not identifiable, not physical or not converged
     #[arg(long)]
     pub force: bool,
     /// Say nothing on standard error
@@ -163,14 +163,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         Soundness::Sound => 0,
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
         Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
-        Soundness::NotPhysical { what, withheld } => {
-            let error = Error::new(&codes::NOT_PHYSICAL, what.clone());
-            // That there is no image is no message but the result.
-            if *withheld && !arguments.force && arguments.quiet {
-                eprintln!("{error}");
-            }
-            unsound(arguments, &error)
-        }
+        Soundness::NotPhysical(what) => unsound(arguments, &Error::new(&codes::NOT_PHYSICAL, what.clone())),
     })
 }
 
@@ -190,8 +183,8 @@ fn line(progress: &Progress) -> String {
 
 fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Result<()> {
     let mut outputs = Outputs::default();
-    let withheld = matches!(outcome.sound, Soundness::NotPhysical { withheld: true, .. }) && !arguments.force;
-    if !withheld {
+    let is_written = outcome.sound == Soundness::Sound || arguments.force;
+    if is_written {
         outputs.add(&arguments.output, outcome.image.clone());
     }
     if let Some(path) = &arguments.json {
@@ -208,11 +201,12 @@ fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64)
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
-    print(&text::summary(outcome, warnings, &arguments.output, seconds))
+    print(&text::summary(outcome, warnings, is_written.then_some(arguments.output.as_path()), seconds))
 }
 
 fn unsound(arguments: &Fit, error: &Error) -> u8 {
-    if !arguments.quiet {
+    // That there is no image is no message but the result.
+    if !arguments.quiet || !arguments.force {
         eprintln!("{error}");
     }
     error.exit_status()
