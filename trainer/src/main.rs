@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use frikan_trainer::commands::output::print;
 use frikan_trainer::commands::{
-    closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
+    check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
 };
 use frikan_trainer::error::Result;
 
@@ -23,6 +23,7 @@ struct Trainer {
 #[derive(Subcommand)]
 enum Command {
     Init(init::Init),
+    Check(check::Check),
     Fit(fit::Fit),
     Show(show::Show),
     Predict(predict::Predict),
@@ -38,6 +39,7 @@ enum Command {
 fn run(command: &Command) -> Result<u8> {
     match command {
         Command::Init(arguments) => init::run(arguments).map(|()| 0),
+        Command::Check(arguments) => check::run(arguments),
         Command::Fit(arguments) => fit::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),

@@ -6,7 +6,8 @@
 use super::law::{Columns, PositionTerms};
 use super::motion::{smooth, top_speed};
 use super::note::{Fault, Note};
-use super::steps::{others, resolution, stretches};
+use super::rows::{others, stretches};
+use crate::numerics::resolution::resolution;
 use crate::numerics::statistics::quantile;
 use crate::recording::{Omission, Quantity, Recording};
 use crate::samples::VelocitySource;
@@ -45,7 +46,7 @@ pub(super) fn without_frozen_torque(recording: &Recording) -> Option<(Option<Rec
     let terms = PositionTerms::Gravity(1.0);
     let fit = Columns::of(&rest, top, terms)?.fit(&rest, top)?.fit;
     let law = Columns::of(&all, top, terms)?.predict(&fit.coefficients);
-    let least = (OVER_RESIDUAL * fit.rmse).max(OVER_STEP * resolution(torque));
+    let least = (OVER_RESIDUAL * fit.rmse).max(OVER_STEP * resolution(torque).unwrap_or(0.0));
     let is_frozen = |run: &Range<usize>| {
         let value = torque[run.start];
         let begin = all.time.partition_point(|at| *at < time[run.start]);

@@ -4,7 +4,7 @@
 //! is.
 
 use super::note::{Fault, Note};
-use super::steps::resolution;
+use crate::numerics::resolution::resolution;
 use crate::numerics::statistics::quantile;
 use crate::recording::{Omission, Quantity, Recording};
 
@@ -36,7 +36,7 @@ pub(super) fn at_true_rate(recording: &Recording) -> Option<(Option<Recording>, 
 
 /// Rows from one sample to the next, where a series is held.
 fn interval(values: &[f64]) -> Option<usize> {
-    let clear = CLEAR_STEPS * resolution(values);
+    let clear = CLEAR_STEPS * resolution(values).unwrap_or(0.0);
     let changed: Vec<usize> = (1..values.len()).filter(|row| values[*row] != values[row - 1]).collect();
     let large = |pair: &&[usize]| (values[pair[1]] - values[pair[1] - 1]).abs() >= clear;
     let intervals: Vec<usize> = changed.windows(2).filter(large).map(|pair| pair[1] - pair[0]).collect();

@@ -1,6 +1,7 @@
 //! Whether torque, force or current was measured at all.
 
 use crate::error::{Error, Result, codes};
+use crate::joint::Joint;
 use crate::recording::{Channel, Quantity, Recording};
 
 /// Magnitude below which a number in the unit of its column is no measurement: smaller than any normal number of single precision
@@ -9,8 +10,9 @@ const SMALLEST_MEASURED: f64 = f32::MIN_POSITIVE as f64;
 /// Distance of a position from a straight line over time, as a share of the way, up to which its speed is one.
 const STRAIGHT: f64 = 0.01;
 
-/// Refuses a torque that is nothing in every row, or the same in every row of a motion that is not steady.
-pub(super) fn require(recording: &Recording) -> Result<()> {
+/// Refuses a torque that is nothing in every row, or the same in every row of a motion that is not steady. Beside a known inertia none is
+/// right where the joint slows down: it coasts, or drops, and friction is what slows it.
+pub(super) fn require(recording: &Recording, joint: &Joint) -> Result<()> {
     let Some(channel) = recording.separated_friction().or_else(|| recording.actuator()) else { return Ok(()) };
     let refuse = |message: &str, value: f64| {
         let error = Error::new(&codes::NOT_MEASURED, format!("the {} {message}", channel.name));
@@ -20,6 +22,10 @@ pub(super) fn require(recording: &Recording) -> Result<()> {
     let largest = channel.values.iter().map(|value| in_column_unit(value).abs()).fold(0.0, f64::max);
     let first = channel.values.first().map_or(0.0, in_column_unit);
     let is_constant = channel.values.iter().all(|value| in_column_unit(value) == first);
+    let has_inertia = joint.rigid_body.inertia_kgm2.is_some() || recording.channel(Quantity::RigidBodyTorque).is_some();
+    if is_constant && first == 0.0 && has_inertia && recording.actuator().is_some() && changes_speed(recording) {
+        return Ok(());
+    }
     // A friction that somebody separated may be one Coulomb level.
     if is_constant && (first == 0.0 || recording.separated_friction().is_none() && changes_speed(recording)) {
         return refuse("is the same in every row: it was not measured", first);

@@ -5,7 +5,6 @@
 //! comes back as it was, bit for bit.
 
 mod clock;
-mod direction;
 mod frozen;
 mod held;
 mod law;
@@ -14,11 +13,11 @@ mod motion;
 mod note;
 mod repeated;
 mod rezeroed;
+mod rows;
 mod sign;
-mod steps;
+pub mod survey;
 #[cfg(test)]
 mod tests;
-mod turned;
 mod unit;
 mod velocity;
 mod wrapped;
@@ -43,19 +42,21 @@ pub struct Reviewed {
 /// # Errors
 /// `FRK-D023` where torque, force or current was not measured, `FRK-D011` and `FRK-D026` where the clock is none.
 pub fn review(recording: Recording, joint: &Joint) -> Result<Reviewed> {
-    measured::require(&recording)?;
+    measured::require(&recording, joint)?;
     let nearly = recording.nearly_named.iter().cloned();
     let nearly: Vec<Note> = nearly.map(|(column, known)| Note::of_all(Fault::NearlyNamed { column, known })).collect();
     let mut reviewed = review_motion(recording, joint)?;
     reviewed.notes.extend(nearly);
+    reviewed.mend(sign::read_as_digit::with_signed_torque);
     reviewed.note(unit::position_in_degrees);
+    reviewed.note(sign::lost::magnitude);
     // What else is compared with a law would only repeat that the units are wrong.
     if !reviewed.is_blocked() {
         reviewed.mend(frozen::without_frozen_torque);
-        reviewed.mend(turned::without_turned_torque);
-        reviewed.note(|recording| sign::wrong_sign(recording, joint));
+        reviewed.mend(sign::turned::without_turned_torque);
+        reviewed.note(|recording| sign::wrong::wrong_sign(recording, joint));
     }
-    reviewed.note(direction::one_direction);
+    reviewed.note(sign::one_way::one_direction);
     Ok(reviewed)
 }
 
@@ -69,6 +70,7 @@ pub fn review_motion(recording: Recording, joint: &Joint) -> Result<Reviewed> {
     clock::require(&reviewed.recording)?;
     reviewed.mend(held::at_true_rate);
     reviewed.mend(repeated::without_repeated_rows);
+    reviewed.mend(sign::read_as_digit::with_signed_position);
     reviewed.mend(|recording| wrapped::unwrapped(recording, joint));
     reviewed.mend(rezeroed::put_back);
     reviewed.mend(velocity::without_contradiction);

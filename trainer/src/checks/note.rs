@@ -68,8 +68,25 @@ pub enum Fault {
     WrongUnit(WrongUnit),
     /// A recorded velocity that is not the derivative of the position: left out, the position is differentiated.
     ContradictingVelocity(Contradiction),
+    /// A torque that was recorded as a magnitude.
+    LostSign {
+        /// What a law leaves of the torque with the signs that it gives it, over what one leaves of the torque as it is.
+        left: f64,
+    },
+    /// Negative numbers of a channel that were read as large ones: put back.
+    SignBit {
+        /// Name of the channel.
+        channel: String,
+        /// By how much they were too large, in the unit of the channel.
+        offset: f64,
+        /// How often the sign changed.
+        times: usize,
+    },
     /// The joint moves in one direction only: friction cannot be told from an offset.
-    OneDirection,
+    OneDirection {
+        /// Whether it is the positive one.
+        forward: bool,
+    },
     /// A column that nearly has the name of a quantity that is not recorded.
     NearlyNamed {
         /// Its name in the file.
@@ -123,7 +140,9 @@ impl Fault {
             Self::WrongSign { .. } => &codes::WRONG_SIGN,
             Self::WrongUnit(_) => &codes::WRONG_UNIT,
             Self::ContradictingVelocity(_) => &codes::CONTRADICTING_VELOCITY,
-            Self::OneDirection => &codes::ONE_DIRECTION,
+            Self::LostSign { .. } => &codes::LOST_SIGN,
+            Self::SignBit { .. } => &codes::SIGN_BIT,
+            Self::OneDirection { .. } => &codes::ONE_DIRECTION,
             Self::NearlyNamed { .. } => &codes::NEARLY_NAMED,
         }
     }
@@ -131,6 +150,6 @@ impl Fault {
     /// Whether the recording cannot be put right: nothing may be fitted to it.
     #[must_use]
     pub fn is_blocking(&self) -> bool {
-        matches!(self, Self::WrongSign { .. } | Self::WrongUnit(_))
+        matches!(self, Self::WrongSign { .. } | Self::WrongUnit(_) | Self::LostSign { .. })
     }
 }

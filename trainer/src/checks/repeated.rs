@@ -1,7 +1,8 @@
 //! Rows that were written twice.
 
 use super::note::{Fault, Note};
-use super::steps::{others, resolution, stretches};
+use super::rows::{others, stretches};
+use crate::numerics::resolution::resolution;
 use crate::recording::{Channel, Omission, Quantity, Recording};
 
 /// Speed, in steps of the encoder from one row to the next, above which a moving joint does not show the same position twice.
@@ -27,7 +28,7 @@ pub(super) fn without_repeated_stamps(recording: &Recording) -> Option<(Option<R
 pub(super) fn without_repeated_rows(recording: &Recording) -> Option<(Option<Recording>, Note)> {
     let position = recording.values(Quantity::Position)?;
     recording.actuator().or_else(|| recording.separated_friction())?;
-    let fast = MOVING_STEPS * resolution(position);
+    let fast = MOVING_STEPS * resolution(position).unwrap_or(0.0);
     // On to the same side before and after: where a joint turns round it is twice at one place.
     let moves = |row: usize| {
         let step = |to: usize| position[to] - position[to - 1];

@@ -1,7 +1,7 @@
 //! A position that was set anew in the run: it jumps while the motion goes on.
 
 use super::note::{Fault, Note};
-use super::steps::resolution;
+use crate::numerics::resolution::resolution;
 use crate::numerics::statistics::quantile;
 use crate::recording::{Quantity, Recording};
 
@@ -63,8 +63,9 @@ fn jumps(recording: &Recording, time: &[f64], position: &[f64]) -> Vec<Jump> {
         let others = || changes.iter().filter(|jump| is_other(&jump.row));
         let largest_change = others().map(|jump| jump.height.abs()).next()?;
         let largest_step = others().map(|jump| (position[jump.row] - position[jump.row - 1]).abs()).fold(0.0, f64::max);
-        let least =
-            (OVER_STEPS * largest_step).max(OVER_CHANGES * largest_change).max(OVER_RESOLUTION * resolution(position));
+        let least = (OVER_STEPS * largest_step)
+            .max(OVER_CHANGES * largest_change)
+            .max(OVER_RESOLUTION * resolution(position).unwrap_or(0.0));
         found.iter().all(|jump| jump.height.abs() > least).then(|| found.to_vec())
     });
     let mut found = found.unwrap_or_default();

@@ -2,14 +2,17 @@
 
 use super::motion::{sigma_s, smooth};
 use super::note::{Contradiction, Fault, Note, WrongUnit};
-use super::steps::resolution;
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
+use crate::numerics::resolution::resolution;
 use crate::recording::{Quantity, Recording};
 use crate::samples::VelocitySource;
 use std::f64::consts::TAU;
 
 /// Share of the derivative that the grain of the encoder may make up for it to contradict anything.
 const MOST_GRAIN: f64 = 0.2;
+/// Share of the acceleration's energy that the velocity does not hold, from which a lag can be told from a factor: of a joint that coasts
+/// both decline alike.
+const LEAST_OWN: f64 = 1e-3;
 /// Share of the velocity's energy that derivative and lag have to explain for both to be one motion.
 const SAME_MOTION: f64 = 0.8;
 /// Factor between them that is no contradiction: filters and calibrations differ by that.
@@ -44,9 +47,9 @@ fn contradiction(recording: &Recording) -> Option<Fault> {
     let (rr, rd, ra) = (dot(recorded, recorded), dot(recorded, derived), dot(recorded, acceleration));
     let period_s = recording.health.period_s?;
     let filter = GaussianFilter::new(sigma_s(recording)?, period_s);
-    let grain = resolution(position) / 12f64.sqrt() * filter.noise_gain(Order::First);
+    let grain = resolution(position).unwrap_or(0.0) / 12f64.sqrt() * filter.noise_gain(Order::First);
     let determinant = dd * aa - da * da;
-    if grain.powi(2) * derived.len() as f64 > MOST_GRAIN.powi(2) * dd || determinant <= 0.0 {
+    if grain.powi(2) * derived.len() as f64 > MOST_GRAIN.powi(2) * dd || determinant <= LEAST_OWN * dd * aa {
         return None;
     }
     let contradicts = |how| Some(Fault::ContradictingVelocity(how));

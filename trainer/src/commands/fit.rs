@@ -66,7 +66,7 @@ pub struct Fit {
     /// Threads to use; all when absent. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Write the image also where the torque seems to have the wrong sign
+    /// Write the image in spite of exit status 4: not identifiable, not physical or not converged
     #[arg(long)]
     pub force: bool,
     /// Say nothing on standard error
@@ -172,14 +172,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         Soundness::Sound => 0,
         Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
         Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
-        Soundness::NotPhysical { what, withheld } => {
-            let error = Error::new(&codes::NOT_PHYSICAL, what.clone());
-            // That there is no image is no message but the result.
-            if *withheld && !arguments.force && arguments.quiet {
-                eprintln!("{error}");
-            }
-            unsound(arguments, &error)
-        }
+        Soundness::NotPhysical(what) => unsound(arguments, &Error::new(&codes::NOT_PHYSICAL, what.clone())),
     })
 }
 
@@ -205,8 +198,8 @@ fn write(
     seconds: f64,
 ) -> Result<()> {
     let mut outputs = Outputs::default();
-    let withheld = matches!(outcome.sound, Soundness::NotPhysical { withheld: true, .. }) && !arguments.force;
-    if !withheld {
+    let is_written = outcome.sound == Soundness::Sound || arguments.force;
+    if is_written {
         outputs.add(&arguments.output, outcome.image.clone());
         if let Some(of_servo) = of_servo {
             outputs.add(&actuator_file(&arguments.output), servo::table(&of_servo.identified));
@@ -227,13 +220,14 @@ fn write(
         return Ok(());
     }
     print(
-        &(text::summary(outcome, warnings, &arguments.output, seconds)
+        &(text::summary(outcome, warnings, is_written.then_some(arguments.output.as_path()), seconds)
             + &of_servo.map(servo::text).unwrap_or_default()),
     )
 }
 
 fn unsound(arguments: &Fit, error: &Error) -> u8 {
-    if !arguments.quiet {
+    // That there is no image is no message but the result.
+    if !arguments.quiet || !arguments.force {
         eprintln!("{error}");
     }
     error.exit_status()

@@ -69,6 +69,12 @@ pub(super) fn load_all(
 ) -> Result<(Vec<Recording>, Vec<Warning>)> {
     let loaded = paths.iter().map(|path| load(path)).collect::<Result<Vec<_>>>()?;
     let (recordings, mut warnings): (Vec<Recording>, Vec<Vec<Warning>>) = loaded.into_iter().unzip();
+    let one_way = |warnings: &Vec<Warning>| warnings.iter().find_map(Warning::direction);
+    // One way in one recording and the other way in another are both directions.
+    let only = warnings.first().and_then(one_way);
+    if warnings.iter().any(|warnings| one_way(warnings) != only) {
+        warnings.iter_mut().for_each(|warnings| warnings.retain(|warning| warning.direction().is_none()));
+    }
     if paths.len() > 1 {
         for (recording, warnings) in recordings.iter().zip(&mut warnings) {
             for warning in warnings {
@@ -86,7 +92,7 @@ pub(super) fn load_all(
 /// As [`recording::load`] and [`checks::review`], and the code of a fault that cannot be put right.
 pub(super) fn load(path: &Path, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
     let (recording, warnings) = load_with_faults(path, joint)?;
-    match warnings.iter().find(|warning| warning.note.note.fault.is_blocking()) {
+    match warnings.iter().find(|warning| warning.is_blocking()) {
         Some(warning) => {
             Err(Error::new(warning.note.note.fault.code(), warning.message.clone()).in_file(recording.file()))
         }
@@ -138,9 +144,30 @@ impl Warning {
         self.note.note.fault.code().id
     }
 
+    /// Stretches of time that it concerns, s.
+    pub(super) fn when_s(&self) -> &[[f64; 2]] {
+        &self.note.note.when_s
+    }
+
+    /// Whether nothing may be fitted beside it.
+    pub(super) fn is_blocking(&self) -> bool {
+        self.note.note.fault.is_blocking()
+    }
+
     /// Whether it is a finding of its own: nothing of the physics explains it.
     pub(super) fn is_finding(&self) -> bool {
-        matches!(self.note.note.fault, Fault::WrongSign { .. } | Fault::WrongUnit(_) | Fault::TurnedTorque { .. })
+        matches!(
+            self.note.note.fault,
+            Fault::WrongSign { .. } | Fault::WrongUnit(_) | Fault::TurnedTorque { .. } | Fault::LostSign { .. }
+        )
+    }
+
+    /// The direction, where the joint moves in one only.
+    fn direction(&self) -> Option<bool> {
+        match self.note.note.fault {
+            Fault::OneDirection { forward } => Some(forward),
+            _ => None,
+        }
     }
 
     /// The same as a diagnosis notes it.
@@ -150,7 +177,7 @@ impl Warning {
                 EffectId::Quantisation
             }
             Fault::FrozenTorque { .. } => EffectId::TransientEvent,
-            Fault::OneDirection => EffectId::TorqueOffset,
+            Fault::OneDirection { .. } => EffectId::TorqueOffset,
             _ => EffectId::UnitOrSign,
         };
         let observation = Observation::Recording(self.note.clone());
@@ -208,5 +235,29 @@ mod tests {
         let [warning] = &warnings[..] else { panic!("{warnings:?}") };
         assert!(warning.message.starts_with("in turned.csv the torque has the wrong sign"), "{}", warning.message);
         assert!(warning.is_finding() && warning.to_health().blocking);
+    }
+
+    #[test]
+    fn one_way_in_one_recording_and_the_other_way_in_another_are_both_directions() {
+        let folder = tempfile::tempdir().unwrap();
+        let [there, back] = [("there.csv", 1.0), ("back.csv", -1.0)].map(|(name, sign)| {
+            let path = folder.path().join(name);
+            let mut text = String::from("time_s,position_rad,torque_Nm\n");
+            for row in 0..3000 {
+                let time = 0.01 * f64::from(row);
+                let [way, speed] = [time - 0.5 * (1.3 * time).sin(), 1.0 - 0.65 * (1.3 * time).cos()];
+                writeln!(text, "{time},{},{}", sign * way, sign * (0.8 + 0.3 * speed) + 0.05 * (37.0 * time).sin())
+                    .unwrap();
+            }
+            std::fs::write(&path, text).unwrap();
+            path
+        });
+        let codes = |paths: &[PathBuf]| {
+            let (_, warnings) = load_all(paths, |path| load(path, &Joint::default())).unwrap();
+            warnings.iter().map(Warning::code).collect::<Vec<_>>()
+        };
+        assert_eq!(codes(std::slice::from_ref(&there)), ["FRK-W008"]);
+        assert_eq!(codes(&[there.clone(), there.clone()]), ["FRK-W008", "FRK-W008"]);
+        assert!(codes(&[there, back]).is_empty());
     }
 }

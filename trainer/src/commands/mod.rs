@@ -1,5 +1,6 @@
 //! One file a subcommand: parse, call, print. No arithmetic here.
 
+pub mod check;
 pub mod closed_loop;
 mod columns;
 pub mod diagnose;

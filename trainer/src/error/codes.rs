@@ -147,6 +147,10 @@ registry! {
         "The time advances by less than a microsecond a row, or by more than a second without a velocity that confirms it. No motion is sampled like that, and filters on that clock would be as long as memory is large.",
         "Milli-, micro- or nanoseconds in a column that says s, or a row counter in place of the time.",
         "Name the column by its real unit: `time_ms`, `time_us`, `time_ns`; a row counter has to be multiplied by the sample period.";
+    LOST_SIGN = "FRK-D027" Data "torque without its sign",
+        "The torque is never below zero, while one law describes it once every sample has the sign that the motion asks for: its size was recorded, not its direction.",
+        "A drive that logs the magnitude of the current, a wattmeter, or an `abs` in the log.",
+        "Log the signed current or torque. A constant load that keeps the torque above zero is told apart and is not meant.";
     BAD_MODEL_FILE = "FRK-D030" Data "simulator's model file cannot be used",
         "The file of `export --into` is not valid XML, lacks the joint, or does not say the inertia of its bodies.",
         "A xacro or a file with includes that has not been expanded, a joint of another name, or bodies that have their inertia from geometries.",
@@ -168,8 +172,8 @@ registry! {
         "A bag in SQLite, MATLAB 7.3, HDF5, a spreadsheet, or a compression other than gzip.",
         "Convert it as the message says; CSV, NumPy, MATLAB 5 to 7, JSON, Parquet and MCAP are read.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
-        "Two or more parameters change the prediction in the same way on this recording.",
-        "One speed, one acceleration, a small range of positions, or a single frequency.",
+        "Two or more parameters change the prediction in the same way on this recording, or the law is worth no more on rows that it has not seen than a constant torque, a spring or Coulomb friction alone. No image is written; `--force` writes it all the same.",
+        "One speed, one acceleration, a small range of positions, a single frequency, or a joint that does not slide.",
         "Excite more: several speeds, both directions, two frequencies, a range beyond +-60 degrees.";
     NOT_CONVERGED = "FRK-N002" NotIdentifiable "not converged",
         "The optimiser stopped before the gradient became small.",
@@ -178,7 +182,7 @@ registry! {
     NOT_PHYSICAL = "FRK-N003" NotIdentifiable "not physical",
         "The law that the recording asks for has a negative inertia, or friction that drives the joint.",
         "A torque of the wrong sign, a column that is not what it is taken for, or a force from outside: a spring, another joint.",
-        "Look at sign and columns. Where the torque seems reversed no image is written; `--force` writes it all the same.";
+        "Look at sign and columns. No image is written; `--force` writes it all the same.";
     DIVERGED = "FRK-N004" NotIdentifiable "simulation diverged",
         "The simulated joint left all bounds under the recorded commands.",
         "A gain, an inertia or a delay that is not that of the joint, a reference of the wrong sign or unit, or a position loop that is unstable with these constants.",
@@ -271,6 +275,42 @@ registry! {
         "The joint never turns round. A Coulomb torque in one direction cannot be separated from an offset, nor from a constant load.",
         "A conveyor, a spindle, or an excerpt of a longer motion.",
         "Record both directions. What is found holds for the recorded direction only.";
+    SIGN_BIT = "FRK-W009" Warning "sign read as a digit",
+        "The numbers of a channel jump by a power of two of their own step whenever they pass zero: negative ones were read as large positive ones. They were put back.",
+        "A register of sign and magnitude, or of two's complement, that was read as a number without a sign.",
+        "Nothing has to be done. Reading the register with its sign saves the detour.";
+    CLOCK = "FRK-W010" Warning "clock",
+        "Rows, rate and jitter of the clock. A jitter of more than half a period is told as a warning: values are then interpolated further than they lie apart.",
+        "A log that is written when the computer has time, or stamps of arrival in place of stamps of measurement.",
+        "Log the time at which each value was measured, by the clock of the drive.";
+    GAPS = "FRK-W011" Warning "gaps of the clock",
+        "The clock jumps by more than three periods. The motion is taken as interrupted there: no filter reaches across.",
+        "Messages that were lost, pauses between strokes, or several runs in one file.",
+        "Nothing has to be done where the stretches between are longer than a second.";
+    RESOLUTION = "FRK-W012" Warning "resolution of a channel",
+        "The step in which a channel is recorded, told apart from what it travels from row to row, and how many of them its range has. Fewer than 256 are told as a warning.",
+        "A coarse encoder or converter, few digits in the log, or a range that is much larger than what was used.",
+        "More digits in the log, or a motion that uses more of the range.";
+    CONSTANT_CHANNEL = "FRK-W013" Warning "channel that never changes",
+        "Every row of a channel has the same value: nothing that depends on it can be seen.",
+        "A sensor that is not connected, a channel that is not enabled, or a quantity that was held on purpose.",
+        "Connect or enable it, leave the column out, or change it in another recording.";
+    AT_LIMIT = "FRK-W014" Warning "actuator at its limit",
+        "The actuator stands exactly at its largest or smallest value in many rows: the drive gave no more there, or the converter could not show more.",
+        "A limit of torque or current, or a converter at the end of its range.",
+        "Accelerate less, or raise the limit. State the drive's limit in joint.toml: `[drive] torque_limit_Nm`.";
+    MOTION = "FRK-W015" Warning "motion",
+        "What was driven: travel, top speed, shares of the time at rest and in slow motion, and how often the joint turns round. A joint that never turns round is told as a warning.",
+        "A conveyor, a spindle, or an excerpt of a longer motion.",
+        "Friction over speed wants several speeds in both directions; effects near rest want reversals and slow motion.";
+    TEMPERATURE_RANGE = "FRK-W016" Warning "temperature",
+        "The range of the temperature. Less than 5 K are told as a warning: what friction does over temperature can then not be seen.",
+        "A recording that is short, or that was taken after the joint had warmed up.",
+        "Record the same motion cold and warm.";
+    UNIDENTIFIED = "FRK-W017" Warning "cannot be identified",
+        "By the Fisher information of the recording, what this constant or effect adds to the torque may be off by as much as all the friction there is: others make up for it, or the noise hides it.",
+        "One speed, one direction, a joint that does not slide, a channel that hardly changes.",
+        "Record what the message asks for.";
     NEARLY_NAMED = "FRK-W020" Warning "column that nearly has a known name",
         "A column has almost the name of a quantity that no other column gives. It is kept as a channel by its name.",
         "A slip of the pen, capitals, or a missing `_`.",

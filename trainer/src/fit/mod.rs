@@ -4,6 +4,7 @@
 
 mod choice;
 mod data;
+mod gate;
 mod law_error;
 mod laws;
 pub mod model;
@@ -14,6 +15,7 @@ mod rigid_body_error;
 mod run;
 pub mod score;
 
+pub use gate::{Identifiable, identifiable};
 pub use laws::activations::label_activations;
 pub use laws::formula::formula_of;
 pub use model::{CELLS, HostModel};

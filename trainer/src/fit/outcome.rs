@@ -134,13 +134,14 @@ impl Outcome {
     }
 }
 
-fn uncertain_share(band: &[[f64; 3]]) -> f64 {
+/// As [`Outcome::uncertain_share`].
+pub(super) fn uncertain_share(band: &[[f64; 3]]) -> f64 {
     let friction: f64 = band.iter().map(|[_, low, high]| 0.5 * (low + high).abs()).sum();
     let half: f64 = band.iter().map(|[_, low, high]| (0.5 * (low + high).abs()).min(0.5 * (high - low))).sum();
     if friction > 0.0 { half / friction } else { 1.0 }
 }
 
-/// Whether a fit may be relied upon; anything but `Sound` ends with exit status 4.
+/// Whether a fit may be relied upon; anything but `Sound` ends with exit status 4 and without an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Soundness {
     /// Determined and converged.
@@ -149,13 +150,15 @@ pub enum Soundness {
     NotIdentifiable(String),
     /// An optimiser ran out of steps; which, in a sentence.
     NotConverged(String),
-    /// The law does what no joint can do; what, in a sentence, and whether its image is to be kept back.
-    NotPhysical {
-        /// What it does.
-        what: String,
-        /// Whether an image would be that of a torque of the wrong sign.
-        withheld: bool,
-    },
+    /// The law does what no joint can do; what, in a sentence.
+    NotPhysical(String),
+}
+
+impl Soundness {
+    /// This, or what `other` finds where nothing is wrong so far.
+    pub(super) fn and(self, other: impl FnOnce() -> Self) -> Self {
+        if self == Self::Sound { other() } else { self }
+    }
 }
 
 /// An input of the model with its trained range.

@@ -11,6 +11,8 @@ use super::choice::turn::{self, Turn};
 use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
+use super::gate::confounded::Identified;
+use super::gate::{ONE_WAY, withheld};
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
 use super::laws::formula::{self, classical, law_data, law_parameters};
@@ -18,7 +20,7 @@ use super::laws::learn::{TrainedNetwork, TrainingData};
 use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore};
+use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore, uncertain_share};
 use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
 use crate::error::Result;
@@ -107,7 +109,13 @@ fn fit_once(
     let tests = tests.iter().map(score).collect::<Result<Vec<_>>>()?;
 
     let by_expression = verdict.form != Form::Network;
-    let sound = soundness(&material, &fit, &learnt, verdict.form, violation);
+    let identified = Identified::by(&material);
+    let band = training.band(&refitted, first.found.last.uncertainty.correlation_length)?;
+    let parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
+    let sound = soundness(&material, &fit, &learnt, verdict.form, violation).and(|| {
+        let place = Form::ALL.iter().position(|form| *form == verdict.form).unwrap_or(0);
+        withheld(&material, &identified, trials[place].as_ref(), &parameters, uncertain_share(&band))
+    });
     Ok(Outcome {
         joint: name,
         axis: material.samples.axis,
@@ -119,12 +127,12 @@ fn fit_once(
         network: training.summary(&first.fitted, &first.pruned, &refitted),
         law: formula::summary(&first.found, &fit, &inputs),
         classical,
-        parameters: parameters(&material, &fit, &learnt, by_expression),
+        parameters,
         candidates: verdict.candidates,
         representation: verdict.form.representation(),
         held_out: material.repeats.is_none(),
         choice: verdict.reason,
-        remarks: remarks(&material, first, verdict.form, recordings),
+        remarks: remarks(&material, first, verdict.form, recordings, &identified),
         sound,
         train_score: Score::over(&train),
         train_split: SplitScore::over(&train),
@@ -132,7 +140,7 @@ fn fit_once(
         tests,
         cloud: cloud(&material),
         law_curve: law_curve(&model, &inputs),
-        band: training.band(&refitted, first.found.last.uncertainty.correlation_length)?,
+        band,
         image,
     })
 }
@@ -221,7 +229,13 @@ fn input_ranges(model: &HostModel, inputs: &[ChosenInput]) -> Vec<InputRange> {
 }
 
 /// Constants of the formula, then the rigid body as it is in the image.
-fn parameters(material: &Material, fit: &FormFit, learnt: &TrainedNetwork, by_expression: bool) -> Vec<Parameter> {
+fn parameters(
+    material: &Material,
+    fit: &FormFit,
+    learnt: &TrainedNetwork,
+    by_expression: bool,
+    identified: &Identified,
+) -> Vec<Parameter> {
     let nuisance = &fit.uncertainty.nuisance;
     // The network identifies the same coefficients; its own standard errors are not worked out, those beside the
     // formula stand for them.
@@ -231,11 +245,25 @@ fn parameters(material: &Material, fit: &FormFit, learnt: &TrainedNetwork, by_ex
     let coefficients: Vec<(f64, f64)> = nuisance.iter().enumerate().map(in_image).collect();
     let mut parameters = law_parameters(&fit.law.parameters);
     parameters.extend(rigid::parameters(material, &coefficients));
+    // Of what the motion does not tell apart there is no interval.
+    let unknown = identified.unknown();
+    for parameter in parameters.iter_mut().filter(|p| unknown.iter().any(|constant| constant.is_named(&p.name))) {
+        parameter.ci95 = [f64::NEG_INFINITY, f64::INFINITY];
+    }
     parameters
 }
 
-fn remarks(material: &Material, turn: &Turn, form: Form, recordings: &[Recording]) -> Vec<String> {
+fn remarks(
+    material: &Material,
+    turn: &Turn,
+    form: Form,
+    recordings: &[Recording],
+    identified: &Identified,
+) -> Vec<String> {
     let mut remarks = Vec::new();
+    if identified.is_one_way() {
+        remarks.push(ONE_WAY.to_owned());
+    }
     if matches!(form, Form::Found | Form::Network) {
         remarks.extend(turn.found.discovery.remarks.clone());
     }
@@ -270,7 +298,7 @@ fn soundness(
     violation: Violation,
 ) -> Soundness {
     if let Some(what) = violation.sentence() {
-        return Soundness::NotPhysical { what, withheld: violation.is_reversed() };
+        return Soundness::NotPhysical(what);
     }
     if let Some(name) = rigid::collinear(material) {
         return Soundness::NotIdentifiable(format!(

@@ -11,4 +11,5 @@ pub(crate) mod pattern_search;
 pub(crate) mod products;
 pub(crate) mod random;
 pub mod regression;
+pub(crate) mod resolution;
 pub(crate) mod statistics;

@@ -1,6 +1,7 @@
 //! Facts about clock, resolution and clipping of a recording. States them; judges nothing.
 
 use super::{Channel, Quantity};
+use crate::numerics::resolution::resolution_of_stretches;
 
 /// A step of the clock above this many periods is a gap.
 pub(super) const GAP_PERIODS: f64 = 3.5;
@@ -22,7 +23,7 @@ pub struct Health {
     pub interruptions: Vec<usize>,
     /// Rows whose standard channels other than time all equal those of the row before.
     pub repeated_rows: usize,
-    /// Smallest non-zero step of the position, rad or m.
+    /// Step of the encoder, rad or m; `None` where the position has no steps.
     pub position_resolution: Option<f64>,
     /// Rows in which the actuator stands exactly at its largest or smallest value, where that happens often.
     pub clipped_rows: usize,
@@ -38,7 +39,11 @@ impl Health {
         if let Some(time) = values(Quantity::Time) {
             health.take_clock(time);
         }
-        health.position_resolution = values(Quantity::Position).and_then(smallest_step);
+        health.position_resolution = values(Quantity::Position).and_then(|position| {
+            let ends = health.interruptions.iter().copied().chain([position.len()]);
+            let begins = [0].into_iter().chain(health.interruptions.iter().copied());
+            resolution_of_stretches(begins.zip(ends).map(|(begin, end)| &position[begin..end]))
+        });
         health.repeated_rows = repeated_rows(channels);
         let actuator = [Quantity::Torque, Quantity::Force, Quantity::Current].into_iter().find_map(values);
         health.clipped_rows = actuator.map_or(0, clipped_rows);
@@ -63,13 +68,6 @@ fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
-}
-
-/// Smallest non-zero difference of neighbours, above the rounding of the text.
-fn smallest_step(values: &[f64]) -> Option<f64> {
-    let largest = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
-    let rounding = 1e-12 * largest;
-    values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > rounding).min_by(f64::total_cmp)
 }
 
 fn repeated_rows(channels: &[Channel]) -> usize {

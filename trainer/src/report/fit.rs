@@ -40,7 +40,7 @@ fn summary(page: &mut Page, outcome: &Outcome, warnings: &[String]) {
     let mut notes: Vec<String> = warnings.iter().chain(&outcome.remarks).cloned().collect();
     match &outcome.sound {
         Soundness::Sound => {}
-        Soundness::NotIdentifiable(what) | Soundness::NotConverged(what) | Soundness::NotPhysical { what, .. } => {
+        Soundness::NotIdentifiable(what) | Soundness::NotConverged(what) | Soundness::NotPhysical(what) => {
             notes.insert(0, what.clone())
         }
     }

@@ -115,6 +115,16 @@ impl Preparation {
         self
     }
 
+    /// Noise of the velocity that passes the filter, rad/s or m/s, that of the motion being white: ||D F||^2 = period / (4 sqrt(pi) sigma^3)
+    /// beside ||D2 F||^2 where the velocity is derived, ||F||^2 = period / (2 sqrt(pi) sigma) beside ||D F||^2 where it was recorded.
+    pub(crate) fn velocity_noise(&self) -> f64 {
+        let orders: f64 = match self.velocity {
+            VelocitySource::Derived => 2.0 / 3.0,
+            VelocitySource::Recorded => 2.0,
+        };
+        self.acceleration_noise * orders.sqrt() * self.sigma_s.unwrap_or(0.0)
+    }
+
     /// Every how many periods a sample is kept.
     pub(super) fn stride(&self, period_s: f64) -> usize {
         self.rate_hz.map_or(1, |rate| (1.0 / (rate * period_s) + 0.01).floor().max(1.0) as usize)

@@ -120,6 +120,18 @@ fn a_joint_that_never_turns_round_is_told() {
     for plant in joints() {
         let fastest: f64 = plant.motion.iter().map(|[amplitude, frequency]| amplitude * frequency * TAU).sum();
         let forward = Plant { steady: 1.2 * fastest, ..plant };
-        assert_eq!(faults(forward.changed(|_, row| row)), [Fault::OneDirection]);
+        assert_eq!(faults(forward.changed(|_, row| row)), [Fault::OneDirection { forward: true }]);
+    }
+}
+
+#[test]
+fn a_position_whose_sign_is_read_as_a_digit_is_put_back() {
+    for plant in joints() {
+        let counts = |q: f64| (q / plant.step).round();
+        let coded = |n: f64| if n < 0.0 { 2f64.powi(23) - n } else { n };
+        let found = reviewed(plant.changed(|_, [t, q, v, u]| [t, coded(counts(q)) * plant.step, v, u]));
+        assert!(matches!(found.notes[..], [Note { fault: Fault::SignBit { .. }, .. }]), "{:?}", found.notes);
+        let position = found.recording.values(crate::recording::Quantity::Position).unwrap();
+        assert!(position.iter().zip(plant.rows()).all(|(found, row)| (found - row[1]).abs() < 0.1 * plant.step));
     }
 }

@@ -14,12 +14,24 @@ fn a_torque_that_was_not_measured_is_refused() {
     }
     // At one speed a constant torque may be right, and so may one level of friction.
     let steady = |row: usize, [t, ..]: plant::Row| [t, 0.5 * t + 1e-6 * (row % 3) as f64, 0.5, 2.0];
-    assert_eq!(faults(robot().changed(steady)), [Fault::OneDirection]);
+    assert_eq!(faults(robot().changed(steady)), [Fault::OneDirection { forward: true }]);
     let level = Plant { columns: ["time_s", "position_rad", "velocity_rad_s", "friction_torque_Nm"], ..robot() };
     assert_eq!(faults(level.changed(|_, [t, q, v, _]| [t, q, v, 2.0])), []);
     // A tiny torque is one.
     let tiny = robot().changed(|_, [t, q, v, u]| [t, q, v, 1e-9 * u]);
     assert_eq!(faults(tiny), []);
+}
+
+#[test]
+fn no_torque_is_one_where_a_known_inertia_coasts() {
+    let coasting = |_: usize, [t, ..]: plant::Row| [t, 8.0 * (1.0 - (-0.2 * t).exp()), 1.6 * (-0.2 * t).exp(), 0.0];
+    let joint = Joint::parse("[rigid_body]\ninertia_kgm2 = 0.05\ngravity_torque_Nm = 0.0\n").unwrap();
+    let found = review(robot().changed(coasting), &joint).unwrap().notes;
+    assert!(matches!(found[..], [Note { fault: Fault::OneDirection { forward: true }, .. }]), "{found:?}");
+    refused(robot().changed(coasting), &codes::NOT_MEASURED);
+    // At one speed it says nothing of friction.
+    let steady = |_: usize, [t, ..]: plant::Row| [t, 0.5 * t, 0.5, 0.0];
+    assert!(review(robot().changed(steady), &joint).is_err());
 }
 
 #[test]
@@ -47,7 +59,7 @@ fn a_joint_that_others_drive_is_not_accused() {
     // It is let down slowly and lifted fast by something else: it only ever brakes.
     let lowered = Plant { steady: 2.0, gravity: 0.0, ..plant.clone() };
     let found = faults(lowered.changed(|_, [t, q, v, u]| [t, q, v, u - 9.0]));
-    assert_eq!(found, [Fault::OneDirection]);
+    assert_eq!(found, [Fault::OneDirection { forward: true }]);
 }
 
 #[test]
@@ -110,4 +122,36 @@ fn a_drive_that_is_switched_off_is_believed() {
     let found = reviewed(plant.recording(&rows));
     let [note @ Note { fault: Fault::FrozenTorque { .. }, .. }] = &found.notes[..] else { panic!("{:?}", found.notes) };
     assert_when(note, &[[10.0, 14.0]]);
+}
+
+#[test]
+fn a_torque_without_its_sign_blocks_and_a_load_that_never_changes_its_own_does_not() {
+    for plant in joints() {
+        let found = faults(plant.changed(|_, [t, q, v, u]| [t, q, v, u.abs()]));
+        assert!(matches!(found[..], [Fault::LostSign { .. }]), "{found:?}");
+        let load = 3.0 * plant.rows().iter().fold(0.0_f64, |peak, row| peak.max(row[3].abs()));
+        assert_eq!(faults(plant.changed(|_, [t, q, v, u]| [t, q, v, u + load])), []);
+    }
+}
+
+#[test]
+fn negative_numbers_read_as_large_ones_are_put_back() {
+    for plant in joints() {
+        let step = plant.rows().iter().fold(0.0_f64, |peak, row| peak.max(row[3].abs())) / 2000.0;
+        let counts = |u: f64| (u / step).round();
+        let codings: [fn(f64) -> f64; 2] =
+            [|n| if n < 0.0 { 32768.0 - n } else { n }, |n| if n < 0.0 { 65536.0 + n } else { n }];
+        let right = plant.changed(|_, [t, q, v, u]| [t, q, v, counts(u) * step]);
+        let wanted = right.actuator().unwrap().values.clone();
+        for coding in codings {
+            let found = reviewed(plant.changed(|_, [t, q, v, u]| [t, q, v, coding(counts(u)) * step]));
+            let [Note { fault: Fault::SignBit { times, .. }, .. }] = &found.notes[..] else {
+                panic!("{:?}", found.notes)
+            };
+            let values = &found.recording.actuator().unwrap().values;
+            assert!(
+                *times > 5 && values.iter().zip(&wanted).all(|(found, wanted)| (found - wanted).abs() < 0.1 * step)
+            );
+        }
+    }
 }

@@ -32,7 +32,7 @@ pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: 
         "warnings": warnings.iter().map(Warning::to_json).collect::<Vec<_>>(),
         "sound": match &outcome.sound {
             Soundness::Sound => json!(true),
-            Soundness::NotIdentifiable(why) | Soundness::NotConverged(why) | Soundness::NotPhysical { what: why, .. } => json!({"why": why}),
+            Soundness::NotIdentifiable(why) | Soundness::NotConverged(why) | Soundness::NotPhysical(why) => json!({"why": why}),
         },
         "relevance": outcome.relevance.iter().map(|row| json!({
             "input": row.input, "correlation": row.correlation, "explained_variance": row.explained,

@@ -12,15 +12,15 @@ use crate::parameter::Parameter;
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;
 
-/// What `trainer fit` prints.
-pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], image: &Path, seconds: f64) -> String {
+/// What `trainer fit` prints; `image` is where it went, `None` where it was kept back.
+pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], image: Option<&Path>, seconds: f64) -> String {
     let mut text: String = warnings.iter().map(|warning| format!("warning     {warning}\n")).collect();
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, outcome, image, seconds);
     text
 }
 
-fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64) -> std::fmt::Result {
+fn write_summary(out: &mut String, outcome: &Outcome, image: Option<&Path>, seconds: f64) -> std::fmt::Result {
     let unit = outcome.unit;
     writeln!(out, "samples     {}", outcome.filter)?;
     writeln!(out, "\ninputs                 correlation  explained  beyond velocity")?;
@@ -56,7 +56,8 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
     for law in &outcome.classical {
         writeln!(out, "  {:<32} rmse {:>10} {unit}", law.name, significant(law.rmse, DIGITS))?;
     }
-    writeln!(out, "\nimage       {} of {} bytes: {}", image.display(), outcome.image.len(), outcome.choice)?;
+    let name = image.map_or_else(|| "not written,".to_owned(), |image| image.display().to_string());
+    writeln!(out, "\nimage       {name} of {} bytes: {}", outcome.image.len(), outcome.choice)?;
     for candidate in &outcome.candidates {
         let mark = if candidate.chosen { "chosen" } else { "" };
         writeln!(
@@ -90,9 +91,13 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: &Path, seconds: f64
 
 fn write_parameter(out: &mut String, parameter: &Parameter) -> std::fmt::Result {
     let [low, high] = parameter.ci95.map(|bound| significant(bound, DIGITS));
+    let interval = match parameter.ci95 {
+        [f64::NEG_INFINITY, f64::INFINITY] => "not told apart from others".to_owned(),
+        _ => format!("95 % in [{low}, {high}]"),
+    };
     writeln!(
         out,
-        "  {:<30} {:<6} {:>11} {:<10} 95 % in [{low}, {high}]",
+        "  {:<30} {:<6} {:>11} {:<10} {interval}",
         parameter.name,
         parameter.symbol,
         significant(parameter.value, DIGITS + 1),

@@ -5,7 +5,7 @@ use crate::diagnose::checks::unit_or_sign::{contradicting_velocity, wrong_sign_o
 use crate::diagnose::comparison::reference::{Comparison, Outside};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::statistics::quantile;
+use crate::numerics::statistics::{NORMAL_95, quantile};
 use crate::physics::EffectId;
 use crate::samples::spikes::{PRINTED, Spikes};
 
@@ -15,9 +15,9 @@ const CLIPPED_SHARE: f64 = 0.02;
 /// Step of the recorded torque over its 90 % quantile, above which it is noted. Chosen by judgement: a hundredth of the
 /// torque is a tenth of a friction that is a tenth of it.
 const NOTED_STEP_SHARE: f64 = 0.01;
-/// The same above which no effect is looked for: steps of a twentieth of the torque are half of a friction that is a
-/// tenth of it. Chosen by judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
-const BLOCKING_STEP_SHARE: f64 = 0.05;
+/// Error of a level of the torque over its 90 % quantile, above which no effect is looked for: a twentieth of the torque is half of a
+/// friction that is a tenth of it. Chosen by judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
+const BLOCKING_LEVEL_SHARE: f64 = 0.05;
 /// Cut-off that a coarse encoder has to leave, Hz; below it no effect is looked for. Chosen by judgement: a reversal at half a hertz
 /// still passes, with its harmonics; joints of MuJoCo behind encoders of 12 to 14 bits are answered rightly from 7 Hz on.
 const LEAST_BAND_HZ: f64 = 6.0;
@@ -42,9 +42,9 @@ impl AsRecorded {
         Self { notes: replaced.chain(clipped_torque(signals, step)).collect(), step }
     }
 
-    /// The notes on it, beside a base that leaves some of it (root mean square).
-    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
-        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base)))
+    /// The notes on it.
+    pub fn notes(&self) -> impl Iterator<Item = HealthNote> {
+        self.notes.iter().cloned().chain(self.step.and_then(coarse_torque))
     }
 }
 
@@ -80,12 +80,14 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
-/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
-/// error is as large as all that the base leaves.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
-    (share > NOTED_STEP_SHARE).then(|| HealthNote {
+/// Torque steps of more than the noise. Each time that the torque passes from one to the next its error is another one, of a variance of
+/// a twelfth of the step's square, as if it were noise (Widrow & Kollar 2008): a level of the torque is known the better the more often that
+/// happens, and only a torque that stays on few steps hides it.
+fn coarse_torque(TorqueStep { step, share, passed }: TorqueStep) -> Option<HealthNote> {
+    let error_of_level = NORMAL_95 * share / (12.0 * passed as f64).sqrt();
+    (share > NOTED_STEP_SHARE).then_some(HealthNote {
         effect: EffectId::Quantisation,
-        blocking: share > BLOCKING_STEP_SHARE || step / 12f64.sqrt() >= left_by_base,
+        blocking: error_of_level > BLOCKING_LEVEL_SHARE,
         observation: Observation::CoarseTorque { step },
     })
 }
@@ -95,6 +97,8 @@ fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> O
 struct TorqueStep {
     step: f64,
     share: f64,
+    /// How often the torque passes from one step to the next.
+    passed: usize,
 }
 
 /// The step in which the torque is recorded, where most of its changes are a single one.
@@ -108,7 +112,11 @@ fn torque_step(signals: &Signals) -> Option<TorqueStep> {
     let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * NOTED_STEP_SHARE * usual).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
-    (steps.len() > LEAST_TORQUE_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
+    (steps.len() > LEAST_TORQUE_CHANGES && is_single).then_some(TorqueStep {
+        step: smallest,
+        share: smallest / usual,
+        passed: steps.len(),
+    })
 }
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.
@@ -170,19 +178,10 @@ mod tests {
 
     #[test]
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
-        let blocking = |largest: f64| {
-            torque_step(&in_steps(largest, largest))
-                .and_then(|step| coarse_torque(step, f64::INFINITY))
-                .map(|note| note.blocking)
-        };
-        assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
-    }
-
-    #[test]
-    fn fine_steps_block_where_they_are_all_that_is_left() {
-        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0));
-        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
-        assert!(blocks(0.25) && !blocks(0.35));
+        let blocking =
+            |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
+        let found = [1.0, 5.0, 40.0, 400.0].map(blocking);
+        assert_eq!(found, [Some(true), Some(false), Some(false), None]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::fit::data::gather::Material;
 use crate::fit::model::HostModel;
 use crate::fit::predict::predict;
 use crate::numerics::regression::least_squares;
-use crate::numerics::statistics::mean;
+use crate::numerics::statistics::{NORMAL_95, mean};
 use crate::samples::blocks::Split;
 
 /// Blocks from which on their scatter is an error to go by.
@@ -27,7 +27,12 @@ pub(in crate::fit) struct Trial {
 impl Trial {
     /// Adds a model that was fitted without the locked blocks of `split`; where none is locked, all rows count.
     pub(in crate::fit) fn add(&mut self, model: &HostModel, material: &Material, split: &Split) -> Result<()> {
-        let predicted = predict(model, &material.samples)?.total();
+        self.add_predicted(&predict(model, &material.samples)?.total(), material, split);
+        Ok(())
+    }
+
+    /// Adds what was predicted of every sample without the locked blocks of `split`.
+    pub(in crate::fit) fn add_predicted(&mut self, predicted: &[f64], material: &Material, split: &Split) {
         let samples = &material.samples;
         let recorded = samples.recorded.as_deref().unwrap_or_default();
         let filtered = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
@@ -39,7 +44,12 @@ impl Trial {
             self.recorded.push((recorded[row] - predicted[row]).powi(2));
             self.labels.push(material.labels[position]);
         }
-        Ok(())
+    }
+
+    /// Whether `other` leaves less of the filtered torque, with 97.5 %.
+    pub(in crate::fit) fn is_clearly_beaten_by(&self, other: &Self) -> bool {
+        let [gain, _] = self.gains_of(other);
+        gain.mean > NORMAL_95 * gain.error
     }
 
     /// On the torque as recorded.

@@ -46,7 +46,7 @@ impl Violation {
 
     /// Whether the model is that of a torque of the wrong sign: friction feeds the joint, and its inertia, where one was
     /// identified, is negative too.
-    pub(in crate::fit) fn is_reversed(self) -> bool {
+    fn is_reversed(self) -> bool {
         self.feeds && (self.inertia.is_some() || !self.identified)
     }
 

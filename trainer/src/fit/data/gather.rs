@@ -48,6 +48,10 @@ pub(in crate::fit) struct Material {
     pub(in crate::fit) labels: Vec<usize>,
     /// Noise of the acceleration in the samples, rad/s2 or m/s2.
     pub(in crate::fit) acceleration_noise: f64,
+    /// Noise of the velocity in the samples, rad/s or m/s.
+    pub(in crate::fit) velocity_noise: f64,
+    /// Standard deviation of the filter, s; `None` where there is none.
+    pub(in crate::fit) sigma_s: Option<f64>,
     /// Time by which the torque was recorded late, s, negative where early; it is put back in the samples.
     pub(in crate::fit) torque_delay_s: f64,
     /// Why nothing can be locked; `None` where something is.
@@ -112,6 +116,8 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         turns,
         labels,
         acceleration_noise,
+        velocity_noise: preparation.velocity_noise(),
+        sigma_s: preparation.sigma_s,
         torque_delay_s: preparation.torque_delay_s,
         repeats,
     })

@@ -84,7 +84,17 @@ fn fault(fault: &Fault, name: &str, units: Units) -> String {
             };
             format!("the recorded velocity {how}: it was left out and the position differentiated")
         }
-        Fault::OneDirection => {
+        Fault::LostSign { left } => format!(
+            "the {name} was recorded without its sign: it is never below zero, and a law leaves only {} of it once each row has the sign \
+             that the motion asks for",
+            digits(*left)
+        ),
+        Fault::SignBit { channel, offset, times } => format!(
+            "negative numbers of the {channel} are {} too large ({times} jumps across zero), as where the sign is read as a digit: they \
+             were put back",
+            digits(*offset)
+        ),
+        Fault::OneDirection { .. } => {
             format!("the joint moves in one direction only: friction cannot be separated from an offset of the {name}")
         }
         Fault::NearlyNamed { column, known } => {
@@ -97,8 +107,8 @@ fn fault(fault: &Fault, name: &str, units: Units) -> String {
 mod tests {
     use super::*;
     use crate::checks::Fault::{
-        ContradictingVelocity, FrozenTorque, HeldSamples, OneDirection, RepeatedRows, RepeatedStamps, RezeroedPosition,
-        TurnedTorque, WrappedPosition, WrongSign,
+        ContradictingVelocity, FrozenTorque, HeldSamples, LostSign, OneDirection, RepeatedRows, RepeatedStamps,
+        RezeroedPosition, SignBit, TurnedTorque, WrappedPosition, WrongSign,
     };
 
     #[test]
@@ -124,7 +134,9 @@ mod tests {
             (ContradictingVelocity(Contradiction::Late(-0.03)), "velocity comes 0.03 s before"),
             (ContradictingVelocity(Contradiction::Scaled(50.0)), "velocity is 50 times"),
             (ContradictingVelocity(Contradiction::Unrelated(0.1)), "(correlation 0.1)"),
-            (OneDirection, "one direction only"),
+            (LostSign { left: 0.05 }, "leaves only 0.05 of it"),
+            (SignBit { channel: "torque".into(), offset: 164.0, times: 7 }, "164 too large (7 jumps"),
+            (OneDirection { forward: true }, "one direction only"),
             (
                 Fault::NearlyNamed { column: "postion_rad".into(), known: "position_rad".into() },
                 "did you mean position_rad?",

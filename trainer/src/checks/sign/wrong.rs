@@ -7,10 +7,10 @@
 //! viscous. Beside another joint that is recorded the inertia is no witness, and Coulomb friction has to be a larger part: that joint may
 //! drive this one.
 
-use super::direction::lesser_share;
-use super::law::Law;
-use super::motion::{smooth, torque};
-use super::note::{Fault, Note};
+use super::one_way::lesser_share;
+use crate::checks::law::Law;
+use crate::checks::motion::{smooth, torque};
+use crate::checks::note::{Fault, Note};
 use crate::joint::Joint;
 use crate::numerics::statistics::{mean, root_mean_square};
 use crate::recording::Recording;
@@ -30,7 +30,7 @@ const LEAST_INERTIA_SHARE: f64 = 0.1;
 const LEAST_RETURN: f64 = 0.05;
 
 /// Notes a torque of the wrong sign.
-pub(super) fn wrong_sign(recording: &Recording, joint: &Joint) -> Option<Note> {
+pub(in crate::checks) fn wrong_sign(recording: &Recording, joint: &Joint) -> Option<Note> {
     let samples = smooth(recording, VelocitySource::Derived)?;
     let law = Law::of(&samples)?;
     let (velocity, torque) = (samples.velocity.as_deref()?, torque(&samples)?);

@@ -1,9 +1,9 @@
 //! A torque whose sign was turned for a while: one law describes all of it once that stretch is turned back.
 
-use super::law::{Law, moving};
-use super::motion::{smooth, top_speed, torque};
-use super::note::{Fault, Note};
-use super::steps::{others, stretches};
+use crate::checks::law::{Law, moving};
+use crate::checks::motion::{smooth, top_speed, torque};
+use crate::checks::note::{Fault, Note};
+use crate::checks::rows::{others, stretches};
 use crate::numerics::products::{dot, norm};
 use crate::numerics::statistics::mean;
 use crate::recording::{Omission, Quantity, Recording};
@@ -28,7 +28,7 @@ const UNSUSPICIOUS: f64 = 0.005;
 const MOST_OF_ALL: f64 = 0.5;
 
 /// The recording without the rows whose torque is turned.
-pub(super) fn without_turned_torque(recording: &Recording) -> Option<(Option<Recording>, Note)> {
+pub(in crate::checks) fn without_turned_torque(recording: &Recording) -> Option<(Option<Recording>, Note)> {
     let time = recording.values(Quantity::Time)?;
     let [from, to] = turned_stretch(recording)?;
     let rows: Vec<usize> = (0..time.len()).filter(|row| (from..=to).contains(&time[*row])).collect();

@@ -1,0 +1,93 @@
+//! Before an image: whether the motion tells the constants of friction apart, and whether the law is worth anything on rows that it has
+//! not seen. Knows the material and the errors of a law, not the law.
+
+pub(super) mod confounded;
+pub(super) mod worth;
+
+use super::choice::choose::Trial;
+use super::data::gather::{Material, gather};
+use super::options::Options;
+use super::outcome::Soundness;
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::parameter::Parameter;
+use crate::recording::Recording;
+use confounded::{Constant, Identified};
+use worth::worthless;
+
+/// What is fixed where a joint goes one way only.
+pub(super) const ONE_WAY: &str = "In one direction friction and offset are one constant: the offset is fixed at 0, and the law holds in \
+                                  the direction that was recorded.";
+
+/// What recordings of one joint can tell of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Identifiable {
+    /// Constants of the simple law, then effects that a recording may show, with the share of the friction (root mean square) from which on they show;
+    /// one and above where nothing can be said of them.
+    pub shares: Vec<(String, f64)>,
+    /// What has to be recorded for those of which nothing can be said, each once.
+    pub record_next: Vec<&'static str>,
+}
+
+/// Looks at the motion of recordings, and at what the simple law leaves of their torque.
+///
+/// # Errors
+/// As [`fit`](super::fit), where nothing can be learnt at all.
+pub fn identifiable(recordings: &[Recording], joint: &Joint) -> Result<Identifiable> {
+    let material = gather(recordings, joint, &Options::default())?;
+    let identified = Identified::by(&material);
+    let unknown = identified.unknown();
+    // What makes up for Coulomb friction says what has to be recorded.
+    let own = unknown.iter().filter(|constant| unknown.len() == 1 || **constant != Constant::Coulomb);
+    let mut record_next: Vec<&str> = own.map(|constant| constant.asks_for()).collect();
+    let mut shares: Vec<(String, f64)> =
+        identified.constants.iter().map(|(constant, share)| (constant.to_string(), *share)).collect();
+    for (effect, share) in confounded::effects(&material) {
+        record_next.extend((share >= 1.0).then(|| effect.asks_for()));
+        shares.push((effect.to_string(), share));
+    }
+    let mut seen = Vec::new();
+    record_next.retain(|text| {
+        let is_new = !seen.contains(text);
+        seen.push(*text);
+        is_new
+    });
+    Ok(Identifiable { shares, record_next })
+}
+
+/// What keeps a law that converged from going into an image.
+pub(super) fn withheld(
+    material: &Material,
+    identified: &Identified,
+    trial: Option<&Trial>,
+    parameters: &[Parameter],
+    uncertain_share: f64,
+) -> Soundness {
+    let of_friction = [Constant::Coulomb, Constant::Viscous];
+    let is_negative = |p: &&Parameter| p.ci95[1] < 0.0 && of_friction.iter().any(|constant| constant.is_named(&p.name));
+    if let Some(Parameter { name, value, unit, .. }) = parameters.iter().find(is_negative) {
+        return Soundness::NotPhysical(format!(
+            "the {name} is negative ({value:.3e} {unit}): the torque is late, a column is not what it is taken for, or something else acts on the \
+             joint"
+        ));
+    }
+    if let Some(why) = trial.and_then(|trial| worthless(material, trial)) {
+        return Soundness::NotIdentifiable(why.to_owned());
+    }
+    let unknown = identified.unknown();
+    if let Some(first) =
+        unknown.iter().rev().find(|constant| of_friction.contains(constant)).filter(|_| !identified.is_one_way())
+    {
+        let names: Vec<String> = unknown.iter().map(ToString::to_string).collect();
+        return Soundness::NotIdentifiable(format!(
+            "this motion does not tell {} apart: each may be nothing or all of the friction; record {}",
+            names.join(" and "),
+            first.asks_for()
+        ));
+    }
+    if uncertain_share >= 1.0 {
+        let why = "by its 95 % band the friction may be nothing at any speed, so that its gain is 0; record it sliding, both ways, for longer";
+        return Soundness::NotIdentifiable(why.to_owned());
+    }
+    Soundness::Sound
+}
