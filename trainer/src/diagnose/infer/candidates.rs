@@ -20,6 +20,23 @@ const EXPECTED_SHARE: f64 = 0.3;
 /// from a broad function to a narrow feature (Matern 3/2; Solin and Sarkka 2020).
 const LENGTH_SCALES: [(f64, f64); 3] = [(0.5, 20.0), (0.2, 200.0), (0.08, 2000.0)];
 
+/// Relaxation times of a solver's friction beside that of the simulation, as ratios: how far ahead of the velocity friction turns over
+/// depends on inertia, friction level and load, in which recording and simulation differ.
+const RELAXATION_RATIOS: [f64; 3] = [0.5, 1.0, 2.0];
+/// By how much the friction that turns over at one of these times may differ between recording and simulation, over all of it: their
+/// inertias and levels are within some per cent of each other once the simulation is fitted to the joint.
+const RELAXATION_CHANGE: f64 = 0.05;
+
+/// Filtered columns of friction that turns over at another instant than the simulation's; none where that turns over with the velocity.
+fn relaxations_of(real: &Side) -> Vec<Vec<f64>> {
+    let state = &real.prepared.state;
+    if state.sign_lead_s == 0.0 {
+        return Vec::new();
+    }
+    let column = |ratio: f64| relaxation::column(state, state.sign_velocity, ratio * state.sign_lead_s);
+    real.prepared.filtered_all(&RELAXATION_RATIOS.map(column))
+}
+
 /// A shape of a candidate: its columns among all, and the relative prior variance of each.
 #[derive(Clone, Debug)]
 pub(crate) struct Shaped {
@@ -56,13 +73,24 @@ pub(crate) struct Candidates {
     pub simulated: Vec<Vec<f64>>,
     /// Columns of what a solver of constraints does near rest: of no candidate, but in every simulation that has it.
     solver: Range<usize>,
+    /// The same of the recording alone, where it is the simulated recording of another solver or state.
+    solver_of_recording: Range<usize>,
+    /// Root mean square of each of these for a unit of Coulomb friction.
+    solver_sizes: Vec<f64>,
 }
 
 impl Candidates {
     /// Builds what the recording can show.
     pub fn new(hypotheses: &[Box<dyn Hypothesis + Send>], real: &Side, simulated: Option<&Side>) -> Self {
         let state = &real.prepared.state;
-        let mut candidates = Self { entries: Vec::new(), real: Vec::new(), simulated: Vec::new(), solver: 0..0 };
+        let mut candidates = Self {
+            entries: Vec::new(),
+            real: Vec::new(),
+            simulated: Vec::new(),
+            solver: 0..0,
+            solver_of_recording: 0..0,
+            solver_sizes: Vec::new(),
+        };
         if simulated.is_some() {
             let lead = |side: &Side| {
                 let state = &side.prepared.state;
@@ -71,6 +99,10 @@ impl Candidates {
             };
             candidates.solver =
                 candidates.add_columns(real, simulated, lead(real), simulated.map(lead).unwrap_or_default());
+            let of_recording = relaxations_of(real);
+            let size = |column: &Vec<f64>| root_mean_square(&real.on_rows(column));
+            candidates.solver_sizes = of_recording.iter().map(size).collect();
+            candidates.solver_of_recording = candidates.add_columns(real, simulated, of_recording, Vec::new());
         }
         // A delay of the torque shifts every column: it is a parameter of the whole model.
         for hypothesis in hypotheses.iter().filter(|h| h.id() != EffectId::TimeMisalignment) {
@@ -232,9 +264,19 @@ impl Candidates {
 
     /// The candidates with some of their shapes (places of candidate and shape) alone; unnamed functions keep theirs.
     pub fn only(&self, keep: impl Fn(Member) -> bool) -> Self {
-        let mut kept = Self { entries: Vec::new(), real: Vec::new(), simulated: Vec::new(), solver: 0..0 };
+        let mut kept = Self {
+            entries: Vec::new(),
+            real: Vec::new(),
+            simulated: Vec::new(),
+            solver: 0..0,
+            solver_of_recording: 0..0,
+            solver_sizes: Vec::new(),
+        };
         let mut moved: BTreeMap<usize, usize> = BTreeMap::new();
         let mut take = |kept: &mut Self, columns: &Range<usize>| {
+            if columns.is_empty() {
+                return 0..0;
+            }
             let begin = *moved.entry(columns.start).or_insert_with(|| {
                 let begin = kept.real.len();
                 kept.real.extend_from_slice(&self.real[columns.clone()]);
@@ -246,6 +288,8 @@ impl Candidates {
             begin..begin + columns.len()
         };
         kept.solver = take(&mut kept, &self.solver);
+        kept.solver_of_recording = take(&mut kept, &self.solver_of_recording);
+        kept.solver_sizes.clone_from(&self.solver_sizes);
         for (candidate, entry) in self.entries.iter().enumerate() {
             let stays = |variant: usize| entry.is_function() || keep(Member { candidate, variant });
             let shapes = entry.shapes.iter().enumerate().filter(|(variant, _)| stays(*variant));
@@ -264,6 +308,9 @@ impl Candidates {
         places.extend(self.solver.clone());
         let even = vec![1.0; self.solver.len()];
         precision.extend(Self::variance(friction, &even).into_iter().map(f64::recip));
+        places.extend(self.solver_of_recording.clone());
+        let of_recording = |size: &f64| (RELAXATION_CHANGE * friction * size).powi(2).max(f64::MIN_POSITIVE).recip();
+        precision.extend(self.solver_sizes.iter().map(of_recording));
         for member in shown {
             let shaped = &self.entries[member.candidate].shapes[member.variant];
             let variance = Self::variance(friction, &shaped.relative_variance);

@@ -1,7 +1,6 @@
 //! One side of a comparison: a prepared recording or simulation, its base, and columns on its rows.
 
 use crate::diagnose::comparison::base::{Base, Delay};
-use crate::diagnose::comparison::relaxation;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
@@ -42,8 +41,7 @@ impl<'a> Side<'a> {
         Self::of_open_rows(prepared, base, columns)
     }
 
-    fn of_open_rows(prepared: &'a Prepared, base: &Base, mut columns: Vec<Vec<f64>>) -> Self {
-        columns.extend(of_solver(prepared));
+    fn of_open_rows(prepared: &'a Prepared, base: &Base, columns: Vec<Vec<f64>>) -> Self {
         let (runs, features) = (prepared.open_runs(), noise_features(prepared));
         Self { runs, features, columns, target: base.target.clone(), prepared }
     }
@@ -86,19 +84,4 @@ impl<'a> Side<'a> {
         };
         lengths.map(place).collect()
     }
-}
-
-/// Relaxation times of a solver's friction beside that of the simulation, as ratios: how far ahead of the velocity friction turns over
-/// depends on inertia, friction level and load, in which recording and simulation differ.
-const RELAXATION_RATIOS: [f64; 3] = [0.5, 1.0, 2.0];
-
-/// Filtered columns of what the friction of a solver of constraints may turn over at another instant than the simulation's; none where
-/// friction turns over with the velocity.
-fn of_solver(prepared: &Prepared) -> Vec<Vec<f64>> {
-    let state = &prepared.state;
-    if state.sign_lead_s == 0.0 {
-        return Vec::new();
-    }
-    let column = |ratio: f64| relaxation::column(state, state.sign_velocity, ratio * state.sign_lead_s);
-    prepared.filtered_all(&RELAXATION_RATIOS.map(column))
 }
