@@ -17,6 +17,8 @@ const MOST_STEPS: usize = 40;
 const LEAST_GAIN: f64 = 1e-4;
 /// Step of the central differences as a share of the size of a constant.
 const DIFFERENCE: f64 = 1e-3;
+/// The same of the delay, s: commands are held from sample to sample, and a shorter one may change nothing.
+const DELAY_DIFFERENCE_S: f64 = 2e-3;
 /// Errors of the position count less than squared from this many deviations on: a joint that sticks elsewhere is no noise.
 const ROBUST_DEVIATIONS: f64 = 1.5;
 /// Errors of the position within this time tell the same, s: from the decay of a joint's own motion.
@@ -236,7 +238,8 @@ fn slopes(
 ) -> Result<Vec<Vec<f64>>> {
     let slope = |constant: &Moved| {
         let value = candidate.value(constant.what);
-        let step = DIFFERENCE * constant.scale;
+        let is_delay = constant.what == What::Delay;
+        let step = if is_delay { DELAY_DIFFERENCE_S } else { DIFFERENCE * constant.scale };
         let (low, high) = ((value - step).max(constant.low), (value + step).min(constant.high));
         let (below, above) =
             (errors(&candidate.with(constant.what, low))?, errors(&candidate.with(constant.what, high))?);
@@ -267,9 +270,13 @@ fn half_widths(normal: &DMatrix<f64>, moved: &[Moved], left: &[f64], commanded: 
     let period = commanded.first().and_then(|one| one.recording.health.period_s).unwrap_or(CORRELATION_S);
     let variance =
         left.iter().map(|x| x * x).sum::<f64>() / left.len().max(1) as f64 * (CORRELATION_S / period).max(1.0);
-    let covariance = normal.clone().try_inverse();
+    // What changes nothing takes no part and is not determined.
+    let told: Vec<usize> = (0..moved.len()).filter(|&index| normal[(index, index)] > 0.0).collect();
+    let covariance = normal.select_rows(&told).select_columns(&told).try_inverse();
     let of = |(index, constant): (usize, &Moved)| {
-        let own = covariance.as_ref().map_or(f64::INFINITY, |covariance| covariance[(index, index)].abs());
+        let place = told.iter().position(|told| *told == index);
+        let own = covariance.as_ref().zip(place);
+        let own = own.map_or(f64::INFINITY, |(covariance, place)| covariance[(place, place)].abs());
         (constant.what, NORMAL_95 * constant.scale * (variance * own).sqrt())
     };
     moved.iter().enumerate().map(of).collect()
