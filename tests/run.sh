@@ -6,3 +6,4 @@ cd "$(dirname "$0")/.."
 tests/setup.sh
 cargo nextest run --workspace "$@"
 cargo test --workspace --doc
+tests/python.sh

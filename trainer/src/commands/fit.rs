@@ -1,22 +1,18 @@
 //! `trainer fit`: recordings in, a friction image out.
 
-mod json;
-mod text;
-
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::measurement::{self, Warning, load_all};
-use super::output::{Outputs, print};
+use super::measurement::{self, Source, profile};
+use super::output::{Outputs, print, refuse_unwritable, say};
 use super::progress::Reporter;
-use crate::commands::measurement::profile;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
-use crate::fit::outcome::{Representation, Soundness};
-use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
+use crate::fit::outcome::Representation;
+use crate::fit::{Budget, Options, Progress, Training};
 use crate::kan::{Architecture, Sparsity};
+use crate::workflow::fit::{Fitted, fit};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]
@@ -129,15 +125,14 @@ pub enum Form {
 /// # Errors
 /// As [`fit()`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Fit) -> Result<u8> {
-    let start = Instant::now();
     if let Some(rate) = arguments.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
         let message = "`--rate` has to be a finite number above zero";
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
+    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint).map(PathBuf::as_path);
+    let written = [Some(&arguments.output), arguments.json.as_ref(), arguments.report.as_ref()];
+    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
-    let (recordings, mut warnings) = load_all(&arguments.recordings, |path| measurement::load(path, &joint))?;
-    let (tests, of_tests) = load_all(&arguments.tests, |path| measurement::load(path, &joint))?;
-    warnings.extend(of_tests);
     let options = Options {
         seed: arguments.seed,
         inputs: arguments.inputs.clone(),
@@ -154,27 +149,27 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);
-    let outcome = in_pool(arguments.threads, || {
+    let [recordings, tests] =
+        [&arguments.recordings, &arguments.tests].map(|paths| paths.iter().map(Source::from).collect::<Vec<_>>());
+    let fitted = in_pool(arguments.threads, || {
         fit(&recordings, &tests, &joint, &options, &|progress| reporter.say(&line(progress)))
     })??;
     drop(reporter);
-    write(arguments, &outcome, &warnings, start.elapsed().as_secs_f64())?;
-    Ok(match &outcome.sound {
-        Soundness::Sound => 0,
-        Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
-        Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
-        Soundness::NotPhysical { what, withheld } => {
-            let error = Error::new(&codes::NOT_PHYSICAL, what.clone());
-            // That there is no image is no message but the result.
-            if *withheld && !arguments.force && arguments.quiet {
-                eprintln!("{error}");
-            }
-            unsound(arguments, &error)
-        }
-    })
+    let withheld = fitted.is_withheld() && !arguments.force;
+    write(arguments, &fitted, withheld)?;
+    let Some(doubt) = fitted.doubt() else { return Ok(0) };
+    // That there is no image is no message but the result.
+    if withheld || !arguments.quiet {
+        say(&doubt.to_string());
+    }
+    Ok(doubt.exit_status())
 }
 
-fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
+/// Does the work on so many threads; on all where no number is given.
+///
+/// # Errors
+/// `FRK-I001` where the threads cannot be started.
+pub(super) fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Error::new(&codes::INPUT_OUTPUT, error.to_string()))?;
     Ok(pool.install(work))
@@ -188,32 +183,21 @@ fn line(progress: &Progress) -> String {
     }
 }
 
-fn write(arguments: &Fit, outcome: &Outcome, warnings: &[Warning], seconds: f64) -> Result<()> {
+fn write(arguments: &Fit, fitted: &Fitted, withheld: bool) -> Result<()> {
     let mut outputs = Outputs::default();
-    let withheld = matches!(outcome.sound, Soundness::NotPhysical { withheld: true, .. }) && !arguments.force;
     if !withheld {
-        outputs.add(&arguments.output, outcome.image.clone());
+        outputs.add(&arguments.output, fitted.outcome.image.clone());
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", json::summary(outcome, warnings, seconds)));
+        outputs.add(path, format!("{}\n", fitted.json()));
     }
     if let Some(path) = &arguments.report {
-        let told: Vec<String> = warnings.iter().map(|warning| format!("{warning}.")).collect();
-        outputs.add(path, crate::report::fit(outcome, &told));
+        outputs.add(path, fitted.report());
     }
-    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);
-    outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;
     // With JSON on standard output the text would get in its way.
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
-    print(&text::summary(outcome, warnings, &arguments.output, seconds))
-}
-
-fn unsound(arguments: &Fit, error: &Error) -> u8 {
-    if !arguments.quiet {
-        eprintln!("{error}");
-    }
-    error.exit_status()
+    print(&fitted.text(&arguments.output))
 }
