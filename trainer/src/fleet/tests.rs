@@ -81,7 +81,7 @@ fn healthy_fleets_of_any_size_raise_no_more_alarms_than_stated() {
 #[test]
 fn siblings_are_weighted_by_what_is_known_of_each() {
     let mut draws = ChaCha8Rng::seed_from_u64(3);
-    let errors = |index: usize| if index % 2 == 0 { 0.1 } else { 2.0 };
+    let errors = |index: usize| if index.is_multiple_of(2) { 0.1 } else { 2.0 };
     let estimates: Vec<Estimate> = (0..2000)
         .map(|index| Estimate {
             value: 5.0 + 0.5 * normal(&mut draws) + errors(index) * normal(&mut draws),
