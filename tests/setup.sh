@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need and is missing: Rust's cross targets, the emulators, a C compiler for the target,
-# cargo-nextest, robot simulators. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
+# cargo-nextest, robot simulators, what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
 set -euo pipefail
 
 readonly targets=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf
@@ -92,24 +92,24 @@ test_runner() {
     say "$(cargo nextest --version | head -n 1)"
 }
 
-# Robot simulators from PyPI, in an environment of their own. Their tests are skipped where there is no network.
-simulators() {
-    local folder requirements python
-    folder=$(cd "$(dirname "$0")" && pwd)
-    requirements="$folder/simulators/requirements.txt"
-    python="$folder/../target/simulators/bin/python"
-    if [ -x "$python" ] && cmp -s "$requirements" "$folder/../target/simulators/installed.txt"; then
-        say "the simulators are there"
+# Python packages of a list, in the environment target/NAME of their own. What needs them is skipped where there is no network.
+python_environment() {
+    local name=$1 requirements=$2 folder
+    folder=$(cd "$(dirname "$0")/.." && pwd)
+    requirements="$folder/$requirements"
+    local python="$folder/target/$name/bin/python"
+    if [ -x "$python" ] && cmp -s "$requirements" "$folder/target/$name/installed.txt"; then
+        say "target/$name is there"
         return
     fi
     python3 -c 'import ensurepip' 2>/dev/null || install_packages python3-venv || fail "Python's venv cannot be installed"
-    say "pip install -r tests/simulators/requirements.txt"
-    python3 -m venv "$folder/../target/simulators"
+    say "pip install -r ${requirements#"$folder"/}"
+    python3 -m venv "$folder/target/$name"
     if "$python" -m pip install --quiet --disable-pip-version-check -r "$requirements"; then
-        cp "$requirements" "$folder/../target/simulators/installed.txt"
+        cp "$requirements" "$folder/target/$name/installed.txt"
     else
-        say "PyPI cannot be reached: the tests with simulators will be skipped"
-        rm -rf "$folder/../target/simulators"
+        say "PyPI cannot be reached: the tests with target/$name will be skipped"
+        rm -rf "$folder/target/$name"
     fi
 }
 
@@ -117,4 +117,6 @@ cross_targets
 emulators
 c_compiler
 test_runner
-simulators
+# Robot simulators, and what builds and tests the Python package.
+python_environment simulators tests/simulators/requirements.txt
+python_environment python trainer/python/requirements.txt

@@ -6,18 +6,31 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result, codes};
 
-/// Writes `bytes` to `path` by way of a temporary file in the same folder and a rename, so that a reader
-/// sees the old file or the whole new one.
+/// Refuses a path at which no file can be written.
 ///
 /// # Errors
-/// `FRK-I002` when the folder does not exist, `FRK-I003` when `path` is a folder, `FRK-I001` otherwise. The
-/// temporary file is removed.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+/// `FRK-I002` when its folder does not exist, `FRK-I003` when it is a folder itself.
+pub fn refuse_place(path: &Path) -> Result<()> {
     if path.is_dir() {
         return Err(
             Error::new(&codes::IS_A_DIRECTORY, "cannot write a file over a folder").in_file(path.display().to_string())
         );
     }
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    if folder.is_some_and(|folder| !folder.is_dir()) {
+        let error = Error::new(&codes::FILE_NOT_FOUND, "the folder for this file does not exist");
+        return Err(error.in_file(path.display().to_string()));
+    }
+    Ok(())
+}
+
+/// Writes `bytes` to `path` by way of a temporary file in the same folder and a rename, so that a reader
+/// sees the old file or the whole new one.
+///
+/// # Errors
+/// As [`refuse_place`], `FRK-I001` otherwise. The temporary file is removed.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    refuse_place(path)?;
     // A device or pipe (/dev/stdout, /dev/null) is written to, not replaced.
     if path.exists() && !path.is_file() {
         return fs::write(path, bytes).map_err(|error| Error::from_io(path, &error));
@@ -42,9 +55,7 @@ pub fn write_together(files: &[(&Path, &[u8])]) -> Result<()> {
     }
     let mut staged: Vec<(PathBuf, &Path)> = Vec::new();
     let outcome = files.iter().try_for_each(|(path, bytes)| {
-        if path.is_dir() {
-            return write_whole(path, bytes);
-        }
+        refuse_place(path)?;
         let temporary = temporary_beside(path)?;
         staged.push((temporary.clone(), path));
         write_and_sync(&temporary, bytes).map_err(|error| Error::from_io(path, &error))

@@ -2,8 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
-use frikan_trainer::commands::output::print;
+use clap::{CommandFactory, Parser, Subcommand};
+use frikan_trainer::commands::fleet::{gather, plan, run as run_task};
+use frikan_trainer::commands::output::{print, say};
+use frikan_trainer::commands::terminal::shell;
 use frikan_trainer::commands::{
     check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
 };
@@ -11,7 +13,7 @@ use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
 ///
-/// Exit status: 0 fine, 1 `diagnose`, `verify` or `show --compare` found something, 2 usage, 3 bad input data, 4 fitted but not
+/// Exit status: 0 fine, 1 `diagnose`, `verify`, `gather` or `show --compare` found something, 2 usage, 3 bad input data, 4 fitted but not
 /// identifiable or not converged, 5 input or output.
 #[derive(Parser)]
 #[command(name = "trainer", version, arg_required_else_help = true)]
@@ -33,7 +35,12 @@ enum Command {
     Diagnose(diagnose::Diagnose),
     Simulate(simulate::Simulate),
     Loop(closed_loop::Loop),
+    Plan(plan::Plan),
+    Run(run_task::Run),
+    Gather(gather::Gather),
     Explain(explain::Explain),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 fn run(command: &Command) -> Result<u8> {
@@ -49,6 +56,11 @@ fn run(command: &Command) -> Result<u8> {
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments).map(|()| 0),
         Command::Loop(arguments) => closed_loop::run(arguments).map(|()| 0),
+        Command::Plan(arguments) => plan::run(arguments).map(|()| 0),
+        Command::Run(arguments) => run_task::run(arguments),
+        Command::Gather(arguments) => gather::run(arguments),
+        Command::Completions(arguments) => shell::completions(arguments, Trainer::command()).map(|()| 0),
+        Command::Man(arguments) => shell::man(arguments, Trainer::command()).map(|()| 0),
         Command::Explain(arguments) => arguments.run().and_then(|text| print(&text)).map(|()| 0),
     }
 }
@@ -57,7 +69,7 @@ fn main() -> ExitCode {
     match run(&Trainer::parse().command) {
         Ok(status) => ExitCode::from(status),
         Err(error) => {
-            eprintln!("{error}");
+            say(&error.to_string());
             ExitCode::from(error.exit_status())
         }
     }

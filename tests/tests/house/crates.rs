@@ -6,7 +6,7 @@ use super::names::{Imports, imports};
 use super::source::{Module, modules};
 
 /// Folders that hold a crate. `tests/firmware` and `tests/fuzz` are workspaces of their own.
-const CRATES: [&str; 5] = ["shared", "runtime", "runtime/c", "trainer", "tests"];
+const CRATES: [&str; 6] = ["shared", "runtime", "runtime/c", "trainer", "trainer/python", "tests"];
 
 /// A crate from one of its roots.
 pub struct Crate {

@@ -15,12 +15,11 @@ use crates::{Crate, crates};
 use exempt::{Violation, lies_in, none_but};
 
 /// Files that import each other in a circle. This list shall become empty.
-const FILES_IN_CIRCLES: [&str; 12] = [
+const FILES_IN_CIRCLES: [&str; 11] = [
     "runtime/src/effects",
     "tests/src/models",
     "tests/src/paper/page",
     "tests/src/second_opinion",
-    "trainer/src/commands/diagnose",
     "trainer/src/compile/steps",
     "trainer/src/diagnose/advice",
     "trainer/src/diagnose/comparison/simulation",
@@ -46,7 +45,7 @@ const CROWDED: [&str; 1] = ["trainer/src/physics"];
 type Never = (&'static str, &'static [&'static str]);
 
 /// What must not know what.
-const NEVER: [Never; 16] = [
+const NEVER: [Never; 17] = [
     ("shared", &["frikan_runtime", "frikan_trainer", "frikan_tests"]),
     ("runtime", &["frikan_trainer", "frikan_tests"]),
     ("trainer", &["frikan_tests"]),
@@ -61,6 +60,7 @@ const NEVER: [Never; 16] = [
     ("trainer/src/servo", FILES_AND_USERS),
     // What identifies a joint shares no code with the simulator that rehearses it.
     ("trainer/src/rollout", &["trainer/src/plant"]),
+    ("trainer/src/fleet", FILES_AND_USERS),
     // The proof on concealed data would prove nothing if simulator and diagnosis shared code.
     ("trainer/src/plant", &["trainer/src/diagnose", "trainer/src/physics"]),
     ("trainer/src/diagnose", &["trainer/src/plant"]),

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::measurement::{self, Warning, load_all};
+use super::measurement;
 use super::output::Outputs;
 use crate::checks::survey::{Fact, Motion, Seen, survey};
 use crate::error::{Error, Result, codes};
 use crate::figures::{digits, quantity};
 use crate::fit::{Identifiable, identifiable};
 use crate::recording::{Axis, Recording};
+use crate::workflow::recordings::{Warning, load_all, load_with_faults};
 
 /// Tell the quality of recordings, what can be identified from them and what to record next.
 ///
@@ -59,7 +60,7 @@ impl Severity {
 /// Whatever reading a recording or the joint reports, and what keeps a recording from being looked at at all.
 pub fn run(arguments: &Check) -> Result<u8> {
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
-    let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
+    let (recordings, warnings) = load_all(&arguments.recordings, |source| load_with_faults(source, &joint))?;
     let mut items: Vec<Item> = warnings.iter().map(of_warning).collect();
     for recording in &recordings {
         let name = if recordings.len() > 1 { format!("{}: ", recording.label) } else { String::new() };
@@ -98,7 +99,7 @@ pub fn run(arguments: &Check) -> Result<u8> {
 
 fn of_warning(warning: &Warning) -> Item {
     let severity = if warning.is_blocking() { Severity::Error } else { Severity::Warning };
-    Item { code: warning.code(), severity, message: warning.message.clone(), when_s: warning.when_s().to_vec() }
+    Item { code: warning.code(), severity, message: warning.message().to_owned(), when_s: warning.when_s().to_vec() }
 }
 
 fn of_error(error: &Error) -> Item {

@@ -1,45 +1,20 @@
 //! `trainer diagnose`: what the model of a joint leaves out, in words, as JSON, as a page and as an improved image.
 
-mod compare;
 mod put_right;
-mod sealed;
-mod summary;
-mod trajectory;
 
-use crate::commands::measurement::profile;
-use crate::commands::measurement::{self, Warning, load_all, units};
-use crate::commands::output::Outputs;
+use crate::commands::measurement::{self, Source, profile};
+use crate::commands::output::{Outputs, refuse_unwritable, say};
 use crate::commands::progress::{Reporter, peak_memory_mb};
-use crate::compile::improved::{Origin, improve};
 use crate::compile::profile::Profile;
-use crate::diagnose::advice::{Limits, Plan, Question, plan};
-use crate::diagnose::answer::finding::tell_first;
-use crate::diagnose::answer::outcome::{Diagnosis, Verdict};
+use crate::diagnose::answer::outcome::Verdict;
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::comparison::columns::BaseKind;
-use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::preparation::rows::Lock;
-use crate::diagnose::request::{Options, Refusal};
-use crate::diagnose::run::diagnose;
-use crate::diagnose::search::thresholds::Settings;
-use crate::error::{Error, Result, codes};
+use crate::error::Result;
 use crate::fit;
-use crate::joint::Joint;
-use crate::physics::JointState;
-use crate::physics::names::capital;
-use crate::recording::{Quantity, Recording};
-use crate::report::tell::evidence::planned_motion;
-use crate::report::tell::{Story, tell};
-use crate::report::{self, DiagnosisPage};
+use crate::workflow::diagnose::{Against, Improvement, Request, diagnose};
 use clap::{Args, ValueEnum};
-use compare::{Compared, comparison};
-use frikan_shared::image::Image;
-use frikan_shared::units::Unit;
-use sealed::sealed_score;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
-use summary::{Told, summary};
-use trajectory::to_csv;
 
 /// Compare a recording with a simulation, a model or a static friction model fitted to itself, and name the physics that is missing
 ///
@@ -110,84 +85,67 @@ pub enum StaticBase {
 /// Whatever reading a recording, joint or model reports; `FRK-D016` where the motion determines nothing. Nothing is
 /// written then.
 pub fn run(arguments: &Diagnose) -> Result<u8> {
-    let begin = Instant::now();
+    let read = [arguments.joint.as_ref(), arguments.simulation.as_ref(), arguments.model.as_ref()];
+    let read = arguments.recordings.iter().chain(read.into_iter().flatten()).map(PathBuf::as_path);
+    let written = [&arguments.output, &arguments.advise, &arguments.json, &arguments.report];
+    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
-    let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
-    let real = &recordings[0];
-    let (comparison, compared) = comparison(arguments, &recordings, &joint)?;
-    let units = units(real);
-    let options = Options {
-        base: base_kind(arguments),
+    let model = arguments.model.as_deref().map(fit::model::load).transpose()?;
+    let against = match (&arguments.simulation, model, arguments.base) {
+        (Some(path), ..) => Against::Simulation(path.into()),
+        (None, Some((_, image)), _) => Against::Model(image),
+        (None, None, StaticBase::CoulombViscous) => Against::Itself(BaseKind::CoulombViscous),
+        (None, None, StaticBase::Spline) => Against::Itself(BaseKind::Spline),
+    };
+    let request = Request {
+        recordings: arguments.recordings.iter().map(Source::from).collect(),
+        against,
         lock: arguments.lock,
-        settings: Settings { seed: arguments.seed, ..Settings::default() },
+        target: arguments.target.unwrap_or_default(),
         least_effect: arguments.least_effect,
         by_likelihood: arguments.by_likelihood,
+        seed: arguments.seed,
     };
-    reporter.say("weighing every effect against the noise");
-    let mut diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
-    tell_measurement(&mut diagnosis, &warnings);
-    reporter.say("choosing what to record next");
-    let advice = advice(&comparison, &diagnosis, &joint, (&compared, real));
+    let found = diagnose(&request, &joint, &|stage| reporter.say(stage))?;
     reporter.say("writing");
+    let is_blocked = found.diagnosis.is_blocked();
+    // Without a file to write, what cannot be written costs no more than its figures.
+    if let (Some(_), Improvement::Refused(error)) = (&arguments.output, &found.improvement) {
+        return Err(error.clone());
+    }
     let mut outputs = Outputs::default();
-    let is_blocked = diagnosis.is_blocked();
-    let improved = if is_blocked {
-        None
-    } else {
-        let written = improved_image(arguments, (&recordings, &joint), &diagnosis, &comparison, &compared);
-        // Without a file to write, what cannot be written costs no more than its figures.
-        if arguments.output.is_some() { Some(written?) } else { written.ok() }
-    };
-    let sealed = improved.as_ref().and_then(|improved| improved.sealed.as_ref());
-    let story = tell(&diagnosis, sealed, units);
-    let seconds = begin.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
-        let summary = summary(
-            &Told { diagnosis: &diagnosis, story: &story, plan: advice.as_ref(), sealed, units },
-            seconds,
-            arguments.seed,
-        );
-        outputs.add(path, summary.to_string() + "\n");
+        outputs.add(path, found.json().to_string() + "\n");
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        outputs.add(Path::new("-"), text_of(&story, advice.as_ref()));
+        outputs.add(Path::new("-"), found.text());
     }
     let mut remarks = Vec::new();
     if is_blocked && arguments.output.is_some() {
         remarks.push("no model is written: the measurement has to be put right first".to_string());
     }
-    let is_worse = sealed.is_some_and(SealedScore::is_worse);
-    if let (Some(path), Some(improved)) = (&arguments.output, &improved) {
+    if let (Some(path), Improvement::Written(improved)) = (&arguments.output, &found.improvement) {
         remarks.clone_from(&improved.remarks);
-        if is_worse {
-            remarks.push(
+        match found.image() {
+            Some(image) => outputs.add(path, image),
+            None => remarks.push(
                 "no model is written: it would leave more of the torque than the model compared with".to_string(),
-            );
-        } else {
-            outputs.add(path, improved.image.clone());
+            ),
         }
     }
-    if arguments.simulation.is_some() && diagnosis.verdict == Verdict::MissingPhysics && !is_worse {
+    let is_worse = found.sealed().is_some_and(SealedScore::is_worse);
+    if arguments.simulation.is_some() && found.diagnosis.verdict == Verdict::MissingPhysics && !is_worse {
         remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {
-        let page = DiagnosisPage {
-            recording: &real.label,
-            compared_with: &compared_with(arguments),
-            diagnosis: &diagnosis,
-            story: &story,
-            units,
-            plan: advice.as_ref(),
-            export: &remarks,
-        };
-        outputs.add(path, report::diagnosis(&page));
+        outputs.add(path, found.report(&compared_with(arguments), &remarks));
     }
-    match (&arguments.advise, &advice) {
-        (Some(path), Some(plan)) => outputs.add(path, to_csv(plan, units.rotary)),
+    match (&arguments.advise, found.trajectory()) {
+        (Some(path), Some(trajectory)) => outputs.add(path, trajectory),
         (Some(_), None) => {
-            let has_rivals = diagnosis.findings.iter().any(|finding| !finding.alternatives.is_empty());
+            let has_rivals = found.diagnosis.findings.iter().any(|finding| !finding.alternatives.is_empty());
             let reason = if has_rivals {
                 "no trajectory is written: no motion within the limits tells the rivals apart"
             } else {
@@ -197,83 +155,18 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         }
         (None, _) => {}
     }
-    let inputs = [arguments.joint.as_ref(), arguments.simulation.as_ref(), arguments.model.as_ref()];
-    let inputs = arguments.recordings.iter().chain(inputs.into_iter().flatten());
-    outputs.refuse_overwriting(&inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;
     drop(reporter);
     if !arguments.quiet {
-        remarks.iter().for_each(|sentence| eprintln!("{sentence}"));
+        remarks.iter().for_each(|sentence| say(sentence));
         let memory = peak_memory_mb().map_or_else(String::new, |mb| format!(", {mb:.0} MB of memory"));
-        let (samples, rows, hz) = (comparison.signals.time.len(), diagnosis.rows, diagnosis.cut_off_hz);
-        eprintln!("{}: {samples} samples, {rows} rows behind {hz:.0} Hz, {seconds:.1} s{memory}", real.label);
+        let (label, rows, hz) = (&found.label, found.diagnosis.rows, found.diagnosis.cut_off_hz);
+        say(&format!(
+            "{label}: {} samples, {rows} rows behind {hz:.0} Hz, {:.1} s{memory}",
+            found.samples, found.seconds
+        ));
     }
-    Ok(exit_status(diagnosis.verdict))
-}
-
-/// Puts what the checks of the recordings found before what was found behind them.
-fn tell_measurement(diagnosis: &mut Diagnosis, warnings: &[Warning]) {
-    for warning in warnings.iter().rev() {
-        tell_first(diagnosis, warning.to_health(), warning.is_finding());
-    }
-}
-
-/// The motion that would tell apart what cannot be told, within the limits of the joint.
-fn advice(
-    comparison: &Comparison,
-    diagnosis: &Diagnosis,
-    joint: &Joint,
-    (compared, real): (&Compared, &Recording),
-) -> Option<Plan> {
-    let limits = Limits {
-        lowest_position: joint.limits.lowest_position_rad,
-        highest_position: joint.limits.highest_position_rad,
-        speed: joint.limits.velocity_rad_s,
-        acceleration: joint.limits.acceleration_rad_s2,
-    };
-    let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
-    let at = |state: &JointState| compared.at(state, recorded_body);
-    plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
-}
-
-/// An improved image, what it holds in sentences, and how much better it is on rows that decided nothing.
-struct Written {
-    image: Vec<u8>,
-    remarks: Vec<String>,
-    sealed: Option<SealedScore>,
-}
-
-fn improved_image(
-    arguments: &Diagnose,
-    (recordings, joint): (&[Recording], &Joint),
-    diagnosis: &Diagnosis,
-    comparison: &Comparison,
-    compared: &Compared,
-) -> Result<Written> {
-    let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, arguments.seed);
-    let origin = match compared {
-        Compared::Itself(body) => Origin::Recording(**body),
-        Compared::Simulation(law, given) => Origin::Simulation(law, *given),
-        Compared::Model(image) => {
-            provenance.law_error = image.provenance.law_error;
-            provenance.rigid_body_error = image.provenance.rigid_body_error;
-            Origin::Model(&image.model)
-        }
-    };
-    let unit = match units(&recordings[0]).actuator {
-        "N" => Unit::Newton,
-        "A" => Unit::Ampere,
-        _ => Unit::NewtonMetre,
-    };
-    let improved = improve(diagnosis, comparison, origin, unit, arguments.target.unwrap_or_default())
-        .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
-    let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
-    // What is scored is what a drive would decode.
-    let after = fit::model::from_bytes(&image)?.model;
-    let sealed = improved
-        .compared_with
-        .and_then(|before| sealed_score(&diagnosis.sealed_s, recordings, comparison.signals.period, [&before, &after]));
-    Ok(Written { image, remarks: improved.remarks, sealed })
+    Ok(exit_status(found.diagnosis.verdict))
 }
 
 fn compared_with(arguments: &Diagnose) -> String {
@@ -288,38 +181,12 @@ fn compared_with(arguments: &Diagnose) -> String {
     }
 }
 
-fn base_kind(arguments: &Diagnose) -> BaseKind {
-    match (arguments.simulation.is_some() || arguments.model.is_some(), arguments.base) {
-        (true, _) => BaseKind::Reference,
-        (false, StaticBase::CoulombViscous) => BaseKind::CoulombViscous,
-        (false, StaticBase::Spline) => BaseKind::Spline,
-    }
-}
-
-fn refused(refusal: &Refusal, recording: &Recording) -> Error {
-    let code = match refusal {
-        Refusal::TooLittleMotion { .. } => &codes::SEGMENTS_TOO_SHORT,
-        Refusal::NotMeasured { .. } => &codes::NOT_MEASURED,
-        Refusal::Undetermined => &codes::NO_MOTION,
-    };
-    Error::new(code, refusal.to_string()).in_file(recording.file())
-}
-
 fn exit_status(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Consistent => 0,
         Verdict::MissingPhysics | Verdict::Unexplained => 1,
         Verdict::BadData => 3,
     }
-}
-
-fn text_of(story: &Story, advice: Option<&Plan>) -> String {
-    let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
-    let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
-    let rest = story.rest().map(|sentence| format!("{sentence}\n"));
-    let advice = advice.map(|plan| format!("{}.\n", capital(&planned_motion(plan))));
-    let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
-    std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()
 }
 
 fn parse_share(text: &str) -> std::result::Result<f64, String> {

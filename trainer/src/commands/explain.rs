@@ -1,5 +1,6 @@
 //! `trainer explain CODE`: an error code or the name of an effect, at length.
 
+use crate::did_you_mean::nearest;
 use crate::error::{Class, Code, Error, Result, codes};
 use clap::Args;
 
@@ -36,7 +37,10 @@ fn explain(topic: &str) -> Result<String> {
         Some(effect) => Ok(format!("{}: {}\n\n{}\n", effect.name, effect.title, effect.body)),
         None => {
             let shown = topic.escape_debug();
-            let message = format!("`{shown}` is neither an error code nor an effect; there are:\n\n{}", listing());
+            let known = codes::ALL.iter().map(|code| code.id).chain(effects().map(|effect| effect.name));
+            let near = nearest(topic, known).map_or_else(String::new, |near| format!(" Did you mean `{near}`?"));
+            let message =
+                format!("`{shown}` is neither an error code nor an effect.{near} There are:\n\n{}", listing());
             Err(Error::new(&codes::UNKNOWN_TOPIC, message.trim_end()))
         }
     }
@@ -127,6 +131,8 @@ mod tests {
         assert!(explain("c1").unwrap().starts_with("presliding"));
         let error = explain("nonsense").unwrap_err();
         assert_eq!(error.exit_status(), 2);
+        assert!(explain("presliden").unwrap_err().message().contains("Did you mean `presliding`?"));
+        assert!(explain("FRK-D05").unwrap_err().message().contains("Did you mean `FRK-D0"));
         assert!(error.to_string().contains("FRK-D005") && error.to_string().contains("presliding"));
     }
 }

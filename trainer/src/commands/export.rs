@@ -11,7 +11,7 @@ use frikan_shared::image::Image;
 use frikan_shared::model::Law;
 
 use self::model_file::ModelFileArguments;
-use super::output::{Outputs, print};
+use super::output::{Outputs, print, say};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
@@ -145,7 +145,7 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Drake => for_simulator(Simulator::Drake)?,
         Format::Fmu => {
             let (file, told) = fmu::file(&image_bytes, &image, &title)?;
-            eprint!("{told}");
+            say(told.trim_end());
             file
         }
         Format::C => {

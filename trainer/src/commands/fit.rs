@@ -1,25 +1,18 @@
 //! `trainer fit`: recordings in, a friction image out.
 
-mod json;
-mod servo;
-mod text;
-
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::measurement::{self, Warning, actuator_file, load_all};
-use super::output::{Outputs, print};
+use super::measurement::{self, Source, actuator_file, profile};
+use super::output::{Outputs, print, refuse_unwritable, say};
 use super::progress::Reporter;
-use crate::actuator::Kind;
-use crate::commands::measurement::profile;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
-use crate::fit::outcome::{Representation, Soundness};
-use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
+use crate::fit::outcome::Representation;
+use crate::fit::{Budget, Options, Progress, Training};
 use crate::kan::{Architecture, Sparsity};
-use crate::servo::{ServoFit, fit_servo};
+use crate::workflow::fit::{Fitted, fit};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
 #[derive(Args, Clone, Debug)]
@@ -132,15 +125,14 @@ pub enum Form {
 /// # Errors
 /// As [`fit()`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Fit) -> Result<u8> {
-    let start = Instant::now();
     if let Some(rate) = arguments.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
         let message = "`--rate` has to be a finite number above zero";
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
+    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint).map(PathBuf::as_path);
+    let written = [Some(&arguments.output), arguments.json.as_ref(), arguments.report.as_ref()];
+    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
-    let (recordings, mut warnings) = load_all(&arguments.recordings, |path| measurement::load(path, &joint))?;
-    let (tests, of_tests) = load_all(&arguments.tests, |path| measurement::load(path, &joint))?;
-    warnings.extend(of_tests);
     let options = Options {
         seed: arguments.seed,
         inputs: arguments.inputs.clone(),
@@ -157,26 +149,27 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);
-    let say = |progress: &Progress| reporter.say(&line(progress));
-    let of_servo = match joint.actuator.kind {
-        Kind::Torque => None,
-        _ => Some(in_pool(arguments.threads, || fit_servo(&recordings, &tests, &joint, &options, &say))??),
-    };
-    let outcome = match &of_servo {
-        Some(servo) => servo.outcome.clone(),
-        None => in_pool(arguments.threads, || fit(&recordings, &tests, &joint, &options, &say))??,
-    };
+    let [recordings, tests] =
+        [&arguments.recordings, &arguments.tests].map(|paths| paths.iter().map(Source::from).collect::<Vec<_>>());
+    let fitted = in_pool(arguments.threads, || {
+        fit(&recordings, &tests, &joint, &options, &|progress| reporter.say(&line(progress)))
+    })??;
     drop(reporter);
-    write(arguments, &outcome, of_servo.as_ref(), &warnings, start.elapsed().as_secs_f64())?;
-    Ok(match &outcome.sound {
-        Soundness::Sound => 0,
-        Soundness::NotIdentifiable(what) => unsound(arguments, &Error::new(&codes::NOT_IDENTIFIABLE, what.clone())),
-        Soundness::NotConverged(what) => unsound(arguments, &Error::new(&codes::NOT_CONVERGED, what.clone())),
-        Soundness::NotPhysical(what) => unsound(arguments, &Error::new(&codes::NOT_PHYSICAL, what.clone())),
-    })
+    let withheld = fitted.is_withheld() && !arguments.force;
+    write(arguments, &fitted, withheld)?;
+    let Some(doubt) = fitted.doubt() else { return Ok(0) };
+    // That there is no image is no message but the result.
+    if withheld || !arguments.quiet {
+        say(&doubt.to_string());
+    }
+    Ok(doubt.exit_status())
 }
 
-fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
+/// Does the work on so many threads; on all where no number is given.
+///
+/// # Errors
+/// `FRK-I001` where the threads cannot be started.
+pub(super) fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Error::new(&codes::INPUT_OUTPUT, error.to_string()))?;
     Ok(pool.install(work))
@@ -190,45 +183,24 @@ fn line(progress: &Progress) -> String {
     }
 }
 
-fn write(
-    arguments: &Fit,
-    outcome: &Outcome,
-    of_servo: Option<&ServoFit>,
-    warnings: &[Warning],
-    seconds: f64,
-) -> Result<()> {
+fn write(arguments: &Fit, fitted: &Fitted, withheld: bool) -> Result<()> {
     let mut outputs = Outputs::default();
-    let is_written = outcome.sound == Soundness::Sound || arguments.force;
-    if is_written {
-        outputs.add(&arguments.output, outcome.image.clone());
-        if let Some(of_servo) = of_servo {
-            outputs.add(&actuator_file(&arguments.output), servo::table(&of_servo.identified));
+    if !withheld {
+        outputs.add(&arguments.output, fitted.outcome.image.clone());
+        if let Some(table) = fitted.actuator_toml() {
+            outputs.add(&actuator_file(&arguments.output), table);
         }
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", json::summary(outcome, of_servo, warnings, seconds)));
+        outputs.add(path, format!("{}\n", fitted.json()));
     }
     if let Some(path) = &arguments.report {
-        let told: Vec<String> = warnings.iter().map(|warning| format!("{warning}.")).collect();
-        outputs.add(path, crate::report::fit(outcome, &told));
+        outputs.add(path, fitted.report());
     }
-    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint);
-    outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write()?;
     // With JSON on standard output the text would get in its way.
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
-    print(
-        &(text::summary(outcome, warnings, is_written.then_some(arguments.output.as_path()), seconds)
-            + &of_servo.map(servo::text).unwrap_or_default()),
-    )
-}
-
-fn unsound(arguments: &Fit, error: &Error) -> u8 {
-    // That there is no image is no message but the result.
-    if !arguments.quiet || !arguments.force {
-        eprintln!("{error}");
-    }
-    error.exit_status()
+    print(&fitted.text((!withheld).then_some(arguments.output.as_path())))
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::output::Outputs;
+use super::output::{Outputs, say};
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::{self, Proposal, Recording};
@@ -38,7 +38,7 @@ pub fn run(arguments: &Init) -> Result<()> {
     outputs.refuse_overwriting(&inputs)?;
     outputs.write()?;
     if !arguments.quiet {
-        eprint!("{}", told(&recording, &proposal));
+        say(told(&recording, &proposal).trim_end());
     }
     Ok(())
 }

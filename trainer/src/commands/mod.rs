@@ -2,17 +2,19 @@
 
 pub mod check;
 pub mod closed_loop;
-mod columns;
 pub mod diagnose;
 pub mod explain;
 pub mod export;
 pub mod fit;
+pub mod fleet;
 pub mod init;
 mod measurement;
-pub mod output;
 pub mod predict;
-mod progress;
 pub mod rollout;
 pub mod show;
 pub mod simulate;
+pub mod terminal;
 pub mod verify;
+
+pub use terminal::output;
+use terminal::progress;

@@ -4,15 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::columns::with_columns;
-use super::measurement::{self, motion};
-use super::output::Outputs;
+use super::measurement::{self, Source};
+use super::output::{Outputs, refuse_unwritable, say};
 use crate::error::Result;
-use crate::fit::predict::{every_row, predict};
-use crate::fit::{HostModel, model};
-use crate::recording::{self, Channel, Quantity, Recording};
-use crate::samples::interpolate;
-use frikan_shared::units::Unit;
+use crate::fit::model;
+use crate::workflow::predict::predict;
 
 /// Copy a recording and add what the model predicts, `predicted_<quantity>_<unit>` and `residual_<unit>`.
 #[derive(Args, Clone, Debug)]
@@ -39,50 +35,15 @@ pub struct Predict {
 /// # Errors
 /// `FRK-D...` when image or recording cannot be used or lack what the model reads; nothing is written then.
 pub fn run(arguments: &Predict) -> Result<()> {
+    refuse_unwritable([&arguments.output], &[arguments.model.as_path(), arguments.recording.as_path()])?;
     let (_, image) = model::load(&arguments.model)?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
-    let recording = recording::load(&arguments.recording, &joint)?;
-    let (motion, warnings) = motion(recording.clone(), &joint)?;
-    let samples = every_row(&image.model, &motion).map_err(|error| error.in_file(recording.file()))?;
-    let prediction = predict(&image.model, &samples).map_err(|error| error.in_file(recording.file()))?;
-    let predicted = at_rows(&recording, &motion, prediction.total());
+    let predicted = predict(&image.model, Source::from(&arguments.recording), &joint)?;
     let mut outputs = Outputs::default();
-    outputs.add(&arguments.output, table(&recording, &image.model, &predicted)?);
-    outputs.refuse_overwriting(&[arguments.model.as_path(), arguments.recording.as_path()])?;
+    outputs.add(&arguments.output, predicted.csv);
     outputs.write()?;
     if !arguments.quiet {
-        warnings.iter().for_each(|warning| eprintln!("{warning}"));
+        predicted.warnings.iter().for_each(|warning| say(&warning.to_string()));
     }
     Ok(())
-}
-
-/// The prediction at every row of the file: rows that the checks left out, since they repeat or hold others, lie between those.
-fn at_rows(recording: &Recording, motion: &Recording, predicted: Vec<f64>) -> Vec<f64> {
-    match (recording.values(Quantity::Time), motion.values(Quantity::Time)) {
-        (Some(all), Some(used)) if all.len() > used.len() => interpolate(used, &predicted, all),
-        _ => predicted,
-    }
-}
-
-/// Quantity, unit and way from SI of the predicted column.
-fn target<'a>(recording: &'a Recording, model: &HostModel) -> (String, String, f64, Option<&'a Channel>) {
-    if let Some(channel) = recording.separated_friction().or_else(|| recording.actuator()) {
-        return (channel.name.clone(), channel.column_unit.clone(), channel.si_per_column_unit, Some(channel));
-    }
-    let (quantity, unit) = match model.output_unit {
-        Unit::Newton => ("force", "N"),
-        Unit::Ampere => ("current", "A"),
-        _ => ("torque", "Nm"),
-    };
-    (quantity.to_owned(), unit.to_owned(), 1.0, None)
-}
-
-fn table(recording: &Recording, model: &HostModel, predicted: &[f64]) -> Result<Vec<u8>> {
-    let (quantity, unit, si_per_unit, measured) = target(recording, model);
-    let mut added = vec![(format!("predicted_{quantity}_{unit}"), predicted.iter().map(|x| x / si_per_unit).collect())];
-    if let Some(channel) = measured {
-        let residual = channel.values.iter().zip(predicted).map(|(measured, x)| (measured - x) / si_per_unit);
-        added.push((format!("residual_{unit}"), residual.collect()));
-    }
-    with_columns(recording, &added)
 }

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::columns::with_columns;
 use super::measurement::{self, motion};
 use super::output::{Outputs, print};
 use crate::error::{Error, Result, codes};
 use crate::fit::model;
 use crate::recording::{self, Axis};
 use crate::rollout::{Rollout as Simulated, State, default_window_s, of_image};
+use crate::workflow::columns::with_columns;
 
 /// Simulate the joint with an image under the commands of a recording, and say how far the motion comes off.
 #[derive(Args, Clone, Debug)]

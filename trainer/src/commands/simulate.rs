@@ -1,5 +1,7 @@
 //! `trainer simulate`: a recording of a joint that does not exist, for rehearsal.
 
+use super::output::{print, refuse_unwritable, say};
+use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};
 use crate::files::write_whole;
 use crate::joint;
@@ -52,6 +54,8 @@ pub struct Simulate {
 /// `FRK-D015` for a joint that cannot be simulated, `FRK-U001` for an effect or a length that does not exist, and
 /// whatever reading or writing reports. Nothing is written unless the simulation succeeded.
 pub fn run(arguments: &Simulate) -> Result<()> {
+    let written = [Some(&arguments.output), arguments.truth.as_ref(), arguments.json.as_ref()];
+    refuse_unwritable(written.into_iter().flatten(), &[arguments.joint.as_path()])?;
     let label = arguments.joint.display().to_string();
     let mut joint = with_effects(&arguments.joint, &arguments.effects)?;
     if let Some(kind) = arguments.noise {
@@ -76,13 +80,13 @@ pub fn run(arguments: &Simulate) -> Result<()> {
     if let Some(path) = &arguments.json {
         let text = summary(&joint, &recording, arguments.seed);
         if path == Path::new("-") {
-            println!("{text}");
+            print(&format!("{text}\n"))?;
         } else {
             write_whole(path, text.as_bytes())?;
         }
     }
     if !arguments.quiet {
-        eprintln!("{}: {} samples, {} hidden", arguments.output.display(), recording.len(), joint.effects.len());
+        say(&format!("{}: {} samples, {} hidden", arguments.output.display(), recording.len(), joint.effects.len()));
     }
     Ok(())
 }
@@ -127,7 +131,8 @@ pub(super) fn parse_effect(text: &str) -> std::result::Result<Hidden, String> {
     let (name, amplitude) = text.split_once('=').unwrap_or((text, "1"));
     if plant::find(name).is_none() {
         let known: Vec<&str> = plant::CATALOGUE.iter().chain(plant::OUTSIDE).map(|entry| entry.name).collect();
-        return Err(format!("no effect is called `{name}`; there are {}", known.join(", ")));
+        let near = hint(name, known.iter().copied());
+        return Err(format!("no effect is called `{name}`{near}; there are {}", known.join(", ")));
     }
     match amplitude.parse::<f64>() {
         Ok(amplitude) if amplitude.is_finite() => Ok(Hidden { name: name.to_owned(), amplitude }),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};
 
 /// A processor for which the firmware is built, and the machine that emulates it.
@@ -32,7 +33,8 @@ impl Target {
     pub(super) fn read(folder: &Path, name: &str) -> Result<Self> {
         let names = Self::names(folder)?;
         if !names.iter().any(|known| known == name) {
-            let message = format!("there is no target of this name; there are host, {}", names.join(", "));
+            let near = hint(name, names.iter().map(String::as_str));
+            let message = format!("there is no target of this name{near}; there are host, {}", names.join(", "));
             return Err(Error::new(&codes::UNKNOWN_TARGET, message).with_value(name));
         }
         let path = folder.join("targets").join(name).join("target.toml");

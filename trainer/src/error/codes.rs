@@ -171,6 +171,10 @@ registry! {
         "The file is of a format that this program does not read, or was built without.",
         "A bag in SQLite, MATLAB 7.3, HDF5, a spreadsheet, or a compression other than gzip.",
         "Convert it as the message says; CSV, NumPy, MATLAB 5 to 7, JSON, Parquet and MCAP are read.";
+    BAD_TASKS = "FRK-D044" Data "list of tasks cannot be used",
+        "A line of the list is not a task as `trainer plan` writes it.",
+        "The wrong file is named, or the list was edited, cut short or sorted: line N has to be task N.",
+        "Write the list again with `trainer plan`; results of tasks that are the same are kept.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording, or the law is worth no more on rows that it has not seen than a constant torque, a spring or Coulomb friction alone. No image is written; `--force` writes it all the same.",
         "One speed, one acceleration, a small range of positions, a single frequency, or a joint that does not slide.",

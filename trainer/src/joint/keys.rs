@@ -1,6 +1,7 @@
 //! Keys of `joint.toml` that nothing reads.
 
 use super::Joint;
+use crate::did_you_mean::hint;
 
 /// Names at the top of `joint.toml` that are read here.
 const TABLES: [&str; 9] =
@@ -9,24 +10,14 @@ const TABLES: [&str; 9] =
 /// Tables that others read: the simulated plant.
 const READ_ELSEWHERE: [&str; 1] = ["plant"];
 
-/// Likeness by Jaro and Winkler (0..1) from which on a name is proposed for another, as the command line proposes options.
-const DID_YOU_MEAN: f64 = 0.8;
-
 impl Joint {
     /// What stands in the file and is read by nothing, a sentence each with the name that may have been meant.
     #[must_use]
     pub fn unknown_keys(&self) -> Vec<String> {
         let unknown = self.other.keys().filter(|key| !READ_ELSEWHERE.contains(&key.as_str()));
-        let nearest = |key: &str| {
-            let names = TABLES.iter().chain(&READ_ELSEWHERE);
-            let near = names.map(|name| (strsim::jaro_winkler(&key.to_lowercase(), name), *name));
-            near.filter(|(likeness, _)| *likeness > DID_YOU_MEAN)
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .map(|(_, name)| name)
-        };
-        let sentence = |key: &String| match nearest(key) {
-            Some(name) => format!("nothing reads `{key}` of joint.toml; did you mean `{name}`?"),
-            None => format!("nothing reads `{key}` of joint.toml"),
+        let sentence = |key: &String| {
+            let names = TABLES.iter().chain(&READ_ELSEWHERE).copied();
+            format!("nothing reads `{key}` of joint.toml{}", hint(key, names))
         };
         unknown.map(sentence).collect()
     }

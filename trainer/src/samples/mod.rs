@@ -25,6 +25,7 @@ pub(crate) use grid::interpolate;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
 
+use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};
 use crate::numerics::statistics::quantile;
 use crate::recording::Axis;
@@ -121,7 +122,9 @@ impl Samples {
     /// `FRK-U002` with the names that exist.
     pub fn require_input(&self, name: &str) -> Result<&[f64]> {
         self.input(name).ok_or_else(|| {
-            let message = format!("there is no such input; this recording has: {}", self.input_names().join(", "));
+            let names = self.input_names();
+            let near = hint(name, names.iter().copied());
+            let message = format!("there is no such input{near}; this recording has: {}", names.join(", "));
             Error::new(&codes::UNKNOWN_INPUT, message).with_value(name)
         })
     }

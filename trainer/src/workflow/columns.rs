@@ -7,7 +7,7 @@ use crate::recording::Recording;
 ///
 /// # Errors
 /// `FRK-I001` where a row cannot be written.
-pub(super) fn with_columns(recording: &Recording, added: &[(String, Vec<f64>)]) -> Result<Vec<u8>> {
+pub(crate) fn with_columns(recording: &Recording, added: &[(String, Vec<f64>)]) -> Result<Vec<u8>> {
     let own = recording.table.header();
     let kept: Vec<usize> = (0..own.len()).filter(|&i| added.iter().all(|(name, _)| *name != own[i])).collect();
     let names = kept.iter().map(|&i| &own[i]).chain(added.iter().map(|(name, _)| name));

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use super::output::say;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time between two lines off a terminal.
@@ -68,7 +69,7 @@ impl Lines {
             while stopped.recv_timeout(LINE_EVERY) == Err(RecvTimeoutError::Timeout) {
                 let text = shown.lock().map(|text| text.clone()).unwrap_or_default();
                 if !text.is_empty() {
-                    eprintln!("{:4.0} s  {text}", start.elapsed().as_secs_f64());
+                    say(&format!("{:4.0} s  {text}", start.elapsed().as_secs_f64()));
                 }
             }
         });

@@ -4,10 +4,10 @@ use frikan_shared::image::image_crc32;
 use serde_json::{Value, json};
 
 use super::servo;
-use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Soundness, SplitScore, Trace};
 use crate::servo::ServoFit;
+use crate::workflow::recordings::Warning;
 
 /// The object that `--json` writes.
 pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: &[Warning], seconds: f64) -> Value {
@@ -59,6 +59,7 @@ pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: 
             "expression": law.expression, "nodes": law.nodes, "rmse": law.rmse, "held_out_rmse": law.held_out_rmse,
         })).collect::<Vec<_>>(),
         "gain": {"recommended": outcome.gain(), "uncertain_share": outcome.uncertain_share()},
+        "curve": {"over": "velocity", "points": outcome.law_curve},
         "band": {"level": 0.95, "over": "velocity", "points": outcome.band},
         "train": with_split(score(outcome.train_score), &outcome.train_split),
         "train_recordings": train,

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result, codes};
-use crate::files::write_together;
+use crate::files::{refuse_place, write_together};
 
 /// Files that one command writes, collected before the first of them is touched.
 #[derive(Debug, Default)]
@@ -26,18 +26,7 @@ impl Outputs {
 
     /// Refuses to write over what was read, and the same file twice.
     pub(crate) fn refuse_overwriting(&self, inputs: &[&Path]) -> Result<()> {
-        let same = |a: &Path, b: &Path| {
-            a == b || a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
-        };
-        for (index, (path, _)) in self.files.iter().enumerate() {
-            let read = inputs.iter().any(|input| same(path, input));
-            let written = self.files[..index].iter().any(|(other, _)| same(path, other));
-            if read || written {
-                let what = if read { "this file is also an input" } else { "two results go to this file" };
-                return Err(Error::new(&codes::USAGE, what).in_file(path.display().to_string()));
-            }
-        }
-        Ok(())
+        refuse_overwriting(&self.files.iter().map(|(path, _)| path.as_path()).collect::<Vec<_>>(), inputs)
     }
 
     /// Writes all files, then standard output.
@@ -47,6 +36,40 @@ impl Outputs {
         write_together(&files)?;
         print(&self.console)
     }
+}
+
+/// Refuses files that cannot be written, before the work that leads to them: in a folder that does not exist, in place of a folder, over
+/// an input, or two in one place. `-` is standard output.
+///
+/// # Errors
+/// `FRK-I002`, `FRK-I003` or `FRK-U001`, with the file.
+pub(crate) fn refuse_unwritable<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, inputs: &[&Path]) -> Result<()> {
+    let outputs: Vec<&Path> =
+        outputs.into_iter().map(PathBuf::as_path).filter(|path| *path != Path::new("-")).collect();
+    for path in &outputs {
+        refuse_place(path)?;
+    }
+    refuse_overwriting(&outputs, inputs)
+}
+
+fn refuse_overwriting(outputs: &[&Path], inputs: &[&Path]) -> Result<()> {
+    let same =
+        |a: &Path, b: &Path| a == b || a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+    for (index, path) in outputs.iter().enumerate() {
+        let read = inputs.iter().any(|input| same(path, input));
+        let written = outputs[..index].iter().any(|other| same(path, other));
+        if read || written {
+            let what = if read { "this file is also an input" } else { "two results go to this file" };
+            return Err(Error::new(&codes::USAGE, what).in_file(path.display().to_string()));
+        }
+    }
+    Ok(())
+}
+
+/// Says a line on standard error. That nobody listens is no failure.
+pub fn say(line: &str) {
+    // A message that cannot be told can only be dropped.
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// Writes to standard output. A reader that has left early (`| head`) is no failure.

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::commands::measurement::Warning;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Trace};
 use crate::law::significant;
 use crate::parameter::Parameter;
+use crate::workflow::recordings::Warning;
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;

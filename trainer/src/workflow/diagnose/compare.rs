@@ -1,21 +1,20 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
-use super::Diagnose;
-use crate::commands::measurement::{motion, units};
+use super::request::{Against, Request};
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
-use crate::fit::{self, CELLS};
+use crate::fit::CELLS;
 use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
-use crate::recording::{self, Quantity, Recording};
+use crate::recording::{Quantity, Recording};
+use crate::workflow::recordings::{Source, motion, units};
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
-use std::path::Path;
 
 /// What the recording is compared with.
 pub(super) enum Compared {
@@ -36,13 +35,13 @@ impl Compared {
 }
 
 /// The real recordings and what they are compared with.
-pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
-    if let Some(path) = &arguments.simulation {
-        let simulated = simulated(path, &real[0], joint)?;
+pub(super) fn comparison(request: &Request<'_>, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
+    if let Against::Simulation(source) = request.against {
+        let simulated = simulated(source, &real[0], joint)?;
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
-        let learned = if arguments.by_likelihood {
+        let learned = if request.by_likelihood {
             learn_static(&simulation, &signals)
         } else {
             learn_simulation(&simulation, &signals)
@@ -51,20 +50,19 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
             learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let given = given_rigid_body(&real[0], joint)?;
         let mut comparison = Comparison::with(signals, law.at(&state));
-        if arguments.by_likelihood {
+        if request.by_likelihood {
             let of_simulation = law.at(&simulation.states());
             comparison = comparison.beside(simulation, of_simulation);
         }
         Ok((comparison, Compared::Simulation(Box::new(law), given)))
-    } else if let Some(path) = &arguments.model {
-        let (_, image) = fit::model::load(path)?;
+    } else if let Against::Model(image) = &request.against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let signals = joined(real, &bare)?;
         let state = states(&signals, &real[0])?;
         let reference =
-            of_model(&image, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real[0].file()))?;
-        Ok((Comparison::with(signals, reference), Compared::Model(image)))
+            of_model(image, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real[0].file()))?;
+        Ok((Comparison::with(signals, reference), Compared::Model(image.clone())))
     } else {
         Ok((joined(real, joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
@@ -77,9 +75,9 @@ fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> 
 }
 
 /// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.
-fn simulated(path: &Path, real: &Recording, joint: &Joint) -> Result<Recording> {
+fn simulated(source: Source<'_>, real: &Recording, joint: &Joint) -> Result<Recording> {
     let joint = joint.of_simulation();
-    let mut simulated = motion(recording::load(path, &joint)?, &joint)?.0;
+    let mut simulated = motion(source.read(&joint)?, &joint)?.0;
     let actuator = |recording: &Recording| recording.actuator().map(|channel| channel.unit);
     let beside_current = actuator(real) == Some("A") && matches!(actuator(&simulated), Some("Nm" | "N"));
     if beside_current && joint.drive.torque_constant_nm_a.is_some() {

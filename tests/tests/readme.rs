@@ -1,0 +1,77 @@
+//! Every command of README.md runs in a checkout as a user has it, and prints what README shows. `FRIKAN_WRITE=1` writes what it prints
+//! into README.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use frikan_tests::command::trainer;
+use frikan_tests::fixtures::folder;
+
+/// What a command stands behind.
+const PROMPT: &str = "    $ ";
+
+fn readme() -> PathBuf {
+    folder().join("../README.md")
+}
+
+/// What a shell prints of a line, standard output alone.
+fn printed(at: &Path, line: &str) -> String {
+    let programs = trainer().parent().expect("a program lies in a folder").to_owned();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&path))).unwrap();
+    let shell = Command::new("bash").args(["-c", line]).current_dir(at).env("PATH", path).output().unwrap();
+    assert!(
+        shell.status.code().is_some_and(|status| status <= 1),
+        "{line}\n{}",
+        String::from_utf8_lossy(&shell.stderr)
+    );
+    String::from_utf8(shell.stdout).unwrap()
+}
+
+#[test]
+fn every_command_prints_what_is_shown() {
+    let checkout = tempfile::tempdir().unwrap();
+    let at = checkout.path();
+    std::fs::create_dir(at.join("fixtures")).unwrap();
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let file = entry.unwrap();
+        std::fs::copy(file.path(), at.join("fixtures").join(file.file_name())).unwrap();
+    }
+    let text = std::fs::read_to_string(readme()).unwrap();
+    let mut written = String::new();
+    let mut lines = text.lines().peekable();
+    let mut count = 0;
+    while let Some(line) = lines.next() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(written, "{line}");
+        let Some(first) = line.strip_prefix(PROMPT) else { continue };
+        let mut command = first.to_owned();
+        while command.ends_with('\\') {
+            let next = lines.next().expect("a line that goes on");
+            let _ = writeln!(written, "{next}");
+            command = format!("{} {}", command.trim_end_matches('\\'), next.trim_start());
+        }
+        while lines.next_if(|next| next.starts_with("    ") && !next.starts_with(PROMPT)).is_some() {}
+        printed(at, &command).lines().for_each(|line| {
+            let _ = writeln!(written, "    {line}");
+        });
+        count += 1;
+    }
+    assert!(count >= 3, "README shows commands");
+    if std::env::var_os("FRIKAN_WRITE").is_some() {
+        std::fs::write(readme(), &written).unwrap();
+    }
+    assert!(written == text, "README shows what is no longer printed; FRIKAN_WRITE=1 writes it again:\n{written}");
+}
+
+#[test]
+fn it_is_one_screen_and_its_links_lead_somewhere() {
+    let text = std::fs::read_to_string(readme()).unwrap();
+    let words = text.split_whitespace().filter(|word| word.chars().any(char::is_alphanumeric)).count();
+    assert!(words <= 600, "{words} words");
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    for link in links.filter(|link| !link.starts_with("https:")) {
+        assert!(readme().with_file_name(link).exists(), "{link}");
+    }
+}

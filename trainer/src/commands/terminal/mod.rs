@@ -1,0 +1,5 @@
+//! Where a command meets its caller: files and standard output, signs of life, the shell.
+
+pub mod output;
+pub(crate) mod progress;
+pub mod shell;

@@ -1,0 +1,277 @@
+//! From recordings and what they are compared with to a diagnosis that tells itself.
+
+mod compare;
+mod request;
+mod sealed;
+mod summary;
+mod trajectory;
+
+use std::time::Instant;
+
+use frikan_shared::image::Image;
+use frikan_shared::units::Unit;
+use serde_json::Value;
+
+use super::recordings::{Warning, load_all, load_with_faults, units};
+use crate::compile::improved::{Origin, improve};
+use crate::diagnose::advice::{Limits, Plan, Question, plan};
+use crate::diagnose::answer::finding::tell_first;
+use crate::diagnose::answer::outcome::Diagnosis;
+use crate::diagnose::answer::sealed::SealedScore;
+use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::request::{Options, Refusal};
+use crate::diagnose::run;
+use crate::diagnose::search::thresholds::Settings;
+use crate::error::{Error, Result, codes};
+use crate::fit;
+use crate::joint::Joint;
+use crate::physics::JointState;
+use crate::physics::names::capital;
+use crate::physics::units::Units;
+use crate::recording::{Quantity, Recording};
+use crate::report::tell::evidence::planned_motion;
+use crate::report::tell::{Story, tell};
+use crate::report::{self, DiagnosisPage};
+use compare::{Compared, comparison};
+pub use request::{Against, BaseKind, Request};
+use sealed::sealed_score;
+use summary::{Told, summary};
+
+/// A diagnosis with what was made of it.
+#[derive(Debug)]
+pub struct Diagnosed {
+    /// What was found.
+    pub diagnosis: Diagnosis,
+    /// The improved model.
+    pub improvement: Improvement,
+    /// Name of the first recording.
+    pub label: String,
+    /// Samples that were read.
+    pub samples: usize,
+    /// Time that it took, s.
+    pub seconds: f64,
+    advice: Option<Plan>,
+    story: Story,
+    units: Units,
+    seed: u64,
+}
+
+/// The improved model of a diagnosis.
+#[derive(Clone, Debug)]
+pub enum Improvement {
+    /// It was made.
+    Written(Written),
+    /// It cannot be written as an image.
+    Refused(Error),
+    /// The measurement has to be put right first.
+    Blocked,
+}
+
+/// Diagnoses recordings of one joint; `stage` is told what is being done.
+///
+/// ```no_run
+/// use frikan_trainer::joint::Joint;
+/// use frikan_trainer::workflow::diagnose::{Against, Request};
+/// let against = Against::Simulation("simulated.csv".into());
+/// let request = Request::of(&["real.csv".into()], against);
+/// let found = frikan_trainer::diagnose(&request, &Joint::default(), &|_| {})?;
+/// print!("{}", found.text());
+/// # Ok::<(), frikan_trainer::error::Error>(())
+/// ```
+///
+/// # Errors
+/// Whatever reading a recording reports; `FRK-D016`, `FRK-D017` or `FRK-D023` where the motion determines nothing.
+pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> Result<Diagnosed> {
+    let begin = Instant::now();
+    let (recordings, warnings) =
+        load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+    let real = recordings.first().ok_or_else(|| Error::new(&codes::USAGE, "there is no recording to diagnose"))?;
+    let (comparison, compared) = comparison(request, &recordings, joint)?;
+    let units = units(real);
+    let options = Options {
+        base: match request.against {
+            Against::Itself(base) => base,
+            _ => BaseKind::Reference,
+        },
+        lock: request.lock,
+        settings: Settings { seed: request.seed, ..Settings::default() },
+        least_effect: request.least_effect,
+        by_likelihood: request.by_likelihood,
+    };
+    stage("weighing every effect against the noise");
+    let mut diagnosis = run::diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
+    tell_measurement(&mut diagnosis, &warnings);
+    stage("choosing what to record next");
+    let advice = advice(&comparison, &diagnosis, joint, (&compared, real));
+    let improvement = if diagnosis.is_blocked() {
+        Improvement::Blocked
+    } else {
+        match improved_image(request, (&recordings, joint), &diagnosis, &comparison, &compared) {
+            Ok(written) => Improvement::Written(written),
+            Err(error) => Improvement::Refused(error),
+        }
+    };
+    let story = tell(&diagnosis, sealed_of(&improvement), units);
+    Ok(Diagnosed {
+        label: real.label.clone(),
+        samples: comparison.signals.time.len(),
+        seconds: begin.elapsed().as_secs_f64(),
+        seed: request.seed,
+        diagnosis,
+        improvement,
+        advice,
+        story,
+        units,
+    })
+}
+
+impl Diagnosed {
+    /// The result for a terminal.
+    #[must_use]
+    pub fn text(&self) -> String {
+        text_of(&self.story, self.advice.as_ref())
+    }
+
+    /// The result as JSON, schema `frikan.diagnose/1`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let told = Told {
+            diagnosis: &self.diagnosis,
+            story: &self.story,
+            plan: self.advice.as_ref(),
+            sealed: self.sealed(),
+            units: self.units,
+        };
+        summary(&told, self.seconds, self.seed)
+    }
+
+    /// The result as one HTML page; `compared_with` names what the recording was compared with, `remarks` are sentences on the image.
+    #[must_use]
+    pub fn report(&self, compared_with: &str, remarks: &[String]) -> String {
+        report::diagnosis(&DiagnosisPage {
+            recording: &self.label,
+            compared_with,
+            diagnosis: &self.diagnosis,
+            story: &self.story,
+            units: self.units,
+            plan: self.advice.as_ref(),
+            export: remarks,
+        })
+    }
+
+    /// The improved image, where there is one that is no worse on sealed rows than the model compared with.
+    #[must_use]
+    pub fn image(&self) -> Option<&[u8]> {
+        match &self.improvement {
+            Improvement::Written(written) if !self.sealed().is_some_and(SealedScore::is_worse) => Some(&written.image),
+            _ => None,
+        }
+    }
+
+    /// How much better the improved image is on rows that decided nothing.
+    #[must_use]
+    pub fn sealed(&self) -> Option<&SealedScore> {
+        sealed_of(&self.improvement)
+    }
+
+    /// The motion that would tell apart what cannot be told, as CSV.
+    #[must_use]
+    pub fn trajectory(&self) -> Option<String> {
+        self.advice.as_ref().map(|plan| trajectory::to_csv(plan, self.units.rotary))
+    }
+}
+
+fn sealed_of(improvement: &Improvement) -> Option<&SealedScore> {
+    match improvement {
+        Improvement::Written(written) => written.sealed.as_ref(),
+        Improvement::Refused(_) | Improvement::Blocked => None,
+    }
+}
+
+/// Puts what the checks of the recordings found before what was found behind them.
+fn tell_measurement(diagnosis: &mut Diagnosis, warnings: &[Warning]) {
+    for warning in warnings.iter().rev() {
+        tell_first(diagnosis, warning.to_health(), warning.is_finding());
+    }
+}
+
+/// The motion that would tell apart what cannot be told, within the limits of the joint.
+fn advice(
+    comparison: &Comparison,
+    diagnosis: &Diagnosis,
+    joint: &Joint,
+    (compared, real): (&Compared, &Recording),
+) -> Option<Plan> {
+    let limits = Limits {
+        lowest_position: joint.limits.lowest_position_rad,
+        highest_position: joint.limits.highest_position_rad,
+        speed: joint.limits.velocity_rad_s,
+        acceleration: joint.limits.acceleration_rad_s2,
+    };
+    let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
+    let at = |state: &JointState| compared.at(state, recorded_body);
+    plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
+}
+
+/// An improved image, what it holds in sentences, and how much better it is on rows that decided nothing.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The image.
+    pub image: Vec<u8>,
+    /// What it holds, in sentences.
+    pub remarks: Vec<String>,
+    /// How much better it is on rows that decided nothing, where there are such.
+    pub sealed: Option<SealedScore>,
+}
+
+fn improved_image(
+    request: &Request<'_>,
+    (recordings, joint): (&[Recording], &Joint),
+    diagnosis: &Diagnosis,
+    comparison: &Comparison,
+    compared: &Compared,
+) -> Result<Written> {
+    let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, request.seed);
+    let origin = match compared {
+        Compared::Itself(body) => Origin::Recording(**body),
+        Compared::Simulation(law, given) => Origin::Simulation(law, *given),
+        Compared::Model(image) => {
+            provenance.law_error = image.provenance.law_error;
+            provenance.rigid_body_error = image.provenance.rigid_body_error;
+            Origin::Model(&image.model)
+        }
+    };
+    let unit = match units(&recordings[0]).actuator {
+        "N" => Unit::Newton,
+        "A" => Unit::Ampere,
+        _ => Unit::NewtonMetre,
+    };
+    let improved = improve(diagnosis, comparison, origin, unit, request.target)
+        .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
+    let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
+    // What is scored is what a drive would decode.
+    let after = fit::model::from_bytes(&image)?.model;
+    let sealed = improved
+        .compared_with
+        .and_then(|before| sealed_score(&diagnosis.sealed_s, recordings, comparison.signals.period, [&before, &after]));
+    Ok(Written { image, remarks: improved.remarks, sealed })
+}
+
+fn refused(refusal: &Refusal, recording: &Recording) -> Error {
+    let code = match refusal {
+        Refusal::TooLittleMotion { .. } => &codes::SEGMENTS_TOO_SHORT,
+        Refusal::NotMeasured { .. } => &codes::NOT_MEASURED,
+        Refusal::Undetermined => &codes::NO_MOTION,
+    };
+    Error::new(code, refusal.to_string()).in_file(recording.file())
+}
+
+/// A story for a terminal.
+fn text_of(story: &Story, advice: Option<&Plan>) -> String {
+    let health = story.health.iter().map(|sentence| format!("  - Measurement: {sentence}\n"));
+    let bullets = health.chain(story.findings.iter().map(|sentence| format!("  * {sentence}\n")));
+    let rest = story.rest().map(|sentence| format!("{sentence}\n"));
+    let advice = advice.map(|plan| format!("{}.\n", capital(&planned_motion(plan))));
+    let given = story.given.iter().map(|sentence| format!("{sentence}\n"));
+    std::iter::once(format!("{}\n", story.headline)).chain(given).chain(bullets).chain(rest).chain(advice).collect()
+}

@@ -1,0 +1,121 @@
+//! From recordings to a law that tells itself.
+
+mod json;
+mod servo;
+mod text;
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::Value;
+
+use super::recordings::{Source, Warning, load, load_all};
+use crate::actuator::Kind;
+use crate::error::{Error, Result, codes};
+use crate::fit::outcome::Soundness;
+use crate::fit::{Options, Outcome, ProgressCallback};
+use crate::joint::Joint;
+use crate::recording::Recording;
+use crate::report;
+use crate::servo::{ServoFit, fit_servo};
+
+/// A fit with what was noticed of its recordings.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// Law, image, scores and all that is told of them.
+    pub outcome: Outcome,
+    /// What was identified of the actuator, of a joint that reports no torque.
+    pub servo: Option<ServoFit>,
+    /// The recordings that were fitted, as the checks left them.
+    pub recordings: Vec<Recording>,
+    /// What the checks of the recordings put right or noticed.
+    pub warnings: Vec<Warning>,
+    /// Time that reading and fitting took, s.
+    pub seconds: f64,
+}
+
+/// Fits recordings of one joint; `tests` are only scored.
+///
+/// ```
+/// use frikan_trainer::fit::Options;
+/// use frikan_trainer::joint::Joint;
+/// # let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures");
+/// # std::env::set_current_dir(fixtures)?;
+/// let recordings = ["stribeck.csv".into()];
+/// let tests = ["stribeck-test.csv".into()];
+/// let fitted = frikan_trainer::fit(&recordings, &tests, &Joint::default(), &Options::default(), &|_| {})?;
+/// println!("friction = {}", fitted.outcome.law.expression);
+/// assert!(fitted.outcome.tests[0].score.r2 > 0.999);
+/// std::fs::write(std::env::temp_dir().join("stribeck.html"), fitted.report())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`crate::fit::fit()`] or [`fit_servo`], and whatever reading a recording reports.
+pub fn fit(
+    recordings: &[Source<'_>],
+    tests: &[Source<'_>],
+    joint: &Joint,
+    options: &Options,
+    progress: ProgressCallback<'_>,
+) -> Result<Fitted> {
+    let start = Instant::now();
+    let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint))?;
+    let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint))?;
+    warnings.extend(of_tests);
+    let servo = match joint.actuator.kind {
+        Kind::Torque => None,
+        _ => Some(fit_servo(&recordings, &tests, joint, options, progress)?),
+    };
+    let outcome = match &servo {
+        Some(servo) => servo.outcome.clone(),
+        None => crate::fit::fit(&recordings, &tests, joint, options, progress)?,
+    };
+    Ok(Fitted { outcome, servo, recordings, warnings, seconds: start.elapsed().as_secs_f64() })
+}
+
+impl Fitted {
+    /// The result as JSON, schema `frikan.fit/1`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        json::summary(&self.outcome, self.servo.as_ref(), &self.warnings, self.seconds)
+    }
+
+    /// The result for a terminal; `image` is the name of the image's file, where one is written.
+    #[must_use]
+    pub fn text(&self, image: Option<&Path>) -> String {
+        let text = text::summary(&self.outcome, &self.warnings, image, self.seconds);
+        text + &self.servo.as_ref().map(servo::text).unwrap_or_default()
+    }
+
+    /// What was identified of the actuator as `[actuator]` of a joint.toml.
+    #[must_use]
+    pub fn actuator_toml(&self) -> Option<String> {
+        self.servo.as_ref().map(|servo| servo::table(&servo.identified))
+    }
+
+    /// The result as one HTML page.
+    #[must_use]
+    pub fn report(&self) -> String {
+        let told: Vec<String> = self.warnings.iter().map(|warning| format!("{warning}.")).collect();
+        report::fit(&self.outcome, &told)
+    }
+
+    /// Whether the image may not be relied upon, and is written only by force.
+    #[must_use]
+    pub fn is_withheld(&self) -> bool {
+        self.outcome.sound != Soundness::Sound
+    }
+
+    /// Why the fit may not be relied upon, where it may not.
+    #[must_use]
+    pub fn doubt(&self) -> Option<Error> {
+        let (code, what) = match &self.outcome.sound {
+            Soundness::Sound => return None,
+            Soundness::NotIdentifiable(what) => (&codes::NOT_IDENTIFIABLE, what),
+            Soundness::NotConverged(what) => (&codes::NOT_CONVERGED, what),
+            Soundness::NotPhysical(what) => (&codes::NOT_PHYSICAL, what),
+        };
+        Some(Error::new(code, what.clone()))
+    }
+}
