@@ -34,7 +34,8 @@ impl<'a> Residual<'a> {
         let samples = &material.samples;
         let predicted = predict(model, samples)?.total();
         let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-        let left = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
+        let predicted = predicted.iter().zip(&material.bend).map(|(predicted, bend)| predicted + bend);
+        let left = measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect();
         let velocity = samples.velocity.as_deref().unwrap_or_default();
         let top_speed = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
         Ok(Self { left, velocity, top_speed })

@@ -13,7 +13,7 @@ use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
-use super::laws::formula::{self, classical, law_data, law_parameters};
+use super::laws::formula::{self, at_velocity, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
 use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
@@ -76,7 +76,9 @@ fn fit_once(
 
     let training = TrainingData::new(&material, &inputs, options)?;
     let data = law_data(&material, &inputs);
-    let turns = material.turns.iter().map(|split| Turn::take(&builder, &training, &data, split, progress));
+    let points = at_velocity(&material, &data);
+    let turns = material.turns.iter();
+    let turns = turns.map(|split| Turn::take(&builder, &training, (&points, &data), split, progress));
     let turns = turns.collect::<Result<Vec<_>>>()?;
     let trials = turn::trials(&turns, &material.turns, &material)?;
     let first = turns.first().ok_or_else(no_image)?;
@@ -237,7 +239,8 @@ fn parameters(material: &Material, fit: &FormFit, learnt: &TrainedNetwork, by_ex
 fn remarks(material: &Material, turn: &Turn, form: Form, recordings: &[Recording]) -> Vec<String> {
     let mut remarks = Vec::new();
     if matches!(form, Form::Found | Form::Network) {
-        remarks.extend(turn.found.discovery.remarks.clone());
+        let discovery = &turn.found.discovery;
+        remarks.extend(discovery.remarks.iter().chain(&discovery.smoothing).cloned());
     }
     if let Some(repeats) = &material.repeats {
         remarks.push(format!("{}: the law was chosen by what its constants cost.", repeats.sentence));

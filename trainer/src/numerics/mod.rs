@@ -1,5 +1,6 @@
 //! Numerics that every room uses: filters, least squares over runs of rows, covariances, statistics, random draws. Knows no physics.
 
+pub mod averages;
 pub(crate) mod between_samples;
 pub(crate) mod covariance;
 pub(crate) mod derivatives;

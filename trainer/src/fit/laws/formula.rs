@@ -11,10 +11,11 @@ use crate::fit::data::rigid;
 use crate::fit::data::turns;
 use crate::fit::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use crate::law::{
-    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nonlinear, Nuisance,
-    SearchOptions, Start, Unary, discover, fit_form, refit, render,
+    self, Channel, ChannelRole, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, Remainder,
+    SearchOptions, Start, Structure, Unary, discover, fit_form, remainder, render, settle,
 };
 use crate::parameter::Parameter;
+use crate::samples;
 use crate::samples::blocks::Split;
 
 /// Most samples that constants are fitted to; more would change no digit that is printed.
@@ -35,7 +36,7 @@ pub(in crate::fit) struct Found {
     pub(in crate::fit) last: FormFit,
 }
 
-/// Samples as the law room takes them.
+/// Rows as the law room takes them: averages over their states.
 pub(in crate::fit) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
     let axis = material.samples.axis;
     let actuator = material.samples.actuator_unit;
@@ -50,54 +51,65 @@ pub(in crate::fit) fn law_data(material: &Material, inputs: &[ChosenInput]) -> L
         unit: rigid::unit(column.kind, axis, actuator),
         values: material.pick(&column.values),
     });
+    let artefacts = material.artefacts().into_iter();
+    let artefacts = artefacts.map(|(name, unit, values)| Nuisance { name: name.to_owned(), unit, values });
     LawData {
         channels: inputs.iter().map(channel).collect(),
         target: material.pick(&material.target),
         target_unit: rigid::printed(actuator).to_owned(),
-        nuisance: nuisance.collect(),
+        // Those of the rigid body come first.
+        nuisance: nuisance.chain(artefacts).collect(),
+        states: material.states.as_ref().map(|states| law_states(states, inputs)),
         blocks: material.labels.clone(),
     }
 }
 
-/// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
-/// constants paid for, takes its place.
-pub(in crate::fit) fn search(split: &Split, data: &LawData, starts: Vec<Start>) -> Result<Found> {
-    let open_data = data.select(&turns::open(split));
-    let options = SearchOptions { starts, ..SearchOptions::default() };
-    let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
-    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
-    let fixed = fixed_smoothing(&discovery);
-    let own = refit(&discovery.law, &few, fixed).map_err(|error| refused(&error))?;
-    let rivals: Vec<FormFit> = KnownForm::ALL
-        .par_iter()
-        .map(|form| fit_form(*form, &few, fixed).ok())
-        .collect::<Vec<_>>()
-        .into_iter()
-        .flatten()
-        .collect();
-    // One effective number of samples for all, or their criteria would not compare.
-    let effective = few.rows() as f64 / own.uncertainty.correlation_length;
-    let criterion = |fit: &FormFit| {
-        let constants = fit.law.parameters.len() as f64;
-        2.0 * effective * fit.rmse.max(f64::MIN_POSITIVE).ln() + effective.ln() * constants
-    };
-    let limit = criterion(&own) - BIC_DIFFERENCE_THRESHOLD;
-    let better = rivals.into_iter().filter(|rival| rival.converged && criterion(rival) < limit);
-    let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
-    discovery.law = best.law;
-    let fixed = fixed_smoothing(&discovery);
-    let settled =
-        |data: &LawData| refit(&discovery.law, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error));
-    let (open, last) = (settled(&open_data)?, settled(data)?);
-    Ok(Found { open, last, discovery })
+/// The same rows with what the law at their own velocity has to explain, for what works point by point.
+pub(in crate::fit) fn at_velocity(material: &Material, data: &LawData) -> LawData {
+    LawData { target: material.target_at_velocity(), states: None, ..data.clone() }
 }
 
-/// The smoothing of the sign, where the search had to fix it.
-fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
-    let nonlinear = discovery.law.structure.nonlinear();
-    let at = nonlinear.iter().position(|n| *n == Nonlinear::Smoothing)?;
-    let parameter = &discovery.law.parameters[at];
-    (!parameter.determined).then_some(parameter.value)
+/// The states of the rows with all channels: the velocity of each, and what else the law reads as its row has it, since a law is bent over
+/// velocity.
+fn law_states(states: &samples::states::States, inputs: &[ChosenInput]) -> law::States {
+    let of_state = |input: &ChosenInput| match input.role {
+        ChannelRole::Velocity => states.velocity.clone(),
+        _ => states.nearest.iter().map(|&row| input.values[row]).collect(),
+    };
+    law::States { averages: states.averages.clone(), channels: inputs.iter().map(of_state).collect() }
+}
+
+/// Looks for the formula in `points`, beginning also at `starts`, and fits it to `data`, the averages of the same rows. A classical law that
+/// describes those better than what the search found, its constants paid for, takes its place.
+pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+    let open = turns::open(split);
+    let options = SearchOptions { starts, ..SearchOptions::default() };
+    let mut discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
+    let open_data = data.select(&open);
+    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
+    let own = remainder(&discovery.law.structure, &few, Some(&discovery.law)).map_err(|error| refused(&error))?;
+    // One effective number of samples for all, or their criteria would not compare.
+    let effective = few.rows() as f64 / own.correlation_length;
+    let criterion = |left: &Remainder, structure: &Structure| {
+        let misfit = effective * left.mean_square.max(f64::MIN_POSITIVE).ln();
+        misfit + effective.ln() * structure.constants() as f64
+    };
+    let limit = criterion(&own, &discovery.law.structure) - BIC_DIFFERENCE_THRESHOLD;
+    let rival = |form: &KnownForm| {
+        let left = remainder(&form.structure(), &few, None).ok().filter(|left| left.converged)?;
+        Some((criterion(&left, &form.structure()), *form))
+    };
+    let rivals: Vec<Option<(f64, KnownForm)>> = KnownForm::ALL.par_iter().map(rival).collect();
+    let best = rivals.into_iter().flatten().filter(|(value, _)| *value < limit).min_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((_, form)) = best {
+        discovery.law = fit_form(form, &few, None).map_err(|error| refused(&error))?.law;
+    }
+    let settled =
+        |data: &LawData| settle(&discovery.law, &thinned(data, MOST_SAMPLES)).map_err(|error| refused(&error));
+    let (open, _) = settled(&open_data)?;
+    let (last, smoothing) = settled(data)?;
+    discovery.smoothing = smoothing;
+    Ok(Found { open, last, discovery })
 }
 
 /// Every `k`-th sample, so that at most `most` are left.

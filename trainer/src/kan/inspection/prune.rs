@@ -6,7 +6,7 @@ use super::attribution::Attribution;
 use crate::kan::network::error::KanError;
 use crate::kan::network::layers::Network;
 use crate::kan::training::dataset::Dataset;
-use crate::kan::training::fit::{FitOptions, FitResult, refit_from};
+use crate::kan::training::fit::{FitOptions, FitResult, Trained, refit_from};
 use crate::kan::training::settings::ProgressCallback;
 
 /// What may be removed.
@@ -14,7 +14,8 @@ use crate::kan::training::settings::ProgressCallback;
 pub struct PruneOptions {
     /// Edges of a lower score are removed together.
     pub edge_threshold: f64,
-    /// Rise of the error criterion, relative, that a removal may cost. Negative values demand an improvement.
+    /// Rise of the error criterion, relative, that a removal may cost where too few blocks are held out for a standard error of it. Negative
+    /// values demand an improvement.
     pub tolerance: f64,
     /// Root-mean-square error, relative to the target's standard deviation, that is as good as none.
     pub negligible: f64,
@@ -93,7 +94,11 @@ pub struct Pruned {
     pub removed: Vec<Removed>,
 }
 
-/// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs.
+/// Fewest held-out blocks by whose scatter the error of a criterion is told.
+const LEAST_BLOCKS: usize = 3;
+
+/// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs. What is left is the smallest that is found
+/// within one standard error of the best held-out error (Breiman, Friedman, Olshen & Stone 1984).
 ///
 /// # Errors
 /// As [`crate::kan::fit`].
@@ -111,7 +116,11 @@ pub fn prune(
         refit_from(network, linear, noise_variance, dataset, &refit_options, progress)
     };
     let mut current = refit(fitted.network.clone(), &fitted.linear_coefficients);
-    let mut best = current.criterion;
+    let limit_of = |best: &Trained| {
+        let rise = standard_error(best, dataset).unwrap_or(pruning.tolerance * best.criterion);
+        (best.criterion + rise).max(pruning.negligible.powi(2))
+    };
+    let (mut best, mut limit) = (current.criterion, limit_of(&current));
     let mut removed = Vec::new();
 
     for stage in [nodes, edges, inputs] {
@@ -124,15 +133,35 @@ pub fn prune(
                 continue;
             }
             let trial = refit(network, &current.model.linear_coefficients());
-            let limit = (best * (1.0 + pruning.tolerance)).max(pruning.negligible.powi(2));
             if trial.criterion <= limit {
-                best = best.min(trial.criterion);
+                if trial.criterion < best {
+                    (best, limit) = (trial.criterion, limit_of(&trial));
+                }
                 current = trial;
                 removed.extend(group);
             }
         }
     }
     Ok(Pruned { result: current.into_result(dataset, 0), removed })
+}
+
+/// Standard error of the mean square over held-out blocks, of a ratio of sums over blocks of unequal size (Cochran 1977); `None` where there are
+/// too few of them.
+fn standard_error(trained: &Trained, dataset: &Dataset) -> Option<f64> {
+    let blocks = &dataset.blocks.validation;
+    if blocks.len() < LEAST_BLOCKS {
+        return None;
+    }
+    let rows: usize = blocks.iter().map(ExactSizeIterator::len).sum();
+    let scatter: f64 = blocks
+        .iter()
+        .map(|block| {
+            let sum = trained.model.residual_sum(dataset, std::slice::from_ref(block));
+            (sum - trained.criterion * block.len() as f64).powi(2)
+        })
+        .sum();
+    let inflation = blocks.len() as f64 / (blocks.len() - 1) as f64;
+    Some((inflation * scatter).sqrt() / rows as f64)
 }
 
 fn score_of(group: &[Removed]) -> f64 {

@@ -4,7 +4,6 @@
 use super::criterion::{EXACT_RESIDUAL_RATIO, correlation_length};
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::model::structure::Nonlinear;
-use crate::law::model::tape::Tape;
 
 /// Two-sided 95 % point of the normal distribution.
 pub(in crate::law) const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -53,7 +52,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let free: Vec<usize> = (0..count).filter(|&k| names.get(k).is_none_or(|n| !held.contains(n))).collect();
     let rows = problem.rows();
     let template = fit.structure.template(problem.extents().layout());
-    let mut columns = Tape::new(&[template], count, problem.channels(), rows).run(&fit.params, true);
+    let mut columns = problem.tape_of(&[template], count).run(&fit.params, true);
     let slopes = columns.slopes.swap_remove(0);
     let nuisance = &problem.data().nuisance;
     let jacobian: Vec<&[f64]> = nuisance
