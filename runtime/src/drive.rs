@@ -1,10 +1,10 @@
 //! The drive of one joint: position loop and supervised compensator, once a sample. The same code runs on the host and on the
 //! emulated microcontrollers.
 
+use crate::bounds::limited;
 use crate::compensator::Compensator;
 use crate::controller::Controller;
-use crate::evaluate::limited;
-use crate::friction::Measurement;
+use crate::measurement::Measurement;
 use crate::supervised::{Sample, Supervisor};
 
 mod sample;

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::compensator::{Compensator, Status};
-use crate::friction::Measurement;
+use crate::measurement::Measurement;
 
 /// Compensators of `JOINTS` joints.
 #[derive(Clone, Debug)]

@@ -4,28 +4,50 @@
 //! itself in the order of the source, no contraction; elementary functions from [`frikan_shared::elementary`]. NaN at
 //! an input gives zero torque; an infinite or out-of-range input holds the value at the nearer end of the trained range.
 //! The output is finite and within the model's limit.
+//!
+//! | feature | what it links in |
+//! |---|---|
+//! | `table` | tables of the velocity, read from the image where it lies ([`in_place`]): the smallest drive |
+//! | `expression`, `network`, `effects` | formulas, networks and correction terms, in images that are decoded to memory |
+//! | `supervised` | the supervisor |
+//! | `slots` | two slots in flash |
+//! | `auth` | tags behind images |
+//! | `nalgebra` | several joints as vectors |
+//!
+//! All are on by default; [`compensator::Exported`] and the limits are always there. An image that needs what was left out is refused.
 #![no_std]
 
 #[cfg(test)]
 extern crate std;
 
+pub mod bounds;
 pub mod compensator;
+#[cfg(feature = "supervised")]
 pub mod controller;
+#[cfg(all(feature = "models", feature = "supervised"))]
 pub mod drive;
+#[cfg(feature = "models")]
 pub mod effects;
-pub mod evaluate;
-pub mod expression;
+#[cfg(feature = "models")]
 pub mod friction;
-pub mod integer_table;
+#[cfg(feature = "table")]
+pub mod in_place;
+#[cfg(feature = "nalgebra")]
 pub mod joints;
-pub mod network;
+pub mod laws;
+pub mod measurement;
+#[cfg(feature = "slots")]
 pub mod slots;
+#[cfg(feature = "supervised")]
 pub mod supervised;
-pub mod table;
+#[cfg(feature = "models")]
 mod table_models;
 pub mod usable;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "models"))]
 mod test_models;
 
 pub use frikan_shared as shared;
+pub use laws::table;
+#[cfg(feature = "models")]
+pub use laws::{evaluate, expression, integer_table, network};

@@ -9,12 +9,16 @@
 //! | 8 | 4 | bytes of the image and its tag, little-endian |
 //! | 12 | 4 | CRC-32 (ISO-HDLC) over bytes 0 to 11, the image and its tag, little-endian |
 //!
-//! To update: ask [`next_write`] for the slot and the sequence number, erase that slot, program the image, program the header of
+//! To update: ask [`next_write_beside`] for the slot and the sequence number, erase that slot, program the image, program the header of
 //! [`slot_header`] last, reset. The slot in use is never touched, so that a cut at any byte leaves it the newest valid one. Sequence
 //! numbers are compared modulo 2^32.
 
-use frikan_shared::authentication::Trust;
-use frikan_shared::image::{Image, ImageError, checksum};
+use frikan_shared::image::{ImageError, checksum};
+#[cfg(feature = "models")]
+use frikan_shared::{authentication::Trust, image::Image};
+
+#[cfg(feature = "models")]
+use crate::laws::evaluate::is_built_in;
 
 /// First bytes of a used slot.
 pub const SLOT_MAGIC: [u8; 4] = *b"FSLT";
@@ -102,17 +106,20 @@ pub fn valid_slots<'a>(first: &'a [u8], second: &'a [u8]) -> [Option<Slot<'a>>; 
     }
 }
 
-/// The newest slot that can be used, and its image. Where the newest intact one cannot (a later format, too many cells, a tag that is
-/// not of whom `trust` names), the older one.
-fn usable<'a, const CELLS: usize>(
+/// The newest slot that can be used, and what `read` makes of its image and tag. Where the newest intact one cannot be used (a later format,
+/// too many cells, a tag that is not of whom the drive trusts), the older one.
+///
+/// # Errors
+/// [`ImageError::NoImage`] where no slot is intact, else why the newest intact one cannot be used: compensation stays off.
+pub fn newest_usable<'a, T>(
     first: &'a [u8],
     second: &'a [u8],
-    trust: Trust<'_>,
-) -> Result<(Slot<'a>, Image<CELLS>), ImageError> {
+    read: impl Fn(&'a [u8]) -> Result<T, ImageError>,
+) -> Result<(Slot<'a>, T), ImageError> {
     let mut error = ImageError::NoImage;
     for slot in valid_slots(first, second).into_iter().flatten() {
-        match trust.decode(slot.image) {
-            Ok(image) => return Ok((slot, image)),
+        match read(slot.image) {
+            Ok(read) => return Ok((slot, read)),
             Err(fault) if error == ImageError::NoImage => error = fault,
             Err(_) => {}
         }
@@ -120,25 +127,46 @@ fn usable<'a, const CELLS: usize>(
     Err(error)
 }
 
-/// The slot to write next and the sequence number to write: never the slot in use, always a later number than any.
+/// The slot to write next and the sequence number to write: never the slot in use, which is the newest one that `read` can use, always a
+/// later number than any.
+#[must_use]
+pub fn next_write_beside<'a, T>(
+    first: &'a [u8],
+    second: &'a [u8],
+    read: impl Fn(&'a [u8]) -> Result<T, ImageError>,
+) -> (Which, u32) {
+    let [Some(newest), _] = valid_slots(first, second) else { return (Which::First, 1) };
+    let in_use = newest_usable(first, second, read).map_or(newest.which, |(slot, _)| slot.which);
+    (in_use.other(), newest.sequence.wrapping_add(1))
+}
+
+/// A model that this firmware can evaluate.
+#[cfg(feature = "models")]
+fn decoded<const CELLS: usize>(image: &[u8], trust: Trust<'_>) -> Result<Image<CELLS>, ImageError> {
+    trust
+        .decode(image)
+        .and_then(|image| if is_built_in(&image.model) { Ok(image) } else { Err(ImageError::NotBuiltIn) })
+}
+
+/// As [`next_write_beside`], for a drive that decodes its images.
+#[cfg(feature = "models")]
 #[must_use]
 pub fn next_write<const CELLS: usize>(first: &[u8], second: &[u8], trust: Trust<'_>) -> (Which, u32) {
-    let [Some(newest), _] = valid_slots(first, second) else { return (Which::First, 1) };
-    let in_use = usable::<CELLS>(first, second, trust).map_or(newest.which, |(slot, _)| slot.which);
-    (in_use.other(), newest.sequence.wrapping_add(1))
+    next_write_beside(first, second, |image| decoded::<CELLS>(image, trust))
 }
 
 /// Decodes the newest model that can be used.
 ///
 /// # Errors
-/// [`ImageError::NoImage`] where no slot is intact, else why the newest intact one cannot be used: compensation stays off.
+/// As [`newest_usable`].
+#[cfg(feature = "models")]
 pub fn load<const CELLS: usize>(
     first: &[u8],
     second: &[u8],
     trust: Trust<'_>,
 ) -> Result<(Which, Image<CELLS>), ImageError> {
-    usable(first, second, trust).map(|(slot, image)| (slot.which, image))
+    newest_usable(first, second, |image| decoded(image, trust)).map(|(slot, image)| (slot.which, image))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "models", feature = "auth"))]
 mod tests;

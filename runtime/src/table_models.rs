@@ -6,10 +6,11 @@ use frikan_shared::model::{Input, Law, Model};
 use frikan_shared::table::Geometric;
 use frikan_shared::units::Quantity;
 
+use crate::bounds::within;
 use crate::effects::{Motion, presliding, travel};
-use crate::evaluate::{held, within};
 use crate::friction::{Friction, FrictionState, Measurement};
-use crate::table::geometric_value;
+use crate::laws::evaluate::held;
+use crate::laws::table::geometric_value;
 use crate::usable::{Usable, finite, not_zero};
 
 /// The friction of a table of the velocity, some number where it is not usable, without effects; `None` for any other model. `is_step` is negative where the

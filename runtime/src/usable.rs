@@ -15,6 +15,13 @@ impl Usable {
         Self(black_box((sign >> 31) as u32))
     }
 
+    /// As [`Usable::where_negative`], where so little depends on it that the compiler has nothing to go around.
+    #[cfg(feature = "table")]
+    #[inline(always)]
+    pub(crate) fn where_negative_of_little(sign: i32) -> Self {
+        Self((sign >> 31) as u32)
+    }
+
     /// The condition.
     #[must_use]
     #[inline(always)]

@@ -4,10 +4,14 @@
 //! The tag is HMAC-SHA-256 (RFC 2104, FIPS 180-4) over every byte of the image, which makes `openssl dgst -sha256 -mac HMAC` a second
 //! opinion. It says who made the image, not that no later one exists.
 
+#[cfg(feature = "auth")]
 use hmac::{Hmac, KeyInit, Mac};
+#[cfg(feature = "auth")]
 use sha2::Sha256;
 
-use crate::image::{Image, ImageError, decode, image_bytes};
+#[cfg(feature = "models")]
+use crate::image::{Image, decode};
+use crate::image::{ImageError, image_bytes};
 
 /// Bytes of a key.
 pub const KEY_BYTES: usize = 32;
@@ -16,9 +20,16 @@ pub const KEY_BYTES: usize = 32;
 pub const TAG_BYTES: usize = 32;
 
 /// A secret that trainer and drive share.
+#[cfg(feature = "auth")]
 #[derive(Clone)]
 pub struct Key([u8; KEY_BYTES]);
 
+/// A secret that nobody has: this firmware was built without the feature `auth`.
+#[cfg(not(feature = "auth"))]
+#[derive(Clone)]
+pub enum Key {}
+
+#[cfg(feature = "auth")]
 impl Key {
     /// The key of these bytes, which come from a source of randomness.
     #[must_use]
@@ -39,6 +50,18 @@ impl Key {
     #[must_use]
     pub fn tag(&self, image: &[u8]) -> [u8; TAG_BYTES] {
         self.hasher().chain_update(image).finalize().into_bytes().into()
+    }
+
+    /// Whether a tag is that of an image, in constant time.
+    fn has_made(&self, image: &[u8], tag: &[u8; TAG_BYTES]) -> bool {
+        self.hasher().chain_update(image).verify_slice(tag).is_ok()
+    }
+}
+
+#[cfg(not(feature = "auth"))]
+impl Key {
+    fn has_made(&self, _: &[u8], _: &[u8; TAG_BYTES]) -> bool {
+        match *self {}
     }
 }
 
@@ -77,22 +100,30 @@ impl Trust<'_> {
         flash.get(..length).ok_or(ImageError::Truncated)
     }
 
-    /// Decodes exactly one image, after its tag where one is asked for. Tags are compared in constant time, before anything of
+    /// The image of exactly one image and its tag where one is asked for. Tags are compared in constant time, before anything of
     /// the image is read.
     ///
     /// # Errors
-    /// [`ImageError::NotAuthentic`] where the tag is not right or not there, and those of [`decode`].
-    pub fn decode<const CELLS: usize>(self, bytes: &[u8]) -> Result<Image<CELLS>, ImageError> {
+    /// [`ImageError::NotAuthentic`] where the tag is not right or not there.
+    pub fn authentic(self, bytes: &[u8]) -> Result<&[u8], ImageError> {
         match self {
-            Self::Anyone => decode(bytes),
+            Self::Anyone => Ok(bytes),
             Self::Key(key) => {
                 let (image, tag) = bytes.split_last_chunk::<TAG_BYTES>().ok_or(ImageError::NotAuthentic)?;
-                key.hasher().chain_update(image).verify_slice(tag).map_err(|_| ImageError::NotAuthentic)?;
-                decode(image)
+                if key.has_made(image, tag) { Ok(image) } else { Err(ImageError::NotAuthentic) }
             }
         }
     }
+
+    /// Decodes exactly one image, after its tag where one is asked for.
+    ///
+    /// # Errors
+    /// Those of [`Trust::authentic`] and of [`decode`].
+    #[cfg(feature = "models")]
+    pub fn decode<const CELLS: usize>(self, bytes: &[u8]) -> Result<Image<CELLS>, ImageError> {
+        decode(self.authentic(bytes)?)
+    }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "auth", feature = "models"))]
 mod tests;

@@ -6,6 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::invalid::ProgramFault;
+
 /// Most operations of a program.
 pub const MAX_OPERATIONS: usize = 64;
 
@@ -71,23 +73,6 @@ pub enum Operation {
     ScaledMagnitude(u8, f32),
     /// `a` plus an input, held to its trained range, times a factor.
     AddScaledInput(u8, f32),
-}
-
-/// What is wrong with a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ProgramFault {
-    /// The program has no operation.
-    Empty,
-    /// An operation lacks an operand.
-    MissingOperand,
-    /// The stack grows beyond [`MAX_DEPTH`].
-    TooDeep,
-    /// More than one value is left at the end.
-    ValuesLeft,
-    /// An operation reads an input that the model does not have.
-    NoSuchInput,
-    /// A constant is not finite.
-    NonFiniteConstant,
 }
 
 impl Operation {

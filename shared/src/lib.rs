@@ -9,15 +9,24 @@
 extern crate std;
 
 pub mod authentication;
+#[cfg(feature = "models")]
 pub mod effect;
+#[cfg(feature = "elementary")]
 pub mod elementary;
+#[cfg(feature = "models")]
 pub mod expression;
 pub mod image;
 pub mod input;
+#[cfg(feature = "models")]
 pub mod integer_table;
+pub mod invalid;
+#[cfg(feature = "models")]
 pub mod model;
+#[cfg(feature = "models")]
 pub mod network;
+#[cfg(feature = "models")]
 pub mod pool;
 pub mod table;
 pub mod units;
+#[cfg(feature = "models")]
 pub mod validate;

@@ -15,93 +15,22 @@
 //!
 //! Outside its range a table holds the value at the nearer end.
 
+#[cfg(feature = "models")]
 use serde::{Deserialize, Serialize};
+
+use crate::invalid::scale;
+
+mod cell;
+
+pub(crate) use cell::is_usable;
+pub use cell::{Cell, SIGN_BIT};
 
 /// Mantissa bits of an `f32`.
 const MANTISSA_BITS: u32 = 23;
 
-/// Sign bit of an `f32`.
-pub const SIGN_BIT: u32 = 0x8000_0000;
-
-/// Four 32-bit words of the coefficient pool: four `f32`, or four `i32` of an integer table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(from = "[u8; 16]", into = "[u8; 16]")]
-pub struct Cell([u32; 4]);
-
-impl Cell {
-    /// All words zero.
-    pub const ZERO: Self = Self([0; 4]);
-
-    /// A cell of cubic coefficients, lowest power first.
-    #[must_use]
-    pub const fn from_floats(coefficients: [f32; 4]) -> Self {
-        let [c0, c1, c2, c3] = coefficients;
-        Self([c0.to_bits(), c1.to_bits(), c2.to_bits(), c3.to_bits()])
-    }
-
-    /// The cubic coefficients, lowest power first.
-    #[must_use]
-    #[inline(always)]
-    pub const fn floats(&self) -> [f32; 4] {
-        let [c0, c1, c2, c3] = self.0;
-        [f32::from_bits(c0), f32::from_bits(c1), f32::from_bits(c2), f32::from_bits(c3)]
-    }
-
-    /// A bound of the cubic's magnitude on `[1, 2]` as the drive computes it: the largest of its Bernstein coefficients, and for the
-    /// rounding of the evaluation (and of these coefficients) a few units in the last place of its terms.
-    #[must_use]
-    pub fn bound(&self) -> f32 {
-        let [c0, c1, c2, c3] = self.floats();
-        let bernstein = [
-            c0 + c1 + c2 + c3,
-            c0 + (4.0 * c1 + 5.0 * c2 + 6.0 * c3) / 3.0,
-            c0 + (5.0 * c1 + 8.0 * c2 + 12.0 * c3) / 3.0,
-            c0 + 2.0 * c1 + 4.0 * c2 + 8.0 * c3,
-        ];
-        let rounding = 8.0 * f32::EPSILON * (c0.abs() + 2.0 * c1.abs() + 4.0 * c2.abs() + 8.0 * c3.abs());
-        bernstein.into_iter().fold(0.0f32, |most, coefficient| most.max(coefficient.abs())) + rounding
-    }
-
-    /// A cell of integer coefficients, lowest power first.
-    #[must_use]
-    pub const fn from_integers(coefficients: [i32; 4]) -> Self {
-        let [c0, c1, c2, c3] = coefficients;
-        Self([c0 as u32, c1 as u32, c2 as u32, c3 as u32])
-    }
-
-    /// The integer coefficients, lowest power first.
-    #[must_use]
-    #[inline(always)]
-    pub const fn integers(&self) -> [i32; 4] {
-        let [c0, c1, c2, c3] = self.0;
-        [c0 as i32, c1 as i32, c2 as i32, c3 as i32]
-    }
-}
-
-impl From<[u8; 16]> for Cell {
-    fn from(bytes: [u8; 16]) -> Self {
-        let (words, _) = bytes.as_chunks::<4>();
-        let mut cell = [0; 4];
-        for (word, bytes) in cell.iter_mut().zip(words) {
-            *word = u32::from_le_bytes(*bytes);
-        }
-        Self(cell)
-    }
-}
-
-impl From<Cell> for [u8; 16] {
-    fn from(cell: Cell) -> Self {
-        let mut bytes = [0; 16];
-        let (words, _) = bytes.as_chunks_mut::<4>();
-        for (bytes, word) in words.iter_mut().zip(cell.0) {
-            *bytes = word.to_le_bytes();
-        }
-        bytes
-    }
-}
-
 /// How the two signs of the input share cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub enum Symmetry {
     /// `f(-v) = -f(v)`: one set of cells, the sign of the input goes to the output.
     Odd,
@@ -112,7 +41,8 @@ pub enum Symmetry {
 }
 
 /// What the image says of a geometric layout; everything else of [`Geometric`] follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub struct GeometricShape {
     /// Index in the pool of the first cell for positive inputs.
     pub first_cell: u16,
@@ -144,8 +74,8 @@ pub struct Side {
 }
 
 /// Geometric layout, ready to evaluate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "GeometricShape", into = "GeometricShape")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize), serde(from = "GeometricShape", into = "GeometricShape"))]
 pub struct Geometric {
     shape: GeometricShape,
     /// `c` of `w = |v| + c`.
@@ -157,29 +87,30 @@ pub struct Geometric {
 impl Geometric {
     /// The layout of a shape. A shape out of its documented range gives a harmless layout, which validation refuses.
     #[must_use]
+    #[inline(always)]
     pub fn new(shape: GeometricShape) -> Self {
         let exponent = i32::from(shape.offset_exponent.clamp(-60, 60));
         let offset = f32::from_bits(((exponent + 127) as u32) << MANTISSA_BITS);
         let shift = shape.shift();
         // One step short of the end, so that the end is still in the last cell.
-        let last = |reach: f32| (reach.abs() + offset).to_bits().saturating_sub(offset.to_bits()).saturating_sub(1);
-        let side = |first_cell: u32, last: u32, sign: u32| {
+        let last = |reach: f32| (reach.abs() + offset).to_bits().wrapping_sub(offset.to_bits()).saturating_sub(1);
+        let side = |first_cell: u32, last: u32| {
             let bias = first_cell << shift;
             Side {
                 origin: offset.to_bits().wrapping_sub(bias),
                 last_position: bias.wrapping_add(last),
                 cells_per_turn: 1 << (32 - shift),
-                sign,
+                sign: 0,
             }
         };
         let first_cell = u32::from(shape.first_cell);
         let last_positive = last(shape.reach);
+        let positive = side(first_cell, last_positive);
         let negative = match shape.symmetry {
-            Symmetry::Odd => side(first_cell, last_positive, SIGN_BIT),
-            Symmetry::Even => side(first_cell, last_positive, 0),
-            Symmetry::Sided => side(first_cell + (last_positive >> shift) + 1, last(shape.reach_negative), 0),
+            Symmetry::Odd => Side { sign: SIGN_BIT, ..positive },
+            Symmetry::Even => positive,
+            Symmetry::Sided => side(first_cell + (last_positive >> shift) + 1, last(shape.reach_negative)),
         };
-        let positive = side(first_cell, last_positive, 0);
         Self { shape, offset, sides: [positive, negative] }
     }
 
@@ -207,12 +138,23 @@ impl Geometric {
 
     /// Whether every biased position fits in 32 bits.
     #[must_use]
+    #[inline]
     pub fn fits(&self) -> bool {
-        (u64::from(self.shape.first_cell) + u64::from(self.cells())) << self.shape.shift() <= u64::from(u32::MAX)
+        u32::from(self.shape.first_cell) + self.cells() <= u32::MAX >> self.shape.shift()
     }
 }
 
 impl GeometricShape {
+    /// Whether all numbers are in their documented range.
+    #[must_use]
+    #[inline]
+    pub fn is_within_range(&self) -> bool {
+        (-60..=60).contains(&self.offset_exponent)
+            && self.octave_cells_log2 <= 8
+            && scale(self.reach)
+            && scale(self.reach_negative)
+    }
+
     /// Bits of a position below the cell number.
     #[must_use]
     pub fn shift(&self) -> u32 {
@@ -233,7 +175,8 @@ impl From<Geometric> for GeometricShape {
 }
 
 /// What the image says of a uniform layout; everything else of [`Uniform`] follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub struct UniformShape {
     /// Index in the pool of the cell at `low`.
     pub first_cell: u16,
@@ -246,8 +189,8 @@ pub struct UniformShape {
 }
 
 /// Uniform layout, ready to evaluate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "UniformShape", into = "UniformShape")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize), serde(from = "UniformShape", into = "UniformShape"))]
 pub struct Uniform {
     shape: UniformShape,
     /// Lower end of the range.
@@ -293,7 +236,8 @@ impl From<Uniform> for UniformShape {
 }
 
 /// A function of one input as cubic pieces in the pool.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub enum Table {
     /// Cells that grow with the distance from zero.
     Geometric(Geometric),

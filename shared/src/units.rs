@@ -1,12 +1,14 @@
 //! Units of channels and outputs, and the quantities that a model may read.
 
+#[cfg(feature = "models")]
 use serde::{Deserialize, Serialize};
 
 /// Longest name of an input channel that has no standard quantity, in bytes.
 pub const CHANNEL_NAME_BYTES: usize = 16;
 
 /// Unit of a channel or of the output. All are SI; a drive converts before it calls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub enum Unit {
     /// Dimensionless, written `1`.
     One,
@@ -35,6 +37,22 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// Every unit by the number that an image has of it.
+    pub const ALL: [Self; 12] = [
+        Self::One,
+        Self::Radian,
+        Self::RadianPerSecond,
+        Self::RadianPerSecondSquared,
+        Self::Metre,
+        Self::MetrePerSecond,
+        Self::MetrePerSecondSquared,
+        Self::NewtonMetre,
+        Self::Newton,
+        Self::Ampere,
+        Self::Celsius,
+        Self::Volt,
+    ];
+
     /// The unit as it is printed, for example `rad/s`.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
@@ -56,6 +74,7 @@ impl Unit {
 }
 
 /// What an input channel measures. The compensator feeds the standard quantities by name.
+#[cfg(feature = "models")]
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     /// Joint or axis velocity.
@@ -72,6 +91,7 @@ pub enum Quantity {
     Other(heapless::String<CHANNEL_NAME_BYTES>),
 }
 
+#[cfg(feature = "models")]
 impl Quantity {
     /// The name of the channel as in a recording's column, without its unit.
     #[must_use]

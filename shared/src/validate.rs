@@ -4,65 +4,16 @@
 mod network;
 
 use crate::effect::{Effect, Kind};
-use crate::expression::ProgramFault;
 use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_SEGMENT_CELLS};
+pub use crate::invalid::InvalidModel;
+use crate::invalid::{bounded, ensure, scale};
 use crate::model::{Input, Law, Model, RigidBody};
 use crate::table::{Cell, Table};
 use crate::units::Quantity;
 
-/// Why a model is refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum InvalidModel {
-    /// The model has no input.
-    NoInput,
-    /// A standard quantity occurs twice among the inputs.
-    DuplicateInput,
-    /// The trained range of an input is empty, inverted, not finite, or beyond 1e9.
-    InputRange,
-    /// The output limit is not a positive finite number, or the tables of the law exceed it.
-    OutputLimit,
-    /// A rigid-body parameter is not finite.
-    RigidBody,
-    /// The law needs another number of inputs.
-    LawInputs,
-    /// The layout of a table is out of its documented range.
-    TableShape,
-    /// A table reaches beyond the pool of coefficients.
-    CellOutOfPool,
-    /// A coefficient of a cell is infinite, NaN, subnormal, or too large.
-    Coefficient,
-    /// Layers and sources of a network do not fit each other.
-    NetworkShape,
-    /// The program of an expression cannot be evaluated.
-    Program(ProgramFault),
-    /// A coefficient of an effect is not finite, or a scale of it is not above zero.
-    EffectCoefficient,
-    /// An effect needs an input that the model does not have.
-    EffectInput,
-    /// A frictional lag that is not the first effect: the law sees the velocity that it gives.
-    LagNotFirst,
-}
-
-/// Largest magnitude of a trained range and of a coefficient: keeps every sum of a table and of a state finite.
-const LARGEST: f32 = 1.0e9;
-
 /// Slowest and fastest decay of a viscosity over temperature, 1/K: below, `f32` does not tell it from a line; above, there is no grease.
 const SLOWEST_DECAY: f32 = 1.0e-4;
 const FASTEST_DECAY: f32 = 10.0;
-
-fn ensure(holds: bool, otherwise: InvalidModel) -> Result<(), InvalidModel> {
-    if holds { Ok(()) } else { Err(otherwise) }
-}
-
-fn bounded(x: f32) -> bool {
-    x.abs() <= LARGEST
-}
-
-/// A scale by which something is divided.
-fn scale(x: f32) -> bool {
-    (1.0 / LARGEST..=LARGEST).contains(&x)
-}
 
 impl<const CELLS: usize> Model<CELLS> {
     /// Checks everything that evaluation relies on.
@@ -124,14 +75,7 @@ fn check_inputs(inputs: &[Input]) -> Result<(), InvalidModel> {
 
 fn check_layout(table: &Table) -> Result<(), InvalidModel> {
     let holds = match table {
-        Table::Geometric(layout) => {
-            let shape = layout.shape();
-            (-60..=60).contains(&shape.offset_exponent)
-                && shape.octave_cells_log2 <= 8
-                && scale(shape.reach)
-                && scale(shape.reach_negative)
-                && layout.fits()
-        }
+        Table::Geometric(layout) => layout.shape().is_within_range() && layout.fits(),
         Table::Uniform(layout) => {
             let shape = layout.shape();
             shape.cells >= 1 && bounded(shape.low) && bounded(shape.high) && scale(shape.high - shape.low)
@@ -143,8 +87,7 @@ fn check_layout(table: &Table) -> Result<(), InvalidModel> {
 fn check_table(table: &Table, cells: &[Cell]) -> Result<(), InvalidModel> {
     check_layout(table)?;
     let cells = rows(cells, table.first_cell(), table.cells(), 1)?;
-    let usable = |coefficient: f32| coefficient == 0.0 || (coefficient.is_normal() && bounded(coefficient));
-    ensure(cells.iter().all(|cell| cell.floats().into_iter().all(usable)), InvalidModel::Coefficient)
+    ensure(cells.iter().all(Cell::is_usable), InvalidModel::Coefficient)
 }
 
 /// The cells of `count` rows of `columns` cells.

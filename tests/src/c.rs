@@ -4,6 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use frikan_trainer::emulator::{Firmware, forbidden_symbols};
+
 /// What says what is wrong. Nothing is said of contraction: the exported sources see to it.
 const FLAGS: [&str; 4] = ["-O2", "-Wall", "-Wextra", "-Werror"];
 
@@ -56,6 +58,55 @@ pub fn firmware(drive: &[PathBuf], definitions: &[String], elf: &Path) {
     gcc.args([example.join("startup.c"), example.join("main.c")]).args(drive);
     gcc.args(["-lgcc", "-Wl,--gc-sections", "-Wl,-z,noexecstack", "-T"]).arg(example.join("cortex-m4f.ld"));
     run(gcc.arg("-o").arg(elf));
+}
+
+/// Inputs of a row of the example: velocity, position, load, temperature, velocity of the reference, torque of the loop.
+pub const EXAMPLE_INPUTS: usize = 6;
+
+/// Features of the library with which it takes every image; the default ones take tables.
+pub const EVERY_FEATURE: &str = "supervised,slots,auth,expression,network,effects";
+
+/// The library for a Cortex-M4F, by default or with these features alone, and what the example has to be told of them.
+///
+/// # Panics
+/// Where it cannot be built.
+#[must_use]
+pub fn library(features: Option<&str>) -> (PathBuf, Vec<String>) {
+    let sources = Firmware::find().expect("a checkout has the firmware");
+    let sources = features.map_or(sources.clone(), |features| sources.with_features(features));
+    let target = sources.target("cortex-m4f").expect("it is one of the targets");
+    let library = sources.build_c_library(&target).expect("tests/setup.sh installs the target");
+    (library, features.map(|_| "FRIKAN_MODELS".to_owned()).into_iter().collect())
+}
+
+/// The example firmware with the library, linked into `folder`.
+///
+/// # Panics
+/// Where it cannot be built, or holds a panic or an allocator.
+#[must_use]
+pub fn example(folder: &Path, features: Option<&str>, definitions: &[String]) -> PathBuf {
+    let (library, mut all) = library(features);
+    all.extend_from_slice(definitions);
+    let elf = folder.join("drive.elf");
+    firmware(&[library_folder().join("example/drive.c"), library], &all, &elf);
+    assert_eq!(forbidden_symbols(&elf).expect("it was linked"), [""; 0]);
+    elf
+}
+
+/// The example firmware without the library, to take sizes against.
+///
+/// # Panics
+/// Where it cannot be built.
+#[must_use]
+pub fn example_of_nothing(folder: &Path) -> PathBuf {
+    let drive = folder.join("nothing.c");
+    let source = "#include \"drive.h\"\n\
+        FrikanStatus drive_start(void) { return FRIKAN_STATUS_ACTIVE; }\n\
+        float drive_step(const FrikanSample *sample) { return sample->measurement.velocity; }\n";
+    std::fs::write(&drive, source).expect("the folder can be written");
+    let elf = folder.join("nothing.elf");
+    firmware(&[drive], &[], &elf);
+    elf
 }
 
 /// The assembly of a source for the Cortex-M4F, compiled with nothing but `options`, or what the compiler says against it.

@@ -139,17 +139,17 @@ fn the_cortex_m4f_computes_the_bits_of_the_runtime() {
         let drive = at.join("drive.c");
         let text = "#include \"drive.h\"\n#include \"law.h\"\n\
             FrikanStatus drive_start(void) { return FRIKAN_STATUS_ACTIVE; }\n\
-            float drive_step(const FrikanMeasurement *sample) { return law_friction(sample->velocity); }\n";
+            float drive_step(const FrikanSample *sample) { return law_friction(sample->measurement.velocity); }\n";
         std::fs::write(&drive, text).unwrap();
         let elf = at.join("drive.elf");
         firmware(&[write(at, &model), drive], &[], &elf);
         let emulator = Emulator::with_elf(Firmware::find().unwrap().target("cortex-m4f").unwrap(), elf).unwrap();
         let values = rows(&model, ROWS / 10);
-        let padded: Vec<f32> = values.iter().flat_map(|value| [*value, 0.0, 0.0, 0.0]).collect();
+        let padded: Vec<f32> = values.iter().flat_map(|value| [*value, 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
         let request = Request {
             image: &[],
             values: &padded,
-            inputs: 4,
+            inputs: 6,
             outputs: 1,
             mode: Mode::Evaluate,
             floating_point_control: 0,

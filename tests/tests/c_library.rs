@@ -1,6 +1,6 @@
 //! The C library in the example firmware on the emulated Cortex-M4F, against the compensator of the host.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use frikan_runtime::compensator::{Compensator, Limits, Status};
 use frikan_runtime::friction::Measurement;
@@ -8,31 +8,55 @@ use frikan_runtime::shared::authentication::{KEY_BYTES, Key};
 use frikan_runtime::shared::effect::{Effect, Element, Harmonic, Kind};
 use frikan_runtime::shared::model::Input;
 use frikan_runtime::shared::units::{Quantity, Unit};
-use frikan_tests::c::{firmware, library_folder};
-use frikan_tests::models::{CELLS, TestModel, image, stribeck_expression, symmetric_table};
-use frikan_tests::vectors::space_filling;
-use frikan_trainer::emulator::{Answer, Emulator, Firmware, Mode, Request, forbidden_symbols};
+use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
+use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS as INPUTS, example, example_of_nothing};
+use frikan_tests::models::{CELLS, TestModel, image, sided_table, stribeck_expression, symmetric_table};
+use frikan_trainer::emulator::{Answer, Emulator, Firmware, Mode, Request, footprint};
 use frikan_trainer::error::Result;
 
 const ROWS: usize = 20_000;
 
-/// The limits and the period of the example.
+/// The limits, the period, the inertia and the friction of the example.
 const LIMITS: [f32; 3] = [0.9, 40.0, 8000.0];
 const PERIOD: f32 = 1.0e-3;
+const INERTIA: f32 = 0.5;
+const FRICTION: f32 = 20.0;
 
-/// The example with `definitions`, linked into `folder`.
-fn example(folder: &Path, definitions: &[String]) -> Emulator {
-    let sources = Firmware::find().unwrap();
-    let target = sources.target("cortex-m4f").unwrap();
-    let library = sources.build_c_library(&target).unwrap();
-    let elf = folder.join("drive.elf");
-    firmware(&[library_folder().join("example/drive.c"), library], definitions, &elf);
-    assert_eq!(forbidden_symbols(&elf).unwrap(), [""; 0]);
+/// Most that the library takes with its default features, bytes of flash and of stack.
+const FLASH_BYTES: u64 = 8 << 10;
+const STACK_BYTES: u32 = 512;
+
+fn emulator(elf: PathBuf) -> Emulator {
+    let target = Firmware::find().unwrap().target("cortex-m4f").unwrap();
     Emulator::with_elf(target, elf).unwrap()
 }
 
 fn torques(emulator: &Emulator, image: &[u8], values: &[f32]) -> Result<Answer> {
-    emulator.run(&Request { image, values, inputs: 4, outputs: 1, mode: Mode::Evaluate, floating_point_control: 0 })
+    emulator.run(&Request {
+        image,
+        values,
+        inputs: INPUTS,
+        outputs: 1,
+        mode: Mode::Evaluate,
+        floating_point_control: 0,
+    })
+}
+
+/// A joint that goes to and fro, rests, and now and then lacks a channel.
+fn samples() -> Vec<[f32; INPUTS]> {
+    let mut position = 0.0f32;
+    let row = |index: usize| {
+        let time = index as f32 * PERIOD;
+        let reference = if index / 900 % 4 == 3 { 0.0 } else { 1.2 * (3.0 * time).sin() };
+        let velocity = reference + 0.003 * (211.0 * time).sin();
+        position += velocity * PERIOD;
+        let mut row = [velocity, position, 8.0 * time.cos(), 20.0 + time, reference, 15.0 * velocity.signum()];
+        if index % 61 == 60 {
+            row[index / 61 % INPUTS] = [f32::NAN, f32::INFINITY, -0.0][index / 61 % 3];
+        }
+        row
+    };
+    (0..ROWS).map(row).collect()
 }
 
 /// A law with corrections that remember, over all channels of the example.
@@ -67,39 +91,62 @@ fn with_effects() -> TestModel {
     model
 }
 
-#[test]
-fn the_example_in_c_computes_the_bits_of_the_host() {
+/// The example with the library of `features`, against the supervised compensator of the host.
+fn computes_the_bits_of_the_host(features: Option<&str>, models: &[(&str, TestModel)]) {
     let folder = tempfile::tempdir().unwrap();
-    let emulator = example(folder.path(), &[]);
-    // Every sixteenth row has a special value: NaN and infinities are among them.
-    let values = space_filling(ROWS, &[2.0, 3.0, 20.0, 60.0]);
-    for (name, model) in [("table", symmetric_table()), ("expression with effects", with_effects())] {
-        let image = image(&model);
-        let answer = torques(&emulator, &image, &values).unwrap();
+    let emulator = emulator(example(folder.path(), features, &[]));
+    let samples = samples();
+    for (name, model) in models {
+        let image = image(model);
+        let answer = torques(&emulator, &image, samples.as_flattened()).unwrap();
         let mut compensator = Compensator::<CELLS>::new(&image, Limits::new(LIMITS[0], LIMITS[1], LIMITS[2]).unwrap());
-        let (rows, _) = values.as_chunks::<4>();
+        let mut supervisor = Supervisor::new(Supervision::new(INERTIA, FRICTION));
+        // The example measures its stack by a first step at rest.
+        let at_rest = Sample { measurement: Measurement::ZERO, reference_velocity: Some(0.0), loop_torque: 0.0 };
+        let _ = supervisor.step(&mut compensator, &at_rest, PERIOD);
         let mut active = 0;
-        for (row, torque) in rows.iter().zip(&answer.outputs) {
-            let [velocity, position, load, temperature] = *row;
-            let sample = Measurement { velocity, position, load, temperature, ..Measurement::default() };
-            let expected = compensator.step(&sample, PERIOD);
-            active += usize::from(expected.status == Status::Active && expected.torque != 0.0);
+        for (row, torque) in samples.iter().zip(&answer.outputs) {
+            let [velocity, position, load, temperature, reference, loop_torque] = *row;
+            let measurement = Measurement { velocity, position, load, temperature, other: [0.0; 4], acceleration: 0.0 };
+            let reference_velocity = (!reference.is_nan()).then_some(reference);
+            let sample = Sample { measurement, reference_velocity, loop_torque };
+            let expected = supervisor.step(&mut compensator, &sample, PERIOD);
+            let is_active = expected.status == Supervised::Compensator(Status::Active);
+            active += usize::from(is_active && expected.torque != 0.0);
             assert_eq!(torque.to_bits(), expected.torque.to_bits(), "{name} at {row:?}");
         }
-        assert!(active > ROWS / 2 && answer.outputs.len() == ROWS);
+        assert!(active > ROWS / 2 && answer.outputs.len() == ROWS, "{name}: {active}");
     }
+}
+
+#[test]
+fn the_example_in_c_computes_the_bits_of_the_host() {
+    computes_the_bits_of_the_host(None, &[("table", symmetric_table()), ("sided table", sided_table())]);
+    let others = [("table", symmetric_table()), ("expression with effects", with_effects())];
+    computes_the_bits_of_the_host(Some(EVERY_FEATURE), &others);
+}
+
+#[test]
+fn the_library_is_small_by_default() {
+    let folder = tempfile::tempdir().unwrap();
+    let elf = example(folder.path(), None, &[]);
+    let flash = footprint(&elf).unwrap().beyond(footprint(&example_of_nothing(folder.path())).unwrap()).flash_bytes;
+    assert!(flash <= FLASH_BYTES, "{flash} bytes of flash");
+    let answer = torques(&emulator(elf), &image(&symmetric_table()), &[0.0; INPUTS]).unwrap();
+    let stack = answer.decode_stack_bytes.max(answer.evaluate_stack_bytes);
+    assert!(stack <= STACK_BYTES && answer.decode_stack_bytes > 100, "{answer:?}");
 }
 
 #[test]
 fn a_damaged_image_leaves_the_example_off() {
     let folder = tempfile::tempdir().unwrap();
-    let emulator = example(folder.path(), &[]);
+    let emulator = emulator(example(folder.path(), None, &[]));
     let sound = image(&symmetric_table());
-    torques(&emulator, &sound, &[0.1; 4]).unwrap();
+    torques(&emulator, &sound, &[0.1; INPUTS]).unwrap();
     for byte in [0, 5, 9, 13, 40, sound.len() - 1] {
         let mut damaged = sound.clone();
         damaged[byte] ^= 0x04;
-        let error = torques(&emulator, &damaged, &[0.1; 4]).unwrap_err().to_string();
+        let error = torques(&emulator, &damaged, &[0.1; INPUTS]).unwrap_err().to_string();
         assert!(error.contains("refuses the image"), "byte {byte}: {error}");
     }
 }
@@ -109,14 +156,15 @@ fn an_example_with_a_key_takes_its_images_only() {
     let secret: [u8; KEY_BYTES] = std::array::from_fn(|index| 7 * index as u8 + 1);
     let digits: Vec<String> = secret.iter().map(|byte| format!("0x{byte:02x}")).collect();
     let folder = tempfile::tempdir().unwrap();
-    let emulator = example(folder.path(), &[format!("DRIVE_KEY={}", digits.join(","))]);
+    let key = format!("DRIVE_KEY={}", digits.join(","));
+    let emulator = emulator(example(folder.path(), Some(EVERY_FEATURE), &[key]));
     let plain = image(&symmetric_table());
     let tagged = |key: [u8; KEY_BYTES]| [&plain[..], &Key::new(key).tag(&plain)].concat();
-    assert!(torques(&emulator, &tagged(secret), &[0.1; 4]).unwrap().outputs[0] > 0.0);
+    assert!(torques(&emulator, &tagged(secret), &[0.1; INPUTS]).unwrap().outputs[0] > 0.0);
     let mut other = secret;
     other[31] ^= 0x80;
     for foreign in [plain.clone(), tagged(other)] {
-        let error = torques(&emulator, &foreign, &[0.1; 4]).unwrap_err().to_string();
+        let error = torques(&emulator, &foreign, &[0.1; INPUTS]).unwrap_err().to_string();
         // 0x100 and FRIKAN_STATUS_NOT_AUTHENTIC.
         assert!(error.contains("refuses the image") && error.contains("260"), "{error}");
     }

@@ -2,6 +2,7 @@
 //! `FRIKAN_EXHAUSTIVE=1` all 2^32 patterns are looked at, which takes minutes; else an even part of them.
 
 use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::in_place::TableInPlace;
 use frikan_runtime::integer_table::evaluate_integer;
 use frikan_runtime::shared::model::Law;
 use frikan_runtime::shared::table::{Geometric, GeometricShape, Symmetry, Table, Uniform, UniformShape};
@@ -72,6 +73,21 @@ fn one_input_models_agree(is_asked: impl Fn(&Law) -> bool) {
     let asked = |model: &TestModel| model.inputs.len() == 1 && is_asked(&model.law);
     for (name, model) in models::every_law().into_iter().filter(|(_, model)| asked(model)) {
         agrees(name, &model);
+    }
+}
+
+/// The table of an image that is read where it lies gives what the decoded one gives.
+#[test]
+fn tables_in_place_agree_at_every_input() {
+    for (name, model) in [("symmetric", models::symmetric_table()), ("sided", models::sided_table())] {
+        let image = models::image(&model);
+        let table = TableInPlace::new(&image).unwrap();
+        let exception = first_exception(|bits| {
+            let velocity = f32::from_bits(bits);
+            let expected = evaluate_one(&model, &[velocity, 0.0, 0.0, 0.0]);
+            velocity.is_nan() || table.value(velocity).to_bits() == expected.to_bits()
+        });
+        assert_eq!(exception, None, "{name}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! The whole way on other people's recordings, read from `../shared/recordings`: published figures are reached.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use frikan_tests::fixtures::separated_recording;
 use frikan_tests::paper::JOINTS;
@@ -10,7 +10,7 @@ use frikan_trainer::fit::outcome::{Outcome, Representation};
 use frikan_trainer::fit::{Options, fit};
 use frikan_trainer::joint::Joint;
 use frikan_trainer::law::KnownForm;
-use frikan_trainer::recording::{self, Recording};
+use frikan_trainer::recording::{self, Quantity, Recording};
 
 fn load(path: &Path) -> Recording {
     recording::load(path, &Joint::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -84,5 +84,51 @@ fn the_image_of_the_published_law_explains_an_independent_clean_set() {
     for (name, truth) in names.into_iter().zip(JOINTS[0]) {
         let found = outcome.parameters.iter().find(|parameter| parameter.name == name).unwrap();
         assert!((found.value / truth - 1.0).abs() < 1e-3, "{found:?}");
+    }
+}
+
+/// What is not a recording: the list of runs of the pendulum.
+const LISTS: [&str; 1] = ["runs.csv"];
+
+fn tables(folder: &Path, found: &mut Vec<PathBuf>) {
+    let entries = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    for path in entries.map(|entry| entry.expect("an entry").path()) {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            tables(&path, found);
+        } else if name.ends_with(".csv") && !LISTS.contains(&name.as_str()) {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_recording_is_read_as_proposed() {
+    let Some(folder) = recordings() else { return };
+    let mut paths = Vec::new();
+    tables(&folder, &mut paths);
+    tables(&folder.with_file_name("field").join("recordings"), &mut paths);
+    assert!(paths.len() > 60, "{}", paths.len());
+    for path in paths {
+        let (proposal, recording) = recording::propose(&path).unwrap_or_else(|error| panic!("{error}"));
+        let joint = Joint::parse(&proposal.toml).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let again = recording::load(&path, &joint).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(again.channels, recording.channels);
+        // Where the file has a pendulum by a servo, or a map, there is no torque or no time; a position there always is.
+        assert!(again.values(Quantity::Position).is_some(), "{}: {:?}", path.display(), proposal.taken);
+    }
+}
+
+/// Columns without units: those of the owners' joint.toml are found.
+#[test]
+fn units_that_no_name_says_are_found() {
+    let Some(folder) = recordings() else { return };
+    let folder = folder.with_file_name("field").join("recordings");
+    let given = Joint::load(&folder.join("dfki_sp.toml")).unwrap_or_else(|error| panic!("{error}"));
+    for run in ["ddp", "ddp_desired", "energy_shaping", "pd_system_identification"] {
+        let path = folder.join(format!("dfki_sp_{run}.csv"));
+        let (_, proposed) = recording::propose(&path).unwrap_or_else(|error| panic!("{error}"));
+        let known = recording::load(&path, &given).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(proposed.channels, known.channels, "{run}");
     }
 }

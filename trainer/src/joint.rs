@@ -1,6 +1,7 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
 mod columns;
+mod keys;
 mod urdf;
 
 use std::path::Path;
@@ -17,6 +18,13 @@ const SIZE_LIMIT_BYTES: u64 = 1 << 20;
 
 /// Largest URDF file that is read, in bytes.
 const URDF_LIMIT_BYTES: u64 = 64 << 20;
+
+/// Lowest speed and acceleration that a limit of a joint can be, rad/s and rad/s2 (m/s, m/s2): a turn in two hundred years. A motion
+/// planned within less has no end.
+const SLOWEST_LIMIT: f64 = 1e-9;
+
+/// Furthest position and highest speed and acceleration that a limit can be, in the same units: beyond any joint.
+const FURTHEST_LIMIT: f64 = 1e9;
 
 /// What is known of a joint before a recording is read.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -89,10 +97,10 @@ pub struct Limits {
     /// Highest position, rad (m).
     #[serde(alias = "highest_position_m")]
     pub highest_position_rad: Option<f64>,
-    /// Largest speed, rad/s (m/s); above zero.
+    /// Largest speed, rad/s (m/s); from 1e-9 to 1e9.
     #[serde(alias = "velocity_m_s")]
     pub velocity_rad_s: Option<f64>,
-    /// Largest acceleration, rad/s2 (m/s2); above zero.
+    /// Largest acceleration, rad/s2 (m/s2); from 1e-9 to 1e9.
     #[serde(alias = "acceleration_m_s2")]
     pub acceleration_rad_s2: Option<f64>,
 }
@@ -188,16 +196,28 @@ impl Joint {
             ("drive.counts_per_turn", drive.counts_per_turn),
             ("drive.torque_limit_Nm", drive.torque_limit_nm),
             ("drive.rate_Hz", drive.rate_hz),
-            ("limits.velocity_rad_s", self.limits.velocity_rad_s),
-            ("limits.acceleration_rad_s2", self.limits.acceleration_rad_s2),
         ];
         let finite = [
             ("rigid_body.gravity_torque_Nm", self.rigid_body.gravity_torque_nm),
             ("rigid_body.gravity_phase_rad", self.rigid_body.gravity_phase_rad),
             ("drive.gear_ratio", drive.gear_ratio),
+        ];
+        let rates = [
+            ("limits.velocity_rad_s", self.limits.velocity_rad_s),
+            ("limits.acceleration_rad_s2", self.limits.acceleration_rad_s2),
+        ];
+        let positions = [
             ("limits.lowest_position_rad", self.limits.lowest_position_rad),
             ("limits.highest_position_rad", self.limits.highest_position_rad),
         ];
+        for (key, value) in rates {
+            let rule = format!("this has to lie between {SLOWEST_LIMIT:e} and {FURTHEST_LIMIT:e}");
+            refuse(key, value, &rule, |x| (SLOWEST_LIMIT..=FURTHEST_LIMIT).contains(&x))?;
+        }
+        for (key, value) in positions {
+            let rule = format!("this has to lie between -{FURTHEST_LIMIT:e} and {FURTHEST_LIMIT:e}");
+            refuse(key, value, &rule, |x| x.abs() <= FURTHEST_LIMIT)?;
+        }
         for (key, value) in above_zero {
             refuse(key, value, "this has to be a finite number above zero", |x| x.is_finite() && x > 0.0)?;
         }
@@ -289,6 +309,9 @@ mod tests {
             "[rigid_body]\ninertia_kgm2 = -1",
             "[limits]\nlowest_position_rad = 1\nhighest_position_rad = 0",
             "[simulation.columns]\nposition = { name = \"q\", scale = 0 }",
+            "[limits]\nvelocity_rad_s = 1e-18",
+            "[limits]\nacceleration_rad_s2 = 1e-300",
+            "[limits]\nhighest_position_rad = inf",
         ] {
             let error = Joint::parse(text).unwrap_err();
             assert_eq!(error.code(), &codes::BAD_JOINT_FILE);

@@ -11,6 +11,7 @@ pub mod export;
 pub mod figures;
 pub mod files;
 pub mod fit;
+mod inference;
 pub mod joint;
 pub mod kan;
 pub mod key;

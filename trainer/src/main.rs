@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use frikan_trainer::commands::output::print;
-use frikan_trainer::commands::{closed_loop, diagnose, explain, export, fit, predict, show, simulate, verify};
+use frikan_trainer::commands::{closed_loop, diagnose, explain, export, fit, init, predict, show, simulate, verify};
 use frikan_trainer::error::Result;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
@@ -20,6 +20,7 @@ struct Trainer {
 
 #[derive(Subcommand)]
 enum Command {
+    Init(init::Init),
     Fit(fit::Fit),
     Show(show::Show),
     Predict(predict::Predict),
@@ -33,6 +34,7 @@ enum Command {
 
 fn run(command: &Command) -> Result<u8> {
     match command {
+        Command::Init(arguments) => init::run(arguments).map(|()| 0),
         Command::Fit(arguments) => fit::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),

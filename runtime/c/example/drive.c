@@ -16,13 +16,23 @@ static const uint8_t secret[FRIKAN_KEY_BYTES] = {DRIVE_KEY};
 #define KEY ((const uint8_t *)0)
 #endif
 
+/* Inertia and friction of the joint, roughly: what the supervisor compares with. */
+#define INERTIA_KGM2 0.5f
+#define FRICTION_NM 20.0f
+
 static FrikanCompensator elbow;
+static FrikanSupervisor watch;
 
 FrikanStatus drive_start(void) {
+    /* A library built with other features than this file. */
+    if (frikan_compensator_bytes() != sizeof elbow) return FRIKAN_STATUS_NOT_STARTED;
+    const FrikanSupervision settings = frikan_supervision(INERTIA_KGM2, FRICTION_NM);
+    FrikanStatus status = frikan_supervise(&watch, &settings);
+    if (status != FRIKAN_STATUS_ACTIVE) return status;
     return frikan_start(&elbow, _image_start, (size_t)(_image_end - _image_start), KEY, &limits);
 }
 
-float drive_step(const FrikanMeasurement *measurement) {
-    /* Zero unless the status is FRIKAN_STATUS_ACTIVE. */
-    return frikan_step(&elbow, measurement, PERIOD_S).torque;
+float drive_step(const FrikanSample *sample) {
+    /* Supervised: the bare frikan_step at a measured velocity switches its torque at rest, and the joint hunts. */
+    return frikan_supervised_step(&watch, &elbow, sample, PERIOD_S).torque;
 }

@@ -8,6 +8,6 @@
 FrikanStatus drive_start(void);
 
 /* The servo interrupt, every millisecond: the torque to add to the controller's. */
-float drive_step(const FrikanMeasurement *measurement);
+float drive_step(const FrikanSample *sample);
 
 #endif

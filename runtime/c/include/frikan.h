@@ -19,8 +19,15 @@
 // Bytes of the header of a slot.
 #define FRIKAN_SLOT_HEADER_BYTES 16
 
+#if defined(FRIKAN_MODELS)
 // Words of a compensator's memory.
 #define FRIKAN_STORAGE_WORDS 640
+#endif
+
+#if !defined(FRIKAN_MODELS)
+// Words of a compensator's memory.
+#define FRIKAN_STORAGE_WORDS 12
+#endif
 
 // Channels without a standard quantity.
 #define FRIKAN_OTHER_CHANNELS 4
@@ -66,6 +73,8 @@ enum FrikanStatus
   FRIKAN_STATUS_IMPLAUSIBLE = 14,
   // A setting of the supervision is out of range: nothing was changed.
   FRIKAN_STATUS_BAD_SUPERVISION = 15,
+  // The image needs a part that this library was built without.
+  FRIKAN_STATUS_NOT_BUILT_IN = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -96,16 +105,6 @@ typedef struct {
   float position;
 } FrikanLimits;
 
-// The answer to one sample.
-typedef struct {
-  // Torque to add, in the unit of the model's output; 0 unless active.
-  float torque;
-  // What the model says of the link's position against the motor's, rad, within the limit; 0 unless active.
-  float position;
-  // Whether it is a compensation.
-  FrikanStatus status;
-} FrikanCompensation;
-
 // What the drive knows of the joint in one sample, in SI. Channels that the model does not use may hold anything; one that it does use and
 // that nobody measures has to be NaN, as in frikan_no_measurement, and gives no torque.
 typedef struct {
@@ -122,6 +121,20 @@ typedef struct {
   // Channels without a standard quantity, in the order of the model's inputs.
   float other[FRIKAN_OTHER_CHANNELS];
 } FrikanMeasurement;
+
+// A law that is compiled in, such as `trainer export --to c` writes it: from what was handed over at the start, a sample and its period in
+// seconds to the friction. NaN where a channel that it reads is missing: the torque is then 0.
+typedef float (*FrikanLaw)(void *context, const FrikanMeasurement *measurement, float dt);
+
+// The answer to one sample.
+typedef struct {
+  // Torque to add, in the unit of the model's output; 0 unless active.
+  float torque;
+  // What the model says of the link's position against the motor's, rad, within the limit; 0 unless active.
+  float position;
+  // Whether it is a compensation.
+  FrikanStatus status;
+} FrikanCompensation;
 
 // A write to come.
 typedef struct {
@@ -210,7 +223,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why; limits that are
+// Starts a compensator with the image at an address, which has to stay there: a table is read where it lies. An image that is refused leaves it off, and every step says why; limits that are
 // refused leave the memory as it was.
 //
 // @param flash  where the image begins
@@ -225,19 +238,21 @@ FrikanStatus frikan_start(FrikanCompensator *compensator,
                           const uint8_t *key,
                           const FrikanLimits *limits);
 
-// Starts a compensator with the newest usable image of two slots of flash.
+// Starts a compensator with a law of the firmware in place of an image, within the same limits.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param law      called once a step with `context`; null leaves the compensator as it was
+// @param context  handed over to the law as it is
 //
 // # Safety
-// Pointers are null or good for what their names say.
-FrikanStatus frikan_start_from_slots(FrikanCompensator *compensator,
-                                     const uint8_t *first,
-                                     size_t first_bytes,
-                                     const uint8_t *second,
-                                     size_t second_bytes,
-                                     const uint8_t *key,
-                                     const FrikanLimits *limits);
+// Pointers are null or good for what their names say, law and context as long as the compensator steps.
+FrikanStatus frikan_start_with_law(FrikanCompensator *compensator,
+                                   FrikanLaw law,
+                                   void *context,
+                                   const FrikanLimits *limits);
+
+// Bytes of a FrikanCompensator as this library knows it. Where it is not the size that the firmware knows, FRIKAN_MODELS is not defined as the
+// library was built.
+size_t frikan_compensator_bytes(void);
 
 // The compensation after a sample period of `dt` seconds. Call it at a fixed rate.
 //
@@ -262,6 +277,20 @@ FrikanMeasurement frikan_no_measurement(void);
 // # Safety
 // The pointer is null or good.
 void frikan_reset(FrikanCompensator *compensator);
+
+// Starts a compensator with the newest usable image of two slots of flash, which has to stay there.
+//
+// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_start_from_slots(FrikanCompensator *compensator,
+                                     const uint8_t *first,
+                                     size_t first_bytes,
+                                     const uint8_t *second,
+                                     size_t second_bytes,
+                                     const uint8_t *key,
+                                     const FrikanLimits *limits);
 
 // The slot to write next, never the one in use. Erase it, program the image, and the header of frikan_slot_header last.
 //

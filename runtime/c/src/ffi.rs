@@ -1,18 +1,19 @@
 //! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call.
 
-use core::mem::MaybeUninit;
+use core::ffi::c_void;
 use core::slice;
 
-use frikan_runtime::compensator::{Compensator, Limits};
-use frikan_runtime::friction::Measurement;
+use frikan_runtime::compensator::{Limited, Limits};
+use frikan_runtime::measurement::Measurement;
 use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
-use frikan_runtime::shared::model::MAX_INPUTS;
-use frikan_runtime::slots::{SLOT_HEADER_BYTES, Which, next_write, slot_header};
+use frikan_runtime::shared::image::ImageError;
+use frikan_runtime::shared::input::MAX_INPUTS;
 
 use crate::memory::{self, Memory, content};
+use crate::model::{Law, Model, read};
 use crate::types::{
-    FRIKAN_CELLS, FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_SLOT_HEADER_BYTES, FRIKAN_STORAGE_WORDS,
-    FrikanCompensation, FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus,
+    FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_STORAGE_WORDS, FrikanCompensation, FrikanLaw, FrikanLimits,
+    FrikanMeasurement, FrikanStatus,
 };
 
 /// Friction compensation of one joint. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory is
@@ -25,11 +26,11 @@ pub struct FrikanCompensator {
     storage: [u64; FRIKAN_STORAGE_WORDS],
 }
 
-type Inner = Compensator<FRIKAN_CELLS>;
+pub(crate) type Inner = Limited<Model>;
 
 const _: () = {
     assert!(size_of::<Inner>() <= 8 * FRIKAN_STORAGE_WORDS && align_of::<Inner>() <= align_of::<u64>());
-    assert!(KEY_BYTES == FRIKAN_KEY_BYTES && SLOT_HEADER_BYTES == FRIKAN_SLOT_HEADER_BYTES);
+    assert!(KEY_BYTES == FRIKAN_KEY_BYTES);
     assert!(MAX_INPUTS == FRIKAN_OTHER_CHANNELS);
 };
 
@@ -48,7 +49,7 @@ unsafe impl Memory for FrikanCompensator {
 ///
 /// # Safety
 /// `memory` is null or may be written to.
-unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanStatus {
+pub(crate) unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanStatus {
     let status = compensator.status().into();
     // SAFETY: the caller's word.
     if unsafe { memory::start(memory, compensator) } { status } else { FrikanStatus::NotStarted }
@@ -58,21 +59,27 @@ unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -> FrikanSta
 ///
 /// # Safety
 /// `bytes` is null or `length` bytes may be read from it during the call.
-unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
+pub(crate) unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
     // SAFETY: the caller's word; no object is larger than `isize::MAX`.
     if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
 }
 
-/// The key of C, where there is one.
+/// The key of C, where there is one. A library without authentication does not start with one.
 ///
 /// # Safety
 /// `key` is null or KEY_BYTES may be read from it.
-unsafe fn key_at(key: *const u8) -> Option<Key> {
+pub(crate) unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
     // SAFETY: the caller's word; an array of bytes has no alignment.
-    unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() }.map(|bytes| Key::new(*bytes))
+    match unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() } {
+        None => Ok(None),
+        #[cfg(feature = "auth")]
+        Some(bytes) => Ok(Some(Key::new(*bytes))),
+        #[cfg(not(feature = "auth"))]
+        Some(_) => Err(ImageError::NotBuiltIn),
+    }
 }
 
-fn trust_of(key: Option<&Key>) -> Trust<'_> {
+pub(crate) fn trust_of(key: Option<&Key>) -> Trust<'_> {
     key.map_or(Trust::Anyone, Trust::Key)
 }
 
@@ -80,13 +87,13 @@ fn trust_of(key: Option<&Key>) -> Trust<'_> {
 ///
 /// # Safety
 /// `limits` is null or may be read.
-unsafe fn limits_at(limits: *const FrikanLimits) -> Option<Limits> {
+pub(crate) unsafe fn limits_at(limits: *const FrikanLimits) -> Option<Limits> {
     // SAFETY: the caller's word.
     let FrikanLimits { gain, torque, slew, position } = *unsafe { limits.as_ref() }?;
     Limits::new(gain, torque, slew).and_then(|limits| limits.with_position(position)).ok()
 }
 
-/// Starts a compensator with the image at an address. An image that is refused leaves it off, and every step says why; limits that are
+/// Starts a compensator with the image at an address, which has to stay there: a table is read where it lies. An image that is refused leaves it off, and every step says why; limits that are
 /// refused leave the memory as it was.
 ///
 /// @param flash  where the image begins
@@ -106,38 +113,40 @@ pub unsafe extern "C" fn frikan_start(
     // SAFETY: the caller's word.
     let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
     let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let trust = trust_of(key.as_ref());
-    let created = match trust.stored(flash) {
-        Ok(image) => Inner::trusting(image, trust, limits),
-        Err(error) => Inner::with_model(Err(error), limits),
-    };
+    let model = key.and_then(|key| {
+        let trust = trust_of(key.as_ref());
+        trust.stored(flash).and_then(|image| read(image, trust)).map(Model::Image)
+    });
     // SAFETY: the caller's word.
-    unsafe { start(compensator, created) }
+    unsafe { start(compensator, Inner::by(model, limits)) }
 }
 
-/// Starts a compensator with the newest usable image of two slots of flash.
+/// Starts a compensator with a law of the firmware in place of an image, within the same limits.
 ///
-/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+/// @param law      called once a step with `context`; null leaves the compensator as it was
+/// @param context  handed over to the law as it is
 ///
 /// # Safety
-/// Pointers are null or good for what their names say.
+/// Pointers are null or good for what their names say, law and context as long as the compensator steps.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_start_from_slots(
+pub unsafe extern "C" fn frikan_start_with_law(
     compensator: *mut FrikanCompensator,
-    first: *const u8,
-    first_bytes: usize,
-    second: *const u8,
-    second_bytes: usize,
-    key: *const u8,
+    law: FrikanLaw,
+    context: *mut c_void,
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    unsafe {
-        let key = key_at(key);
-        let (first, second) = (readable(first, first_bytes), readable(second, second_bytes));
-        let Some(limits) = limits_at(limits) else { return FrikanStatus::BadLimits };
-        start(compensator, Inner::from_slots(first, second, trust_of(key.as_ref()), limits))
-    }
+    let Some(limits) = (unsafe { limits_at(limits) }) else { return FrikanStatus::BadLimits };
+    let Some(function) = law else { return FrikanStatus::NotStarted };
+    // SAFETY: the caller's word.
+    unsafe { start(compensator, Inner::by(Ok(Model::Law(Law { function, context })), limits)) }
+}
+
+/// Bytes of a FrikanCompensator as this library knows it. Where it is not the size that the firmware knows, FRIKAN_MODELS is not defined as the
+/// library was built.
+#[unsafe(no_mangle)]
+pub extern "C" fn frikan_compensator_bytes() -> usize {
+    size_of::<FrikanCompensator>()
 }
 
 /// The compensation after a sample period of `dt` seconds. Call it at a fixed rate.
@@ -194,44 +203,5 @@ pub unsafe extern "C" fn frikan_reset(compensator: *mut FrikanCompensator) {
     // SAFETY: the caller's word.
     if let Some(compensator) = unsafe { content(compensator) } {
         compensator.reset();
-    }
-}
-
-/// The slot to write next, never the one in use. Erase it, program the image, and the header of frikan_slot_header last.
-///
-/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
-///
-/// # Safety
-/// Pointers are null or good for what their names say.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_next_write(
-    first: *const u8,
-    first_bytes: usize,
-    second: *const u8,
-    second_bytes: usize,
-    key: *const u8,
-) -> FrikanSlotWrite {
-    // SAFETY: the caller's word.
-    let (key, first, second) = unsafe { (key_at(key), readable(first, first_bytes), readable(second, second_bytes)) };
-    let (which, sequence) = next_write::<FRIKAN_CELLS>(first, second, trust_of(key.as_ref()));
-    FrikanSlotWrite { slot: u32::from(which == Which::Second), sequence }
-}
-
-/// Writes the header of a slot, FRIKAN_SLOT_HEADER_BYTES, for an image (and its tag). False where there is none.
-///
-/// # Safety
-/// Pointers are null or good for what their names say.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_slot_header(sequence: u32, image: *const u8, bytes: usize, header: *mut u8) -> bool {
-    // SAFETY: the caller's word.
-    let (made, room) = unsafe {
-        (slot_header(sequence, readable(image, bytes)), header.cast::<MaybeUninit<[u8; SLOT_HEADER_BYTES]>>().as_mut())
-    };
-    match (made, room) {
-        (Some(made), Some(room)) => {
-            room.write(made);
-            true
-        }
-        _ => false,
     }
 }

@@ -1,5 +1,5 @@
-//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs` and `supervised.rs`; these two
-//! and `memory.rs` are the only files with `unsafe`.
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `slots.rs` and `supervised.rs`; these
+//! three, `memory.rs` and `model.rs` are the only files with `unsafe`.
 //!
 //! The static library for a target:
 //!
@@ -17,6 +17,12 @@ extern crate std;
 pub mod ffi;
 #[allow(unsafe_code)]
 mod memory;
+#[allow(unsafe_code)]
+mod model;
+#[cfg(feature = "slots")]
+#[allow(unsafe_code)]
+pub mod slots;
+#[cfg(feature = "supervised")]
 #[allow(unsafe_code)]
 pub mod supervised;
 pub mod types;

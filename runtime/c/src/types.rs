@@ -1,7 +1,9 @@
 //! What C hands over and gets back.
 
+use core::ffi::c_void;
+
 use frikan_runtime::compensator::Status;
-use frikan_runtime::friction::Measurement;
+use frikan_runtime::measurement::Measurement;
 use frikan_runtime::shared::image::ImageError;
 
 /// Cells of tables for which a compensator has room; an image with more is refused.
@@ -14,7 +16,12 @@ pub const FRIKAN_KEY_BYTES: usize = 32;
 pub const FRIKAN_SLOT_HEADER_BYTES: usize = 16;
 
 /// Words of a compensator's memory.
+#[cfg(feature = "models")]
 pub const FRIKAN_STORAGE_WORDS: usize = 640;
+
+/// Words of a compensator's memory.
+#[cfg(not(feature = "models"))]
+pub const FRIKAN_STORAGE_WORDS: usize = 12;
 
 /// Channels without a standard quantity.
 pub const FRIKAN_OTHER_CHANNELS: usize = 4;
@@ -55,6 +62,8 @@ pub enum FrikanStatus {
     Implausible = 14,
     /// A setting of the supervision is out of range: nothing was changed.
     BadSupervision = 15,
+    /// The image needs a part that this library was built without.
+    NotBuiltIn = 16,
 }
 
 impl From<ImageError> for FrikanStatus {
@@ -69,6 +78,7 @@ impl From<ImageError> for FrikanStatus {
             ImageError::TrailingBytes => Self::TrailingBytes,
             ImageError::CrcMismatch => Self::CrcMismatch,
             ImageError::InvalidModel(_) => Self::InvalidModel,
+            ImageError::NotBuiltIn => Self::NotBuiltIn,
             _ => Self::Malformed,
         }
     }
@@ -117,12 +127,24 @@ pub struct FrikanMeasurement {
     pub other: [f32; FRIKAN_OTHER_CHANNELS],
 }
 
+impl From<&Measurement> for FrikanMeasurement {
+    fn from(measurement: &Measurement) -> Self {
+        let Measurement { velocity, position, acceleration, load, temperature, other } = *measurement;
+        Self { velocity, position, acceleration, load, temperature, other }
+    }
+}
+
 impl From<&FrikanMeasurement> for Measurement {
     fn from(measurement: &FrikanMeasurement) -> Self {
         let FrikanMeasurement { velocity, position, acceleration, load, temperature, other } = *measurement;
         Self { velocity, position, acceleration, load, temperature, other }
     }
 }
+
+/// A law that is compiled in, such as `trainer export --to c` writes it: from what was handed over at the start, a sample and its period in
+/// seconds to the friction. NaN where a channel that it reads is missing: the torque is then 0.
+pub type FrikanLaw =
+    Option<unsafe extern "C" fn(context: *mut c_void, measurement: *const FrikanMeasurement, dt: f32) -> f32>;
 
 /// The answer to one sample.
 #[repr(C)]

@@ -1,19 +1,20 @@
 //! The functions as C calls them, on the host: bad pointers, memory that was never started, slots.
 #![allow(unsafe_code)]
 
+use std::ffi::c_void;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use frikan::ffi::{
-    FrikanCompensator, frikan_next_write, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_slot_header,
-    frikan_start, frikan_start_from_slots, frikan_step,
+    FrikanCompensator, frikan_compensator_bytes, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_start,
+    frikan_start_with_law, frikan_step,
 };
+use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_start_from_slots};
 use frikan::supervised::{
     FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_forget, frikan_supervise,
     frikan_supervised_step, frikan_supervision,
 };
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
-use frikan_runtime::shared::authentication::Key;
 
 const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
 const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9, position: 0.0 };
@@ -124,8 +125,10 @@ fn null_pointers_leave_everything_off() {
     }
 }
 
+#[cfg(feature = "auth")]
 #[test]
 fn a_key_asks_for_its_tag() {
+    use frikan_runtime::shared::authentication::Key;
     let key = [9; 32];
     let tagged = [IMAGE, &Key::new(key).tag(IMAGE), &[0xFF; 8]].concat();
     let mut elbow = zeroed();
@@ -133,6 +136,52 @@ fn a_key_asks_for_its_tag() {
     assert_eq!(start(&mut elbow, &tagged, Some(&[8; 32])), FrikanStatus::NotAuthentic);
     assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotAuthentic));
     assert_eq!(start(&mut elbow, &[IMAGE, &[0xFF; 64]].concat(), Some(&key)), FrikanStatus::NotAuthentic);
+}
+
+/// A key that nobody can check is no reason to start.
+#[cfg(not(feature = "auth"))]
+#[test]
+fn a_key_is_refused_by_a_library_without_authentication() {
+    let mut elbow = zeroed();
+    assert_eq!(start(&mut elbow, IMAGE, Some(&[9; 32])), FrikanStatus::NotBuiltIn);
+    assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotBuiltIn));
+}
+
+/// A decoded formula takes more memory than a table in flash.
+#[test]
+fn a_formula_is_taken_by_a_library_with_formulas() {
+    let formula = include_bytes!("../../../fixtures/elbow.frk");
+    let expected = if cfg!(feature = "expression") { FrikanStatus::Active } else { FrikanStatus::NotBuiltIn };
+    assert_eq!(start(&mut zeroed(), formula, None), expected);
+    assert_eq!(frikan_compensator_bytes(), size_of::<FrikanCompensator>());
+}
+
+/// Calls so far, beside the law.
+unsafe extern "C" fn coulomb(calls: *mut c_void, sample: *const FrikanMeasurement, _: f32) -> f32 {
+    // SAFETY: the test gives a counter, the library a sample.
+    unsafe {
+        *calls.cast::<u32>() += 1;
+        8.0 * (*sample).velocity.signum()
+    }
+}
+
+#[test]
+fn a_law_of_the_firmware_stands_within_the_limits() {
+    let (mut elbow, mut calls) = (zeroed(), 0u32);
+    let limits = FrikanLimits { gain: 0.5, torque: 3.0, ..LIMITS };
+    // SAFETY: references, and null where it is said.
+    unsafe {
+        let context = (&raw mut calls).cast();
+        assert_eq!(frikan_start_with_law(&mut *elbow, None, context, &limits), FrikanStatus::NotStarted);
+        assert_eq!(frikan_start_with_law(&mut *elbow, Some(coulomb), context, null()), FrikanStatus::BadLimits);
+        assert_eq!(frikan_start_with_law(&mut *elbow, Some(coulomb), context, &limits), FrikanStatus::Active);
+        assert_eq!(step(&mut elbow), (3.0, FrikanStatus::Active));
+        let missing = frikan_step(&mut *elbow, &frikan_no_measurement(), 1.0e-3);
+        assert_eq!((missing.torque, missing.status), (0.0, FrikanStatus::NotFinite));
+        // A period that is none does not reach the law.
+        assert_eq!(frikan_step(&mut *elbow, &MOVING, 0.0).status, FrikanStatus::NotFinite);
+    }
+    assert_eq!(calls, 2);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::friction::Warmth;
+use crate::measurement::Measurement;
 use crate::test_models::{TestModel, coulomb_model, image_of};
 use frikan_shared::effect::Effect;
 use frikan_shared::expression::{Operation, Program};

@@ -1,8 +1,10 @@
 use super::*;
 use crate::friction::Warmth;
 use crate::joints::{JointMeasurements, Joints};
+use crate::measurement::Measurement;
 use crate::test_models::{coulomb_model, image_of};
 use frikan_shared::effect::{Effect, Element};
+use frikan_shared::image::ImageError;
 use nalgebra::SVector;
 use proptest::prelude::*;
 use std::vec::Vec;

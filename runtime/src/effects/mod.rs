@@ -17,7 +17,7 @@ use frikan_shared::model::Input;
 use frikan_shared::pool::Pool;
 use frikan_shared::units::Quantity;
 
-use crate::evaluate::held;
+use crate::laws::evaluate::held;
 use crate::usable::Usable;
 
 /// One sample as the effects see it: channels held to their trained ranges, 0 where the model has no such channel.

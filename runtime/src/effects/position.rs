@@ -5,7 +5,7 @@ use frikan_shared::elementary::{cos, sin};
 use frikan_shared::pool::Pool;
 
 use super::{Contribution, Motion};
-use crate::table::evaluate_table;
+use crate::laws::table::evaluate_table;
 
 /// What a position term adds; nothing for any other effect.
 #[must_use]

@@ -7,7 +7,7 @@
 use super::adaptation_settings::AdaptationSettings;
 use super::observer::Observation;
 use super::pace::Pace;
-use crate::evaluate::within;
+use crate::bounds::within;
 
 /// Largest torque and regressor that is taken for real, N m: squares of it and their products are far from overflow.
 const LARGEST: f32 = 1.0e6;

@@ -1,11 +1,11 @@
 //! Supervision of a compensator: it takes the velocity of the reference and of the joint, lowers the gain where compensation feeds the joint,
 //! holds the torque at rest, ramps it down where velocity and position contradict each other, and follows a friction that changes.
 //!
-//! Around [`Compensator`], whose step costs what it costs without supervision. Branches depend on the sample here.
+//! Around whatever can [`Compensate`], whose step costs what it costs without supervision. Branches depend on the sample here.
 
-use crate::compensator::{Compensator, Status};
-use crate::evaluate::limited;
-use crate::friction::Measurement;
+use crate::bounds::limited;
+use crate::compensator::{Compensate, Status};
+use crate::measurement::Measurement;
 
 pub mod adaptation;
 pub mod adaptation_settings;
@@ -105,12 +105,7 @@ impl Supervisor {
 
     /// The compensation by `compensator`, within its limits, after a sample period of `dt` seconds.
     #[must_use]
-    pub fn step<const CELLS: usize>(
-        &mut self,
-        compensator: &mut Compensator<CELLS>,
-        sample: &Sample,
-        dt: f32,
-    ) -> SupervisedCompensation {
+    pub fn step(&mut self, compensator: &mut impl Compensate, sample: &Sample, dt: f32) -> SupervisedCompensation {
         let Measurement { velocity, position, .. } = sample.measurement;
         let reference = sample.reference_velocity;
         let is_finite = velocity.is_finite()
@@ -192,5 +187,5 @@ const STRONGEST_LOOP: f32 = 1.0e9;
 /// Share of the rest velocity below which a reference stands still.
 const HOLD: f32 = 0.05;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "models"))]
 mod tests;

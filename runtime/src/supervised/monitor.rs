@@ -6,7 +6,7 @@
 use super::observer::Observation;
 use super::pace::Pace;
 use super::settings::Supervision;
-use crate::evaluate::within;
+use crate::bounds::within;
 
 /// What the monitor remembers.
 #[derive(Clone, Copy, Debug, PartialEq)]

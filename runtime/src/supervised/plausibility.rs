@@ -2,7 +2,7 @@
 
 use super::pace::Pace;
 use super::settings::{FASTEST, Supervision};
-use crate::evaluate::limited;
+use crate::bounds::limited;
 
 /// What the check remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::compensator::Limits;
+use crate::compensator::{Compensator, Limits};
 use crate::test_models::{coulomb_model, image_of};
 use proptest::prelude::*;
 use std::vec::Vec;

@@ -1,7 +1,9 @@
+use super::header::*;
 use super::*;
 use crate::effect::{Effect, Element, Harmonic, Kind, MAX_ELEMENTS};
 use crate::expression::{Operation, Program, ProgramFault};
-use crate::model::{Input, Law, LawError, RigidBody, RigidBodyError};
+use crate::invalid::InvalidModel;
+use crate::model::{Input, Law, LawError, Model, Provenance, RigidBody, RigidBodyError};
 use crate::table::{Cell, Geometric, GeometricShape, Symmetry};
 use crate::units::{Quantity, Unit};
 use proptest::prelude::*;

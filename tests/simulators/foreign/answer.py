@@ -1,43 +1,66 @@
-"""What `trainer` answers to a pair, and whether it is right."""
+"""A pair as files, what `trainer` answers to it, and whether that is right."""
 
 import json
+import resource
+import shlex
 import subprocess
+import tempfile
 from pathlib import Path
 
 import numpy as np
 
-from .pair import HEADER
+from .pair import REFERENCES
 
+HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
+# Processor time of one command: a busy machine changes no answer.
 TRAINER_LIMIT_S = 300
 
 
-def write(folder, pair):
-    """The files of a pair, as `diagnose` takes them."""
-    reference, recording, toml, told = pair
+def write(folder, reference, recording, toml, truth):
+    """The files of a pair; the truth comes last, so that a pair that has it is complete."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name, rows in (("reference.csv", reference), ("real.csv", recording)):
-        np.savetxt(folder / name, rows, delimiter=",", header=HEADER, comments="", fmt="%.9g")
+    for name, rows in ((REFERENCES[truth["reference"]], reference), ("real.csv", recording)):
+        if name:
+            np.savetxt(folder / name, rows, delimiter=",", header=HEADER, comments="", fmt="%.9g")
     (folder / "joint.toml").write_text(toml)
-    (folder / "pair.json").write_text(json.dumps(told, indent=1))
+    (folder / "truth.json").write_text(json.dumps(truth, indent=1, default=float) + "\n")
 
 
-def trainer(binary, folder, *words):
-    return subprocess.run([binary, *words, "--quiet"], cwd=folder, capture_output=True, text=True, timeout=TRAINER_LIMIT_S)
+class Trainer:
+    """One program with what is added to every diagnosis, in a folder of its own: pairs are only read."""
+
+    def __init__(self, binary, extra, scratch):
+        self.binary, self.extra, self.scratch = str(binary), shlex.split(extra), Path(scratch)
+
+    def run(self, *words):
+        command = [self.binary, *map(str, words), "--quiet"]
+        return subprocess.run(command, cwd=self.scratch, capture_output=True, text=True, preexec_fn=limited)
+
+    def ask(self, folder, reference):
+        """Exit status, JSON and processor time of the diagnosis; behind a model, of one fitted to the other recording."""
+        joint, compared = ("--joint", folder / "joint.toml"), ()
+        if reference == "model":
+            fitted = self.run("fit", folder / REFERENCES[reference], *joint, "-o", "model.frk")
+            if fitted.returncode not in (0, 4):
+                return {"status": fitted.returncode, "error": "fit: " + fitted.stderr.strip()}
+            compared = ("--model", "model.frk")
+        elif reference == "simulation":
+            compared = ("--simulation", folder / REFERENCES[reference])
+        before = processor_seconds()
+        told = self.run("diagnose", folder / "real.csv", *compared, *joint, "--json", "answer.json", "-o", "improved.frk", *self.extra)
+        answer, cost = self.scratch / "answer.json", processor_seconds() - before
+        if told.returncode not in (0, 1) and not answer.exists():
+            return {"status": told.returncode, "error": told.stderr.strip(), "processor_s": cost}
+        return {"status": told.returncode, "processor_s": cost, **summary(json.loads(answer.read_text()))}
 
 
-def ask(binary, folder, model):
-    """Exit status and JSON of the diagnosis; with `model`, of a model fitted to the reference."""
-    reference = ("--simulation", "reference.csv")
-    if model:
-        fitted = trainer(binary, folder, "fit", "reference.csv", "--joint", "joint.toml", "-o", "model.frk")
-        if fitted.returncode not in (0, 4):
-            return {"status": fitted.returncode, "error": "fit: " + fitted.stderr.strip()}
-        reference = ("--model", "model.frk")
-    run = trainer(binary, folder, "diagnose", "real.csv", *reference, "--joint", "joint.toml", "--json", "answer.json", "-o", "improved.frk")
-    (folder / "told.txt").write_text(run.stdout + run.stderr)
-    if run.returncode not in (0, 1) and not Path(folder, "answer.json").exists():
-        return {"status": run.returncode, "error": run.stderr.strip()}
-    return {"status": run.returncode, **summary(json.loads((folder / "answer.json").read_text()))}
+def limited():
+    resource.setrlimit(resource.RLIMIT_CPU, (TRAINER_LIMIT_S, TRAINER_LIMIT_S))
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def summary(answer):
@@ -82,3 +105,11 @@ def judge(told, answer):
         "size": len(names),
         "wrong": [[name, *sorted(names - {name})] for name, names in counted if not names & truth],
     }
+
+
+def score(folder, binary, extra):
+    """The truth about a pair that was written, the answer to it, and the judgement."""
+    told = json.loads((folder / "truth.json").read_text())
+    with tempfile.TemporaryDirectory() as scratch:
+        answer = Trainer(binary, extra, scratch).ask(folder.resolve(), told["reference"])
+    return {"pair": folder.name, **told, **answer, **judge(told, answer)}

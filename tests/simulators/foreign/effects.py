@@ -22,6 +22,7 @@ class Effect:
     beside: tuple = ()  # neither right nor wrong: part of the change as the catalogue splits it up
     share: float = 1.0  # of the friction, as a multiple of the usual one
     sized: bool = True
+    given: str = ""  # what would take the effect away if it were refitted: "level" (friction and body), or "body"
 
 
 def coulomb(joint, motion, rng):
@@ -140,8 +141,8 @@ def asymmetry(joint, motion, rng):
 
 
 def measured_late(joint, motion, rng):
-    rows = int(rng.integers(2, 4))
-    return lambda size: Plant(torque_delay_rows=rows)
+    steps = 4 * int(rng.integers(2, 4))
+    return lambda size: Plant(torque_delay_steps=steps)
 
 
 def command_early(joint, motion, rng):
@@ -173,16 +174,16 @@ def torque_scale(joint, motion, rng):
 
 
 EFFECTS = {
-    "coulomb_level": Effect(("friction_level",), "level of Coulomb friction", coulomb),
-    "viscous_level": Effect(("friction_level",), "damping of the joint", viscous),
+    "coulomb_level": Effect(("friction_level",), "level of Coulomb friction", coulomb, given="level"),
+    "viscous_level": Effect(("friction_level",), "damping of the joint", viscous, given="level"),
     "stribeck": Effect(("stribeck",), "Coulomb friction over speed", stribeck),
     "load": Effect(("load_friction",), "Coulomb friction over the transmitted torque", load, beside=("friction_level",)),
     "driving_loss": Effect(("drive_backdrive", "load_friction"), "loss while the gear drives: half of it is load friction", driving_loss, beside=("friction_level",)),
     "presliding": Effect(("presliding",), "LuGre bristles, static friction as Coulomb's", presliding, share=3.0),
     "spring": Effect(("spring",), "a linear spring", spring),
-    "gravity": Effect(("gravity_error",), "another mass at another angle, inertia kept", gravity),
-    "payload": Effect(("gravity_error", "inertia_error"), "a mass has weight and inertia", payload),
-    "armature": Effect(("inertia_error",), "rotor inertia", armature),
+    "gravity": Effect(("gravity_error",), "another mass at another angle, inertia kept", gravity, given="body"),
+    "payload": Effect(("gravity_error", "inertia_error"), "a mass has weight and inertia", payload, given="body"),
+    "armature": Effect(("inertia_error",), "rotor inertia", armature, given="body"),
     "position_friction": Effect(("position_friction",), "Coulomb friction over the angle, a smooth bump", position_friction, beside=("friction_level",)),
     "ripple": Effect(("position_ripple",), "cogging, a sine of the angle", ripple),
     "contact": Effect(("contact",), "a stop at one end of the motion", contact),
@@ -191,10 +192,10 @@ EFFECTS = {
     "drift": Effect(("slow_drift",), "Coulomb friction over time", drift, beside=("friction_level",)),
     "offset": Effect(("torque_offset",), "constant applied torque", offset),
     "asymmetry": Effect(("direction_asymmetry",), "Coulomb friction over the direction", asymmetry),
-    "measured_late": Effect(("time_misalignment",), "torque column two or three rows late", measured_late, sized=False),
+    "measured_late": Effect(("time_misalignment",), "torque column 8 or 12 ms late", measured_late, sized=False),
     "command_early": Effect(("time_misalignment", "command_delay"), "the log has the command, the motor follows 8 or 12 ms later", command_early, sized=False),
     "saturation": Effect(("saturation",), "the log has the command, the motor its limit", saturation),
     "viscous_nonlinearity": Effect(("viscous_nonlinearity",), "cubic damping", viscous_nonlinearity, beside=("friction_level",)),
     "event": Effect(("transient_event",), "a constant torque for about a second", event),
-    "torque_scale": Effect(("torque_scale", "drive_backdrive"), "scaled torque column; equal to a loss in one direction of power", torque_scale, beside=("friction_level",)),
+    "torque_scale": Effect(("torque_scale", "drive_backdrive"), "scaled torque column; equal to a loss in one direction of power", torque_scale, beside=("friction_level",), given="body"),
 }

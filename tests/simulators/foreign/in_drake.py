@@ -15,8 +15,9 @@ from pydrake.multibody.tree import RevoluteJoint, RevoluteSpring, RotationalIner
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from .drive import CONTROL_PERIOD_S, REAL_SUBSTEPS
+from .drive import REAL_SUBSTEPS
 from .joint import GRAVITY_M_S2
+from .motion import CONTROL_PERIOD_S
 
 TITLE = "Drake"
 HAS_SOFT_CONSTRAINT = False

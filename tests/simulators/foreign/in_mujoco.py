@@ -4,8 +4,9 @@ import math
 
 import mujoco
 
-from .drive import CONTROL_PERIOD_S, REAL_SUBSTEPS
+from .drive import REAL_SUBSTEPS
 from .joint import GRAVITY_M_S2, Plant
+from .motion import CONTROL_PERIOD_S
 
 TITLE = "MuJoCo"
 HAS_SOFT_CONSTRAINT = True
@@ -22,6 +23,8 @@ class Mechanism:
         self.data = mujoco.MjData(self.model)
         self.expected = model(joint, Plant(), CONTROL_PERIOD_S)
         self.inverse = mujoco.MjData(self.expected)
+        # The soft constraint gives way by the inertia that it holds: behind a play MuJoCo takes the drive's alone, and the friction would be another.
+        self.model.dof_invweight0[0] = self.expected.dof_invweight0[0]
 
     def place(self, position, velocity):
         self.data.qpos[0], self.data.qvel[0] = position, velocity
@@ -40,11 +43,14 @@ class Mechanism:
         if not width:
             self.model.dof_frictionloss[0] = coulomb
         mujoco.mj_step(self.model, data)
+        acceleration, known = float(data.qacc[0]), self.simulated
+        if width:
+            friction = known.frictionloss_Nm * sign + known.damping_Nms_rad * v
+            return known.inertia_kgm2 * acceleration + known.gravity_Nm(q) + friction, friction
         inverse = self.inverse
-        inverse.qpos[0], inverse.qvel[0], inverse.qacc[0] = q, v, data.qacc[0]
+        inverse.qpos[0], inverse.qvel[0], inverse.qacc[0] = q, v, acceleration
         mujoco.mj_inverse(self.expected, inverse)
-        smoothed = self.simulated.frictionloss_Nm * sign
-        return float(inverse.qfrc_inverse[0]) + smoothed, smoothed - float(inverse.qfrc_constraint[0] + inverse.qfrc_passive[0])
+        return float(inverse.qfrc_inverse[0]), -float(inverse.qfrc_constraint[0] + inverse.qfrc_passive[0])
 
 
 def model(joint, plant, timestep):

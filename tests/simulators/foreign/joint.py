@@ -109,7 +109,7 @@ class Plant:
     applied: object = None  # torque on the joint over position, velocity and time, N m
     command_limit_Nm: float = math.inf  # of the motor; the log has the command
     command_delay_steps: int = 0  # of the motor; the log has the command
-    torque_delay_rows: int = 0  # of the logged torque
+    torque_delay_steps: int = 0  # of the logged torque
     torque_scale: float = 1.0  # of the logged torque
 
     def joint(self, simulated):

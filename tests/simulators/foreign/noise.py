@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from .drive import ROW_PERIOD_S
-
 KINDS = ("white", "autoregressive", "coarse_encoder", "heavy_tails", "grows_with_torque")
 # Degrees of freedom of Student's distribution: the variance is finite, the kurtosis is not.
 STUDENT_FREEDOM = 3
@@ -36,5 +34,5 @@ def recorded(log, kind, rms, rng):
         bits = told["bits"] = int(rng.integers(12, 19))
         step = 2 * np.pi / 2**bits
         position = np.round(position / step) * step
-        velocity = np.diff(position, prepend=2 * position[0] - position[1]) / ROW_PERIOD_S
+        velocity = np.diff(position, prepend=2 * position[0] - position[1]) / log.period_s
     return np.column_stack((log.time, position, velocity, log.torque + rms * noise)), told

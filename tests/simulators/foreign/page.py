@@ -3,12 +3,10 @@
 import math
 from collections import Counter
 
+from .count import classes, stated
 from .effects import EFFECTS
 from .noise import KINDS
-from .pair import LARGEST_SHARE, LEAST_SHARE, SIMULATORS
-
-# Lower ends of the classes of stated probability.
-CLASSES = (0.0, 0.5, 0.7, 0.85, 0.95)
+from .pair import LARGEST_SHARE, LEAST_SHARE, LONGEST_S, SHORTEST_S, SIMULATORS
 
 
 def share(hits, of):
@@ -48,31 +46,22 @@ def told(result):
     if result.get("in_simulation"):
         parts.append("in the simulation itself: " + ", ".join(result["in_simulation"]))
     said = "; ".join(parts) or result.get("error", "nothing").splitlines()[0]
-    of = f" at {result['ratio']:g} (beside friction {result['beside_friction_Nm'] / result['noise_Nm']:.2f})" if result["ratio"] else ""
-    where = f"{result['effect']}{of}, {plant(result)}, {result['noise']}, seed {result['seed']}"
+    of = f" at {result['ratio']:g}" if result["ratio"] else ""
+    where = f"{result['pair']}, {result['effect']}{of}, body {result['body']}, {plant(result)}, {result['motion']}, {result['noise']}"
     return f"* {where}: {said}; held-out ratio {interval(result.get('held_out'))}, sealed {interval(result.get('sealed'))}"
 
 
 def calibration(results):
     """Stated probability of names and rivals against their frequency."""
-    rows, pairs = [], []
-    for result in results:
-        truth, beside = set(result.get("names", ())), set(result.get("beside", ()))
-        for finding in result.get("findings", []):
-            stated = {finding["effect"]: finding["probability"], **finding["alternatives"]}
-            pairs += [(p, name in truth, name == finding["effect"]) for name, p in stated.items() if name in truth or name not in beside]
-    for low, high in zip(CLASSES, (*CLASSES[1:], 1.01)):
-        for first in (True, False):
-            found = [(p, hit) for p, hit, leads in pairs if low <= p < high and leads == first]
-            if found:
-                stated = f"{100 * sum(p for p, _ in found) / len(found):.0f} %"
-                rows.append([f"{100 * low:.0f} to {100 * min(high, 1):.0f} %", "name" if first else "rival", stated, share(sum(hit for _, hit in found), len(found))])
+    rows = []
+    for of, leads in (("name", True), ("rival", False)):
+        for low, high, p, hits, number in classes([pair for pair in stated(results) if pair[2] == leads]):
+            rows.append([f"{100 * low:.0f} to {100 * high:.0f} %", of, f"{100 * p:.0f} %", share(hits, number)])
     return table(["class", "of a", "stated, mean", "true"], rows)
 
 
 def simulator(result):
-    """Results of runs without a choice are of MuJoCo."""
-    return SIMULATORS[result.get("simulator", "mujoco")].TITLE
+    return SIMULATORS[result["simulator"]].TITLE
 
 
 def plant(result):
@@ -83,7 +72,7 @@ def plant(result):
 def split(results, key):
     """Results by a key: in the order of the simulators, soft constraints first."""
     order = list(SIMULATORS)
-    ordered = sorted(results, key=lambda r: (order.index(r.get("simulator", "mujoco")), bool(r["joint"]["sign_width_rad_s"])))
+    ordered = sorted(results, key=lambda r: (order.index(r["simulator"]), bool(r["joint"]["sign_width_rad_s"])))
     return {name: [r for r in results if key(r) == name] for name in dict.fromkeys(map(key, ordered))}
 
 
@@ -130,7 +119,7 @@ def of_kinds(results, ratios):
     return table(["concealed", "in the plant", "names that are right", "not counted", *heads, "mean set"], rows)
 
 
-def of_effects(results):
+def of_effects(results, title):
     columns = ["right: first name or its set", "first name", "named anywhere", "a name whose set misses the truth", "the right name alone", "nothing named", "mean set"]
     for result in results:
         result["nothing"] = not result["size"]
@@ -146,7 +135,7 @@ def of_effects(results):
     absent = [kind for kind in EFFECTS if not any(result["effect"] == kind for result in results)]
     misses = "\n".join(told(result) for result in sorted(results, key=lambda r: (r["effect"], -r["ratio"])) if result["wrong"] or not result["right"])
     return (
-        "## One concealed effect\n\n"
+        f"## {title}\n\n"
         + table(["effect over noise", "plant", *columns], overall)
         + "\n"
         + of_kinds(results, ratios)
@@ -161,40 +150,49 @@ def of_effects(results):
     )
 
 
+# What a recording is compared with, as the page says it.
+COMPARED = {
+    "simulation": "recording against simulation",
+    "model": "recording against a model fitted to another recording",
+    "alone": "recording without a reference",
+}
+
+
 def page(results):
     """The page in Markdown."""
-    groups = {group: [r for r in results if r["group"] == group] for group in ("healthy", "effects", "model")}
-    runs = Counter((result.get("simulator", "mujoco"), result["group"], result["run"]) for result in results)
-    seeds = ", ".join(f"`--simulator {of} --only {group} --seed {run}` ({number} pairs)" for (of, group, run), number in runs.items())
+    sets = Counter((result["seed"][0], result["reference"]) for result in results)
+    seeds = ", ".join(f"`--seed {seed}` ({number} pairs of `--{of}`)" for (seed, of), number in sets.items())
     text = f"""# Plants that are not ours: joints of MuJoCo and of Drake
 
-Made by `python tests/simulators/foreign_pairs.py --trainer target/release/trainer --keep FOLDER` (packages of `tests/simulators/requirements.txt`)
-and, from what it kept, by `foreign_pairs.py --results FOLDER/results.jsonl ... --page docs/foreign-plants.md`. Seeds are fresh at every run, here
-{seeds};
+Made by `python tests/simulators/foreign_pairs.py --write FOLDER` and `... --score FOLDER --trainer target/release/trainer -o RESULTS.json` (packages of
+`tests/simulators/requirements.txt`) and, from the results, by `foreign_pairs.py --results RESULTS.json ... --page docs/foreign-plants.md`. Seeds are
+fresh at every run, here {seeds};
 every figure below is counted by that command, and no threshold was chosen on these pairs. Brackets are 95 % intervals (Wilson).
 
-A pair is a simulation and a recording of one joint (servo, elbow or shoulder under gravity, with Coulomb friction, damping and rotor inertia) for
-20 to 30 s at 250 Hz, under one controller and one motion of four frequencies, half of the motions with stops. The rigid body is given in
-`joint.toml`, but for half of the pairs with a fitted model. Coulomb friction is the same on both sides: a tanh of the velocity, 0.01 to 0.1 rad/s wide, or ("frictionloss", half of the pairs
+A pair is a reference and a recording of one joint (servo, elbow or shoulder under gravity, with Coulomb friction, damping and rotor inertia) for
+{SHORTEST_S:g} to {LONGEST_S:g} s at 250 Hz or 1 kHz, under one controller. A third of the motions dwell (sines with stops, or moves with rests), a third sweep (a
+chirp, or strokes each at one speed), a third have four frequencies. The rigid body is given in `joint.toml` in half of the pairs, and where the
+effect is one of the body. Friction of the joint is a tanh of the velocity, 0.01 to 0.1 rad/s wide, or ("frictionloss", half of the pairs
 of MuJoCo) the soft constraint that MuJoCo makes of it. In MuJoCo the recorded joint is integrated at 0.25 ms, the simulation too where it has a
 tanh, else at 1 ms. In Drake the recorded joint is a discrete plant of 0.25 ms, which has limits of joints and contact between bodies, and the
 simulation is integrated continuously with steps of variable length; the tanh, which Drake's joints do not have, is a generalized force beside the
-plant, and so are bristles, cogging and cubic damping. The recording has one of five kinds of noise: white; autoregressive;
-an encoder of 12 to 18 bits with its velocity differenced, beside white torque noise; Student's with three degrees of freedom; growing with the
-torque. An effect is the torque that the simulation's joint would not have needed for the recorded motion, below 20 Hz. Its root mean square is
-{100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times
-that. "Beside friction" is that ratio without what another Coulomb level, viscosity and offset make up for: where it is below about 0.1 there is
-little to be found.
+plant, and so are bristles, cogging and cubic damping.
+
+The simulation is tuned to its recording first, as its users do: Coulomb and viscous friction, and a body that is not given, by least squares
+(but where another level is what is concealed). A reference is that simulation; or a model fitted to a healthy recording of another motion of the
+same kind; or nothing. Names of what was refitted are not counted beside an effect, for they differ from the joint's.
+
+The recording has one of five kinds of noise: white; autoregressive; an encoder of 12 to 18 bits with its velocity differenced, beside white
+torque noise; Student's with three degrees of freedom; growing with the torque. An effect is the torque that the reference's joint, tuned as above,
+would not have needed for the recorded motion, below 20 Hz. Its root mean square is {100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for
+presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times that.
 
 """
-    if groups["effects"]:
-        text += of_effects(groups["effects"])
-    if groups["healthy"]:
-        text += of_healthy(groups["healthy"], "Nothing is missing: recording against simulation")
-    if groups["model"]:
-        title = "Nothing is missing: recording against a model fitted to another recording of 12 to 120 s, rigid body"
-        for whose, part in split(groups["model"], lambda result: result.get("rigid_body", "given")).items():
-            text += of_healthy(part, f"{title} {whose}")
-    else:
-        text += "Recordings against a model fitted to another one (`--only model`) are not measured in these runs.\n"
+    for reference, compared in COMPARED.items():
+        part = [result for result in results if result["reference"] == reference]
+        effects, healthy = ([result for result in part if result["healthy"] == of] for of in (False, True))
+        if effects:
+            text += of_effects(effects, f"One concealed effect: {compared}")
+        if healthy:
+            text += of_healthy(healthy, f"Nothing is missing: {compared}")
     return text.rstrip() + "\n"

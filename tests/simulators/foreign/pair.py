@@ -1,119 +1,221 @@
-"""A pair of simulation and recording, made from its seed alone."""
+"""A pair of reference and recording, made from its seed alone."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from . import in_drake, in_mujoco
-from .drive import Log, random_motion, run
+from . import in_drake, in_mujoco, motion
+from .drive import Log, run, smooth
 from .effects import EFFECTS
 from .joint import Plant, random_joint
+from .motion import CONTROL_PERIOD_S, random_motion
 from .noise import KINDS, recorded
 
 # Each has the name of its page, whether its Coulomb friction can be a soft constraint, and the mechanism that `run` drives.
 SIMULATORS = {"mujoco": in_mujoco, "drake": in_drake}
+# What a recording is compared with: a simulation that was refitted to it, a model fitted to another recording, nothing.
+REFERENCES = {"simulation": "simulation.csv", "model": "model.csv", "alone": None}
+RATES_HZ = (250, 1000)
+# Root mean square of the effect over that of the noise.
+RATIOS = (1.0, 0.2)
+SHORTEST_S, LONGEST_S = 20.0, 90.0
 
-# Root mean square of the effect as a share of the friction: above the default of `--least-effect`.
+# Root mean square of what the reference cannot have of the effect, as a share of the friction: above the default of `--least-effect`.
 LEAST_SHARE, LARGEST_SHARE = 0.04, 0.10
-# Runs in which the size of the effect is sought, and the factor from the share that is accepted.
-SIZE_RUNS, SIZE_FACTOR = 12, 1.25
-HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
+# Runs in which the size of the effect is sought.
+SIZE_RUNS = 12
+# Of the noise of healthy recordings, as a share of the friction.
+LEAST_NOISE, LARGEST_NOISE = 0.02, 0.3
+# What is left at least of a parameter that is refitted.
+LEAST_LEFT = 0.02
 
 
 @dataclass
 class Case:
-    """What a pair was made of."""
+    """What a pair is made of."""
 
-    seed: int
+    seed: tuple  # of the set, index of the reference, number of the pair
+    reference: str  # of `REFERENCES`
     effect: str  # of `EFFECTS`, or "none"
     ratio: float  # effect over noise, root mean square; 0 without an effect
     noise: str
-    simulator: str = "mujoco"  # of `SIMULATORS`
+    simulator: str
+    motion: str
+    rate_Hz: int
+    body: str  # "given" in joint.toml, or "free"
+
+
+def case(seed, reference, number):
+    """The case of a number, whatever else is asked for. Every choice is balanced by itself, in blocks in which each of its values comes once."""
+    seed = (seed, list(REFERENCES).index(reference), number)
+
+    def choose(which, values, index=number):
+        block, place = divmod(index, len(values))
+        values = list(values)
+        return values[np.random.default_rng((*seed[:2], which, block)).permutation(len(values))[place]]
+
+    # A third is healthy, and half behind a model.
+    period = 2 if reference == "model" else 3
+    effect, ratio, body = "none", 0.0, choose(0, ("given", "free"))
+    if number % period:
+        kinds = [name for name, of in EFFECTS.items() if reference != "alone" or of.given != "level"]
+        index = number - number // period - 1
+        effect = choose(1, kinds, index)
+        # Each effect has one ratio and then the other.
+        ratio = RATIOS[(index // len(kinds) + kinds.index(effect)) % 2]
+        if EFFECTS[effect].given and reference != "model":
+            body = "given"
+    # Without a reference a body that is not given is missing.
+    body = "given" if reference == "alone" else body
+    # Drake takes five times as long.
+    simulator = choose(2, ("mujoco", "mujoco", "mujoco", "drake"))
+    return Case(seed, reference, effect, ratio, choose(3, KINDS), simulator, choose(4, motion.KINDS), choose(5, RATES_HZ), body)
 
 
 class Bench:
-    """Random joint of a case and its runs in the simulator of the case."""
+    """Random joint of a case and its runs."""
 
     def __init__(self, case, rng):
         self.simulator = SIMULATORS[case.simulator]
         self.joint = random_joint(rng, self.simulator.HAS_SOFT_CONSTRAINT)
+        self.every = round(1 / case.rate_Hz / CONTROL_PERIOD_S)
 
-    def simulated(self, motion):
-        return run(self.simulator.Mechanism(self.joint, Plant(), real=False), self.joint, Plant(), motion)
+    def simulated(self, joint, motion):
+        """The joint as a simulation knows it, under the controller of the real one."""
+        return run(self.simulator.Mechanism(joint, Plant(), real=False), self.joint, Plant(), motion, self.every)
 
-    def recorded(self, motion, plant=Plant()):
-        return run(self.simulator.Mechanism(self.joint, plant, real=True), self.joint, plant, motion)
+    def recorded(self, motion, plant=Plant(), simulator=None):
+        return run((simulator or self.simulator).Mechanism(self.joint, plant, real=True), self.joint, plant, motion, self.every)
 
 
 def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def beside_friction(log):
-    """Root mean square of the effect that no other Coulomb level, viscosity and offset makes up for."""
-    columns = np.column_stack((np.tanh(log.velocity / (0.01 * np.abs(log.velocity).max())), log.velocity, np.ones_like(log.velocity)))
-    return rms(log.effect - columns @ np.linalg.lstsq(columns, log.effect, rcond=None)[0])
+def refit(log, joint, body):
+    """Least squares of Coulomb and viscous friction, and with `body` of inertia and gravity, on a recording: the joint with these, and what they
+    leave of the effect."""
+    ahead = np.append(log.velocity[1:], log.velocity[-1])
+    speed = (log.velocity + ahead) / 2
+    sign = (log.friction - joint.damping_Nms_rad * speed) / joint.frictionloss_Nm
+    columns = [sign, speed]
+    if body:
+        columns += [(ahead - log.velocity) / log.period_s, np.sin(log.position), np.cos(log.position)]
+    columns = np.column_stack([smooth(column, log.period_s) for column in columns])
+    coulomb, viscous, inertia, sine, cosine = found = np.zeros(5)
+    found[: columns.shape[1]] = np.linalg.lstsq(columns, log.effect, rcond=None)[0]
+    coulomb, viscous, inertia, sine, cosine = map(float, found)
+
+    def moved(value, change):
+        return max(value + change, LEAST_LEFT * value)
+
+    weight = joint.gravity_torque_Nm * np.exp(1j * joint.phase_rad) + complex(sine, cosine)
+    # The moment of the mass alone: its own share of the inertia stays as it is.
+    ratio = abs(weight) / joint.gravity_torque_Nm
+    tuned = replace(
+        joint,
+        frictionloss_Nm=moved(joint.frictionloss_Nm, coulomb),
+        damping_Nms_rad=moved(joint.damping_Nms_rad, viscous),
+        armature_kgm2=moved(joint.armature_kgm2, inertia),
+        mass_kg=joint.mass_kg * ratio**2,
+        lever_m=joint.lever_m / ratio,
+        phase_rad=float(np.angle(weight)),
+    )
+    return tuned, log.effect - columns @ found[: columns.shape[1]]
 
 
-def sized(bench, motion, shape, share):
-    """The log of the plant whose effect has about that share of the friction, and the size: bisection of its logarithm once it is bracketed."""
+class Reference:
+    """What is compared with: what it can have of an effect, and how the simulation comes by it."""
+
+    def __init__(self, case, bench):
+        self.bench = bench
+        given = EFFECTS[case.effect].given if case.effect in EFFECTS else ""
+        # A model was fitted to another recording, and a level that is refitted is no effect.
+        self.fixed, self.body = case.reference == "model" or given == "level", case.body == "free"
+
+    def refitted(self, log):
+        """The joint as the reference has it, and the effect beside it."""
+        return (self.bench.joint, log.effect) if self.fixed else refit(log, self.bench.joint, self.body)
+
+    def beside(self):
+        """Names of what was refitted: with an effect it takes other values than those of the joint, and saying so is neither right nor wrong."""
+        return () if self.fixed else ("friction_level",) + ("inertia_error", "gravity_error") * self.body
+
+
+def sized(bench, reference, motion, shape, share):
+    """The size with which the effect has about that share of the friction, and its recording: bisection of its logarithm once it is bracketed. The size is
+    sought in MuJoCo, whose runs are short."""
     size, low, high = 1.0, 0.0, math.inf
     for _ in range(SIZE_RUNS):
-        log = bench.recorded(motion, shape(size))
-        found = rms(log.effect) / rms(log.friction)
-        if share / SIZE_FACTOR < found < share * SIZE_FACTOR:
+        log = bench.recorded(motion, shape(size), in_mujoco)
+        found = rms(reference.refitted(log)[1]) / rms(log.friction)
+        if share * LEAST_SHARE < found < share * LARGEST_SHARE:
             break
-        low, high = (size, high) if found < share else (low, size)
+        aim = share * math.sqrt(LEAST_SHARE * LARGEST_SHARE)
+        low, high = (size, high) if found < aim else (low, size)
         bracketed = low > 0 and high < math.inf
-        size = math.sqrt(low * high) if bracketed else size * min(max((share / max(found, 1e-9)) ** 0.8, 0.1), 5.0)
-    return log, size
+        size = math.sqrt(low * high) if bracketed else size * min(max((aim / max(found, 1e-9)) ** 0.9, 0.1), 5.0)
+    else:
+        log = bench.recorded(motion, shape(size), in_mujoco)
+    return size, log if bench.simulator is in_mujoco else bench.recorded(motion, shape(size))
 
 
 def make(case):
-    """Simulation, recording (rows of `HEADER`), text of joint.toml and what describes the pair."""
+    """Rows of the reference (none where there is none), rows of the recording, text of joint.toml and the truth about the pair."""
     rng = np.random.default_rng(case.seed)
-    bench, seconds = Bench(case, rng), rng.uniform(20.0, 30.0)
-    joint, motion = bench.joint, random_motion(rng, seconds)
-    simulation = bench.simulated(motion)
-    told = {**vars(case), "seconds": seconds, "joint": vars(joint)}
+    bench = Bench(case, rng)
+    reference = Reference(case, bench)
+
+    def duration():
+        # Half of them below 30 s.
+        return SHORTEST_S * (LONGEST_S / SHORTEST_S) ** float(rng.random() ** 2)
+
+    seconds = duration()
+    shape_of_motion, motion = random_motion(case.motion, rng, seconds)
+    truth = {"healthy": case.effect == "none", "class": "healthy", **asdict(case), "seconds": seconds, "shape_of_motion": shape_of_motion}
+    level = float(np.exp(rng.uniform(np.log(LEAST_NOISE), np.log(LARGEST_NOISE))))
     if case.effect == "none":
         log = bench.recorded(motion)
-        level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(log.friction)
+        tuned, left = reference.refitted(log)
+        level *= rms(log.friction)
     else:
         effect = EFFECTS[case.effect]
-        shape, share = effect.plant(joint, motion, rng), effect.share * rng.uniform(LEAST_SHARE, LARGEST_SHARE)
-        if effect.sized:
-            log, told["size"] = sized(bench, motion, shape, share)
-        else:
-            log = bench.recorded(motion, shape(1.0))
-        level = rms(log.effect) / case.ratio
-        told |= {"names": list(effect.names), "beside": list(effect.beside), "effect_Nm": rms(log.effect), "beside_friction_Nm": beside_friction(log)}
+        shape = effect.plant(bench.joint, motion, rng)
+        size, log = sized(bench, reference, motion, shape, effect.share) if effect.sized else (1.0, bench.recorded(motion, shape(1.0)))
+        tuned, left = reference.refitted(log)
+        level = rms(left) / case.ratio
+        truth |= {
+            "class": effect.names[0],
+            "names": list(effect.names),
+            "beside": [name for name in dict.fromkeys((*effect.beside, *reference.beside())) if name not in effect.names],
+            "parameters": {"size": size, **numbers(shape)},
+        }
+    # Behind the refit: what the reference lacks. Before it: the torque that the healthy joint would not have needed.
+    truth |= {"effect_Nm": rms(left), "effect_before_refit_Nm": rms(log.effect), "joint": asdict(bench.joint), "reference_joint": asdict(tuned)}
     rows, noise = recorded(log, case.noise, level, rng)
-    told |= {"noise_Nm": level, "friction_Nm": rms(log.friction), "torque_Nm": rms(log.torque), **noise}
-    return as_rows(simulation), rows, joint_toml(joint), told
+    truth |= {"noise_Nm": level, "friction_Nm": rms(log.friction), "torque_Nm": rms(log.torque), **noise}
+    compared = None
+    if case.reference == "simulation":
+        compared = as_rows(bench.simulated(tuned, motion))
+    elif case.reference == "model":
+        truth["fitted_s"] = duration()
+        other = bench.recorded(random_motion(case.motion, rng, truth["fitted_s"])[1])
+        compared, _ = recorded(other, KINDS[rng.integers(len(KINDS))], level, rng)
+    return compared, rows, joint_toml(bench.joint, case), truth
 
 
-def model_case(case):
-    """A simulated recording to fit a model to, a healthy recording of another motion, text of joint.toml and what describes the pair. Every other two pairs
-    have no rigid body in joint.toml: it is fitted too."""
-    rng = np.random.default_rng(case.seed)
-    bench, seconds = Bench(case, rng), float(np.exp(rng.uniform(np.log(12.0), np.log(120.0))))
-    fitted, other = (bench.recorded(random_motion(rng, length)) for length in (seconds, rng.uniform(20.0, 30.0)))
-    level = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3)))) * rms(fitted.friction)
-    training, _ = recorded(fitted, KINDS[rng.integers(len(KINDS))], level, rng)
-    rows, noise = recorded(other, case.noise, level, rng)
-    # Two by two, since simulators alternate one by one.
-    given = case.seed // 6 % 2 == 0
-    told = {**vars(case), "rigid_body": "given" if given else "fitted", "fitted_s": seconds, "joint": vars(bench.joint), "noise_Nm": level, "friction_Nm": rms(other.friction), **noise}
-    return training, rows, joint_toml(bench.joint, given), told
+def numbers(shape):
+    """What an effect's shape was drawn with; a complex number as its two parts."""
+    drawn = {name: cell.cell_contents for name, cell in zip(shape.__code__.co_freevars, shape.__closure__ or ()) if np.isscalar(cell.cell_contents)}
+    return {name: [value.real, value.imag] if isinstance(value, complex) else float(value) for name, value in drawn.items()}
 
 
 def as_rows(log: Log):
     return np.column_stack((log.time, log.position, log.velocity, log.torque))
 
 
-def joint_toml(joint, given=True):
+def joint_toml(joint, case):
     body = f"""
 [rigid_body]
 inertia_kgm2 = {joint.inertia_kgm2}
@@ -121,7 +223,7 @@ gravity_torque_Nm = {joint.gravity_torque_Nm}
 gravity_phase_rad = {joint.phase_rad}
 """
     return f"""name = "joint"
-{body if given else ""}
+{body if case.body == "given" else ""}
 [drive]
-rate_Hz = 250.0
+rate_Hz = {case.rate_Hz}.0
 """

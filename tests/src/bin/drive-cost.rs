@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS, example, example_of_nothing};
 use frikan_tests::cost::{count, count_integer, count_rows, count_steps};
 use frikan_tests::models::{self, TestModel, stribeck_friction};
 use frikan_tests::vectors::one_input;
-use frikan_trainer::emulator::{Answer, Emulator, Firmware, Footprint, footprint};
+use frikan_trainer::emulator::{Answer, Emulator, Firmware, Footprint, Mode, Request, footprint};
 use frikan_trainer::error::Result;
 use frikan_trainer::files::write_whole;
 
@@ -15,6 +16,19 @@ const PAGE: &str = "docs/drive-cost.md";
 
 /// Velocity over which the peers are compared, rad/s: their tables end there.
 const REACH: f32 = 2.0;
+
+/// Features of the firmware, `watched` for those of a supervised drive.
+const FEATURES: [&str; 9] = [
+    "table",
+    "table,slots",
+    "table,watched",
+    "table,slots,watched",
+    "table,auth",
+    "expression",
+    "network",
+    "effects",
+    "expression,network,effects,watched,slots,auth",
+];
 
 /// The peers: what it is, and the binary of the firmware.
 const PEERS: [(&str, &str); 6] = [
@@ -56,6 +70,8 @@ fn main() -> Result<()> {
         eprintln!("{name}");
         append_target(&mut page, &firmware, &name)?;
     }
+    append_features(&mut page, &firmware)?;
+    append_c_library(&mut page)?;
     append_peers(&mut page, &firmware)?;
     write_whole(Path::new(PAGE), page.as_bytes())?;
     print!("{page}");
@@ -98,6 +114,74 @@ fn append_model(page: &mut String, kind: &str, model: &TestModel, (step, law): (
             answer.decode_instructions
         ),
     );
+}
+
+/// The smallest drive of some features on Cortex-M4F, a row each.
+fn append_features(page: &mut String, firmware: &Firmware) -> Result<()> {
+    append(
+        page,
+        format_args!(
+            "\n## Features on cortex-m4f\n\n\
+         The smallest drive with these features of `frikan-runtime` alone, beside a program that does nothing. Without one of `expression`,\n\
+         `network` and `effects` a table is read where it lies in flash, else images are decoded to memory. Step, stack and RAM (the compensator, its\n\
+         last sample and answer, 52 B) are those of the symmetric table without supervisor.\n\n\
+         | features | flash B | RAM B | stack, start B | stack, step B | step, instructions | start, instructions |\n\
+         |---|---|---|---|---|---|---|\n"
+        ),
+    );
+    for features in FEATURES {
+        eprintln!("{features}");
+        let alone = firmware.with_features(features);
+        let target = alone.target("cortex-m4f")?;
+        let drive = footprint(&alone.build(&target, "drive")?)?;
+        let flash = drive.beyond(footprint(&alone.build(&target, "bare")?)?).flash_bytes;
+        let answer =
+            count_steps(&Emulator::with_binary(&alone, "cortex-m4f", "emulate-step")?, &models::symmetric_table())?;
+        let Answer { model_bytes, decode_stack_bytes, evaluate_stack_bytes, decode_instructions, .. } = answer;
+        let step = range(&answer);
+        let shown = features.replace("watched", "supervised").replace(',', ", ");
+        append(
+            page,
+            format_args!(
+                "| {shown} | {flash} | {model_bytes} | {decode_stack_bytes} | {evaluate_stack_bytes} | {step} | {decode_instructions} |\n"
+            ),
+        );
+    }
+    Ok(())
+}
+
+/// The library for C in its example, supervised, on Cortex-M4F.
+fn append_c_library(page: &mut String) -> Result<()> {
+    append(
+        page,
+        format_args!(
+            "\n## The C library on cortex-m4f\n\n\
+         `runtime/c/example`, a supervised drive of one joint compiled with `-O2`, beside the same example without the library. RAM is compensator and\n\
+         supervisor; stack that of a symmetric table.\n\n\
+         | features | flash B | RAM B | stack, start B | stack, step B |\n|---|---|---|---|---|\n"
+        ),
+    );
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let nothing = footprint(&example_of_nothing(folder.path()))?;
+    let target = Firmware::find()?.target("cortex-m4f")?;
+    for (shown, features) in [("by default", None), ("every feature", Some(EVERY_FEATURE))] {
+        let elf = example(folder.path(), features, &[]);
+        let Footprint { flash_bytes, ram_bytes } = footprint(&elf)?.beyond(nothing);
+        let image = models::image(&models::symmetric_table());
+        let (mode, values) = (Mode::Evaluate, [0.0; EXAMPLE_INPUTS]);
+        let request = Request {
+            image: &image,
+            values: &values,
+            inputs: EXAMPLE_INPUTS,
+            outputs: 1,
+            mode,
+            floating_point_control: 0,
+        };
+        let answer = Emulator::with_elf(target.clone(), elf)?.run(&request)?;
+        let (start, step) = (answer.decode_stack_bytes, answer.evaluate_stack_bytes);
+        append(page, format_args!("| {shown} | {flash_bytes} | {ram_bytes} | {start} | {step} |\n"));
+    }
+    Ok(())
 }
 
 /// The peers on Cortex-M4F, beside the two ways in which Frikan carries the same law.

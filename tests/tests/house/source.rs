@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
+use syn::punctuated::Punctuated;
 use syn::visit::{self, Visit};
-use syn::{Attribute, ImplItemFn, Item, ItemMod, ItemUse, Macro, UseTree, VisRestricted, Visibility};
+use syn::{Attribute, ImplItemFn, Item, ItemMod, ItemUse, Macro, Meta, Token, UseTree, VisRestricted, Visibility};
 
 /// One leaf of a `use` declaration.
 pub struct Import {
@@ -186,8 +187,19 @@ fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("test")
             || attribute.path().is_ident("cfg")
-                && attribute.parse_args::<syn::Path>().is_ok_and(|condition| condition.is_ident("test"))
+                && attribute.parse_args::<Meta>().is_ok_and(|condition| holds_in_tests_alone(&condition))
     })
+}
+
+/// Whether a condition is `test`, or `all(...)` with `test` among its parts.
+fn holds_in_tests_alone(condition: &Meta) -> bool {
+    match condition {
+        Meta::Path(path) => path.is_ident("test"),
+        Meta::List(list) if list.path.is_ident("all") => list
+            .parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated)
+            .is_ok_and(|parts| parts.iter().any(holds_in_tests_alone)),
+        _ => false,
+    }
 }
 
 fn attributes_and_name(item: &Item) -> (&[Attribute], Option<String>) {

@@ -58,6 +58,7 @@ fn declarations_re_exports_and_tests_are_no_imports() {
     assert!(seen("pub(super) fn f(work: u8) -> u8 { work }").is_empty());
     assert!(seen("#[cfg(test)] mod tests { use crate::room::work; }").is_empty());
     assert!(seen("#[cfg(test)] use crate::room::work;").is_empty());
+    assert!(seen("#[cfg(all(test, feature = \"models\"))] mod tests { use crate::room::work; }").is_empty());
     assert!(seen("struct S; impl S { #[cfg(test)] fn f() { crate::room::work() } }").is_empty());
     assert_eq!(seen("pub use crate::room::work; fn f() { work() }"), ["src/room/inner.rs: work"]);
 }

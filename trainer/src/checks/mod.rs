@@ -44,7 +44,10 @@ pub struct Reviewed {
 /// `FRK-D023` where torque, force or current was not measured, `FRK-D011` and `FRK-D026` where the clock is none.
 pub fn review(recording: Recording, joint: &Joint) -> Result<Reviewed> {
     measured::require(&recording)?;
+    let nearly = recording.nearly_named.iter().cloned();
+    let nearly: Vec<Note> = nearly.map(|(column, known)| Note::of_all(Fault::NearlyNamed { column, known })).collect();
     let mut reviewed = review_motion(recording, joint)?;
+    reviewed.notes.extend(nearly);
     reviewed.note(unit::position_in_degrees);
     // What else is compared with a law would only repeat that the units are wrong.
     if !reviewed.is_blocked() {

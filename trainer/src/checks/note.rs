@@ -70,6 +70,13 @@ pub enum Fault {
     ContradictingVelocity(Contradiction),
     /// The joint moves in one direction only: friction cannot be told from an offset.
     OneDirection,
+    /// A column that nearly has the name of a quantity that is not recorded.
+    NearlyNamed {
+        /// Its name in the file.
+        column: String,
+        /// The name that it nearly has.
+        known: String,
+    },
 }
 
 /// How a wrong unit shows.
@@ -117,6 +124,7 @@ impl Fault {
             Self::WrongUnit(_) => &codes::WRONG_UNIT,
             Self::ContradictingVelocity(_) => &codes::CONTRADICTING_VELOCITY,
             Self::OneDirection => &codes::ONE_DIRECTION,
+            Self::NearlyNamed { .. } => &codes::NEARLY_NAMED,
         }
     }
 

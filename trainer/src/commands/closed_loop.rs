@@ -215,8 +215,8 @@ fn bench_of(arguments: &Loop, joint: plant::Joint) -> Result<Bench> {
             return Err(Error::new(&codes::USAGE, message).with_value(value.to_string()));
         }
     }
-    if duration * joint.drive.rate_hz > follow::MOST_SAMPLES {
-        let message = format!("a run has at most {} samples", follow::MOST_SAMPLES);
+    if duration * joint.drive.rate_hz > plant::MOST_SAMPLES {
+        let message = format!("a run has at most {} samples", plant::MOST_SAMPLES);
         return Err(Error::new(&codes::USAGE, message).with_value((duration * joint.drive.rate_hz).to_string()));
     }
     let swap = match (&arguments.swap_image, arguments.swap_at) {

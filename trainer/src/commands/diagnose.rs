@@ -84,6 +84,9 @@ pub struct Diagnose {
     /// and does not count [default: 0.02 for the friction level of a simulation or model; for all else as much where the noise hides it]
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     pub least_effect: Option<f64>,
+    /// Weigh sets of effects by one likelihood, simulation and recording in one model
+    #[arg(long, hide = true)]
+    pub by_likelihood: bool,
     /// Seed of the null draws: one seed, one result
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -110,7 +113,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     let begin = Instant::now();
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
-    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let (recordings, warnings) = load_all(&arguments.recordings, |path| measurement::load_with_faults(path, &joint))?;
     let real = &recordings[0];
     let (comparison, compared) = comparison(arguments, &recordings, &joint)?;
@@ -120,6 +123,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         lock: arguments.lock,
         settings: Settings { seed: arguments.seed, ..Settings::default() },
         least_effect: arguments.least_effect,
+        by_likelihood: arguments.by_likelihood,
     };
     reporter.say("weighing every effect against the noise");
     let mut diagnosis = diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;

@@ -16,7 +16,6 @@ use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::{Representation, Soundness};
 use crate::fit::{Budget, Options, Outcome, Progress, Training, fit};
-use crate::joint::Joint;
 use crate::kan::{Architecture, Sparsity};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
@@ -135,7 +134,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         let message = "`--rate` has to be a finite number above zero";
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
-    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let (recordings, mut warnings) = load_all(&arguments.recordings, |path| measurement::load(path, &joint))?;
     let (tests, of_tests) = load_all(&arguments.tests, |path| measurement::load(path, &joint))?;
     warnings.extend(of_tests);

@@ -3,7 +3,7 @@
 use crate::checks::{self, Fault, Note, Reviewed};
 use crate::compile::profile::{PROFILES, Profile};
 use crate::diagnose::checks::note::{HealthNote, Observation, RecordingNote};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::physics::EffectId;
 use crate::physics::units::Units;
@@ -19,6 +19,19 @@ pub(super) struct Warning {
     note: RecordingNote,
     /// One sentence without a final stop.
     pub(super) message: String,
+}
+
+/// What is known of the joint, from its file where one is given; what nothing reads of that file is told on standard error.
+///
+/// # Errors
+/// As [`Joint::load`].
+pub(super) fn joint(path: Option<&Path>, quiet: bool) -> Result<Joint> {
+    let Some(path) = path else { return Ok(Joint::default()) };
+    let joint = Joint::load(path)?;
+    if !quiet {
+        joint.unknown_keys().iter().for_each(|sentence| eprintln!("{} {sentence}", codes::UNKNOWN_KEY.id));
+    }
+    Ok(joint)
 }
 
 /// Recordings of one joint, each read by `load`, with the warnings of all; where there are several, a warning names its own.

@@ -5,6 +5,7 @@ pub mod diagnose;
 pub mod explain;
 pub mod export;
 pub mod fit;
+pub mod init;
 mod measurement;
 pub mod output;
 pub mod predict;

@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::measurement::motion;
+use super::measurement::{self, motion};
 use super::output::Outputs;
 use crate::error::{Error, Result, codes};
 use crate::fit::predict::{every_row, predict};
 use crate::fit::{HostModel, model};
-use crate::joint::Joint;
 use crate::recording::{self, Channel, Quantity, Recording};
 use crate::samples::interpolate;
 use frikan_shared::units::Unit;
@@ -40,7 +39,7 @@ pub struct Predict {
 /// `FRK-D...` when image or recording cannot be used or lack what the model reads; nothing is written then.
 pub fn run(arguments: &Predict) -> Result<()> {
     let (_, image) = model::load(&arguments.model)?;
-    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let recording = recording::load(&arguments.recording, &joint)?;
     let (motion, warnings) = motion(recording.clone(), &joint)?;
     let samples = every_row(&image.model, &motion).map_err(|error| error.in_file(recording.file()))?;

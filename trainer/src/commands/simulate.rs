@@ -62,6 +62,8 @@ pub fn run(arguments: &Simulate) -> Result<()> {
             let message = "`--duration` has to be a finite number of seconds above zero";
             return Err(Error::new(&codes::USAGE, message).with_value(duration.to_string()));
         }
+        plant::refuse_length(duration, joint.drive.rate_hz)
+            .map_err(|error| Error::new(&codes::USAGE, error.to_string()).with_value(duration.to_string()))?;
         joint.campaign = joint.campaign.with_duration(duration);
     }
     let motion_seed = arguments.motion_seed.unwrap_or(arguments.seed);
@@ -188,7 +190,8 @@ mod tests {
     #[test]
     fn a_wrong_name_or_length_is_a_usage_error_and_writes_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        for extra in [&["--effect", "magnetism=1"], &["--duration", "-1"], &["--noise", "pink"]] {
+        for extra in [&["--effect", "magnetism=1"], &["--duration", "-1"], &["--duration", "1e9"], &["--noise", "pink"]]
+        {
             assert_eq!(run_line(folder.path(), extra).unwrap_err().code(), &codes::USAGE);
         }
         assert!(!folder.path().join("out.csv").exists());

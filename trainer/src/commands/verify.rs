@@ -9,7 +9,7 @@ use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
 use serde_json::{Value, json};
 
-use super::measurement::motion;
+use super::measurement::{self, motion};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
 use crate::compile::steps::sequence::sequence;
@@ -21,7 +21,6 @@ use crate::emulator::{Emulator, Firmware, Mode, Request};
 use crate::error::{Error, Result, codes};
 use crate::fit::predict::every_row;
 use crate::fit::{HostModel, model};
-use crate::joint::Joint;
 use crate::recording;
 
 /// Points at which the static law is compared besides the special values.
@@ -130,7 +129,7 @@ impl Found {
 
 /// A call for each sample of a recording, without limits.
 fn along(arguments: &Verify, path: &std::path::Path, model: &HostModel) -> Result<Vec<Call>> {
-    let joint = arguments.joint.as_deref().map(Joint::load).transpose()?.unwrap_or_default();
+    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let recording = motion(recording::load(path, &joint)?, &joint)?.0;
     let samples = every_row(model, &recording).map_err(|error| error.in_file(recording.file()))?;
     let limits = [1.0, 2.0 * model.output_limit, f32::MAX];

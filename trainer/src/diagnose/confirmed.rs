@@ -2,6 +2,7 @@
 
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::label::Label;
+use crate::diagnose::infer::inferred::Inferred;
 use crate::diagnose::noise::autoregression::Noise;
 use crate::diagnose::proof::discarded::withdraw_unproven;
 use crate::diagnose::proof::refit::{Refit, polish};
@@ -31,6 +32,12 @@ impl Confirmed {
     pub fn nothing(search: &Search) -> Self {
         let SearchOutcome { accepted, last_round, noise } = search.nothing();
         Self { accepted, withdrawn: Vec::new(), last_round, noise }
+    }
+
+    /// What the likeliest set says.
+    pub fn by_likelihood(inferred: &Inferred) -> Self {
+        let (accepted, noise) = (inferred.accepted(), inferred.noise.clone());
+        Self { accepted, withdrawn: Vec::new(), last_round: inferred.table(), noise }
     }
 
     /// Searches, and again without the structures that have no name where the locked rows bear out nothing at all: a function of one channel

@@ -11,6 +11,7 @@ pub(crate) mod comparison;
 mod confirmed;
 pub(crate) mod evidence;
 pub(crate) mod hypotheses;
+pub(crate) mod infer;
 pub(crate) mod measurement;
 pub(crate) mod noise;
 pub(crate) mod preparation;

@@ -17,6 +17,8 @@ pub struct Options {
     /// 2 % for the friction level of a reference; for all else as much where the noise hides it, and less where
     /// it does not.
     pub least_effect: Option<f64>,
+    /// Whether sets of effects are weighed by one likelihood, in place of the search by scores.
+    pub by_likelihood: bool,
 }
 
 /// Share (0..1) of the torque beside the rigid body (root mean squares), below which an effect is not acted on unless
@@ -26,7 +28,13 @@ pub const LEAST_EFFECT_SHARE: f64 = 0.02;
 
 impl Default for Options {
     fn default() -> Self {
-        Self { base: BaseKind::CoulombViscous, lock: Lock::Spread, settings: Settings::default(), least_effect: None }
+        Self {
+            base: BaseKind::CoulombViscous,
+            lock: Lock::Spread,
+            settings: Settings::default(),
+            least_effect: None,
+            by_likelihood: false,
+        }
     }
 }
 

@@ -3,26 +3,33 @@
 //! a one-off event was locked away, with other rows locked.
 
 use crate::diagnose::answer::detection_limit::detection_limits;
-use crate::diagnose::answer::finding::{base_parameters, finding, measurement_finding};
+use crate::diagnose::answer::finding::{base_parameters, finding, measurement_finding, misalignment};
 use crate::diagnose::answer::friction_level::FrictionLevel;
 use crate::diagnose::answer::goodness_of_fit::{score, score_as_given};
 use crate::diagnose::answer::outcome::{Diagnosis, Finding, Verdict};
 use crate::diagnose::answer::traces::Traces;
 use crate::diagnose::checks::command_beyond_limit::Command;
-use crate::diagnose::checks::health::{AsRecorded, coarse_position, examine, scattered_sampling};
+use crate::diagnose::checks::health::{AsRecorded, coarse_position, examine, late_torque, scattered_sampling};
 use crate::diagnose::checks::note::HealthNote;
 use crate::diagnose::comparison::base::{Base, Delay};
 use crate::diagnose::comparison::columns::BaseKind;
-use crate::diagnose::comparison::delay::delay_by_shifting;
+use crate::diagnose::comparison::delay::{delay_by_shifting, position_error_energy};
 use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::comparison::sign_width::fit_sign_width;
 use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
 use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
+use crate::diagnose::infer::candidates::Candidates;
+use crate::diagnose::infer::delay::{TorqueDelay, shifted, torque_delay};
+use crate::diagnose::infer::inferred::{Inferred, infer};
+use crate::diagnose::infer::side::Side;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
+use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::discarded::{
-    Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
+    Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, set_aside_small,
+    withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
 use crate::diagnose::proof::refit::{polish, refit};
@@ -34,6 +41,7 @@ use crate::diagnose::search::accepted::Accepted;
 use crate::diagnose::search::setup::Search;
 use crate::numerics::least_squares::rows_in;
 use crate::physics::{EffectId, catalogue};
+use crate::samples::delay::LONGEST_SAMPLING_DELAY;
 
 /// Working rows below which a diagnosis is refused. Chosen by judgement: fifteen in each of the ten blocks of the
 /// held-out evidence; fewer do not tell the noise from the base.
@@ -47,13 +55,13 @@ const LEAST_ROWS: usize = 150;
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
 pub fn diagnose(comparison: &Comparison, options: &Options) -> Result<Diagnosis, Refusal> {
-    let Comparison { signals, reference } = comparison;
+    let signals = &comparison.signals;
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
     let request = Request { options: *options, as_recorded: &AsRecorded::of(signals) };
     let Some(command) = Command::of(signals) else { return diagnose_in_step(comparison, &request) };
-    let limited = Comparison { signals: command.given(signals), reference: reference.clone() };
+    let limited = Comparison { signals: command.given(signals), ..comparison.clone() };
     let mut diagnosis = diagnose_in_step(&limited, &request)?;
     let note = command.note();
     diagnosis.put_first(measurement_finding(&note), Vec::new());
@@ -74,6 +82,13 @@ pub fn learn_simulation(simulation: &Signals, real: &Signals) -> Result<InverseL
     })
 }
 
+/// Log likelihood ratio of a delay longer than the sampling's own from which it is told, nats: very strong evidence, five nats (Kass and
+/// Raftery 1995), at the exponent of a quarter that noise of unknown kind usually leaves of it.
+const DELAY_NATS: f64 = 20.0;
+/// The same by the scatter of its gain from block to block, over its standard error: one in a hundred for a dozen blocks (Student) and the
+/// few delays that differ.
+const DELAY_DEVIATIONS: f64 = 3.0;
+
 /// What is asked for, whatever becomes of the signals on the way.
 #[derive(Clone, Copy)]
 struct Request<'a> {
@@ -85,6 +100,9 @@ struct Request<'a> {
 /// Diagnoses with the torque put back to the time of the motion.
 fn diagnose_in_step(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
     let Options { base, lock, .. } = request.options;
+    if request.options.by_likelihood {
+        return diagnose_by_likelihood(comparison, request);
+    }
     let shift_s = delay_by_shifting(comparison.prepare(lock), comparison, base);
     let realignment = Realignment::new(shift_s, comparison.signals.period);
     let first = diagnose_from(realignment.first_delay_s(), comparison, request)?;
@@ -115,21 +133,28 @@ fn diagnose_from(delay_s: f64, comparison: &Comparison, request: &Request) -> Re
 
 /// Diagnoses signals whose torque and motion belong together; with other rows locked where a one-off event lay in those that were.
 fn diagnose_with_event_open(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
-    let mut first = diagnose_locked(comparison, request)?;
+    let mut first = diagnose_locked(comparison, request, None)?;
     let Some(event) = locked_event(&first) else { return Ok(first) };
     add_locked_event(&mut first, event);
     let elsewhere = Options { lock: Lock::SpreadElsewhere, ..request.options };
-    match diagnose_locked(comparison, &Request { options: elsewhere, ..*request }) {
+    match diagnose_locked(comparison, &Request { options: elsewhere, ..*request }, None) {
         Ok(second) if names_more(&second, &first, event) => Ok(second),
         _ => Ok(first),
     }
 }
 
 /// Diagnoses with some rows locked.
-fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
+fn diagnose_locked(
+    comparison: &Comparison,
+    request: &Request,
+    inferred: Option<&Inferred>,
+) -> Result<Diagnosis, Refusal> {
     let Request { options, as_recorded } = *request;
     let signals = &comparison.signals;
     let mut prepared = comparison.prepare(options.lock);
+    if options.by_likelihood {
+        turn_over_as_simulated(&mut prepared, comparison);
+    }
     let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
         return Err(Refusal::TooLittleMotion { rows, least: LEAST_ROWS, cut_off_hz: prepared.filter.cut_off_hz });
@@ -148,18 +173,23 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     health.extend(scattered_sampling(signals, &prepared));
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
     let blocked = health.iter().any(|note| note.blocking);
-    let found = if blocked { Confirmed::nothing(&search) } else { Confirmed::of(&mut search, &baseline) };
-    let Confirmed { mut accepted, withdrawn, last_round, noise } = found;
-    // In this order: what is set aside later is weighed beside what stays.
-    let mut discarded = Discarded {
-        withdrawn,
-        undetermined: Vec::new(),
-        doubtful: set_aside_doubtful(workbench, &mut accepted),
-        minor: set_aside_minor(workbench, &mut accepted, &baseline),
-        negligible: set_aside_negligible(workbench, &mut accepted, options.least_effect),
+    let found = match inferred {
+        _ if blocked => Confirmed::nothing(&search),
+        Some(inferred) => Confirmed::by_likelihood(inferred),
+        None => Confirmed::of(&mut search, &baseline),
     };
-    if comparison.is_with_fitted_model() {
-        discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
+    let Confirmed { mut accepted, withdrawn, last_round, noise } = found;
+    let mut discarded = Discarded { withdrawn, ..Discarded::default() };
+    if options.by_likelihood {
+        discarded.negligible = set_aside_small(workbench, &mut accepted, options.least_effect);
+    } else {
+        // In this order: what is set aside later is weighed beside what stays.
+        discarded.doubtful = set_aside_doubtful(workbench, &mut accepted);
+        discarded.minor = set_aside_minor(workbench, &mut accepted, &baseline);
+        discarded.negligible = set_aside_negligible(workbench, &mut accepted, options.least_effect);
+        if comparison.is_with_fitted_model() {
+            discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
+        }
     }
     if !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
@@ -214,6 +244,64 @@ fn diagnose_locked(comparison: &Comparison, request: &Request) -> Result<Diagnos
     Ok(diagnosis)
 }
 
+/// Diagnoses with the torque put back by its likeliest delay, which is a finding where it is longer than the sampling's own.
+fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
+    let options = request.options;
+    let period = comparison.signals.period;
+    let hypotheses = catalogue();
+    let mut prepared = comparison.prepare(options.lock);
+    turn_over_as_simulated(&mut prepared, comparison);
+    let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
+    let simulated = of_simulation(&prepared, comparison);
+    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
+    let real = Side::without_delay(&prepared, &base);
+    let candidates = Candidates::new(&hypotheses, &real, side.as_ref());
+    let (late, noise) = torque_delay(&candidates, &real, side.as_ref());
+    let is_own = late.delay_s.abs() <= LONGEST_SAMPLING_DELAY * period;
+    // The drive answers to the grain of its encoder some samples later.
+    let explained = 2.0 * late.gain_nats * noise.rms * noise.rms;
+    let is_shown = late.gain_nats > DELAY_NATS && late.shown_deviations > DELAY_DEVIATIONS;
+    let is_told = !is_own && is_shown && explained > position_error_energy(&prepared, comparison);
+    let longest = if is_told { f64::INFINITY } else { LONGEST_SAMPLING_DELAY * period };
+    let late = TorqueDelay { delay_s: late.delay_s.clamp(-longest, longest), ..late };
+    let in_step = shifted(&Side::new(&prepared, &base), late.delay_s);
+    let inferred = infer(&hypotheses, candidates, (&in_step, side.as_ref()), noise, options.settings.seed);
+    let mut diagnosis = diagnose_locked(&comparison.realigned(late.delay_s), request, Some(&inferred))?;
+    diagnosis.realigned_by_s = late.delay_s;
+    if !is_told {
+        diagnosis.sampling_delay_s += late.delay_s;
+        diagnosis.health.push(late_torque(late.delay_s, period));
+    } else {
+        diagnosis.put_first(misalignment(&late), Vec::new());
+    }
+    Ok(diagnosis)
+}
+
+/// The simulation behind the filter of the recording, with its base.
+fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, Base)> {
+    let simulation = comparison.simulation.as_deref()?;
+    let cut_off = real.filter.cut_off_hz;
+    let mut prepared = Prepared::at_cut_off(&simulation.signals, cut_off, simulation.known(), Lock::Nothing);
+    prepared.state.sign_lead_s = real.state.sign_lead_s;
+    prepared.state.turn_over_within(real.state.sign_velocity);
+    let base = Base::fit(&mut prepared, simulation, BaseKind::Reference)?;
+    Some((prepared, base))
+}
+
+/// Friction of the joint turns over as softly as that of its simulation, which has no noise: where this is Coulomb and viscous friction
+/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction.
+fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
+    let Some(simulation) = comparison.simulation.as_deref() else { return };
+    let alone = Comparison::from(simulation.signals.clone());
+    let mut prepared = Prepared::at_cut_off(&alone.signals, real.filter.cut_off_hz, alone.known(), Lock::Nothing);
+    let lead_s = comparison.reference.as_ref().map_or(0.0, |law| law.sign_lead_s);
+    let least = real.state.sign_velocity;
+    (prepared.state.sign_lead_s, real.state.sign_lead_s) = (lead_s, lead_s);
+    prepared.state.turn_over_within(least);
+    fit_sign_width(&mut prepared, &alone, BaseKind::CoulombViscous);
+    real.state.turn_over_within(prepared.state.sign_velocity.max(least));
+}
+
 /// Adds a wrong friction level of the reference to the findings; the figures before are then those of the reference as given.
 fn judge_friction_level(
     diagnosis: &mut Diagnosis,
@@ -230,7 +318,7 @@ fn judge_friction_level(
             diagnosis.proof = prove(workbench, &as_given, improved);
             diagnosis.baseline = score(workbench, &as_given);
             diagnosis.traces.before = rest(workbench, &as_given);
-            diagnosis.baseline_refit = as_given;
+            diagnosis.baseline_refit = *as_given;
             diagnosis.put_by_size(*finding, torque);
         }
     }

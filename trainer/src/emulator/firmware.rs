@@ -12,6 +12,9 @@ use super::target::Target;
 /// Environment variable that names the firmware folder.
 pub const FIRMWARE_VARIABLE: &str = "FRIKAN_FIRMWARE";
 
+/// The package of the firmware that carries a model.
+const MODEL_PACKAGE: &str = "frikan-firmware";
+
 /// Where the firmware lies in a checkout.
 const FOLDER_IN_CHECKOUT: &str = "tests/firmware";
 
@@ -19,6 +22,8 @@ const FOLDER_IN_CHECKOUT: &str = "tests/firmware";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Firmware {
     folder: PathBuf,
+    /// Features of what is built; those that it has by default where none are named.
+    features: Option<String>,
 }
 
 /// The firmware folder: `FRIKAN_FIRMWARE`, or `tests/firmware` of the checkout around the current directory.
@@ -49,7 +54,13 @@ impl Firmware {
     /// # Errors
     /// As [`firmware_folder`].
     pub fn find() -> Result<Self> {
-        Ok(Self { folder: firmware_folder()? })
+        Ok(Self { folder: firmware_folder()?, features: None })
+    }
+
+    /// The same firmware with these features alone, separated by commas; it is built beside the others.
+    #[must_use]
+    pub fn with_features(&self, features: &str) -> Self {
+        Self { features: Some(features.to_owned()), ..self.clone() }
     }
 
     /// Names of the targets.
@@ -75,12 +86,26 @@ impl Firmware {
     pub fn build(&self, target: &Target, binary: &str) -> Result<PathBuf> {
         let mut flags = target.rustflags.clone();
         flags.push(format!("-Clink-arg=-Ltargets/{}", target.name));
-        let arguments = ["build", "--release", "--bin", binary];
+        let mut arguments = vec!["build", "--release", "--bin", binary];
+        if let Some(features) = &self.features {
+            arguments.extend(["--package", MODEL_PACKAGE, "--no-default-features", "--features", features]);
+        }
         let folder = self.cargo(&self.folder, target, &flags, &arguments)?;
         Ok(folder.join("release").join(binary))
     }
 
-    /// Builds the static library for C for a target, if it is not up to date, and returns its path.
+    /// Checks a package of the workspace for a target with these features alone, separated by commas.
+    ///
+    /// # Errors
+    /// As [`Firmware::build`].
+    pub fn check(&self, target: &Target, package: &str, features: &str) -> Result<()> {
+        let arguments = ["check", "--package", package, "--no-default-features", "--features", features];
+        // What is only checked is no part of a program.
+        let checked = self.with_features("checked");
+        checked.cargo(&self.folder.join("../.."), target, &[], &arguments).map(|_| ())
+    }
+
+    /// Builds the static library for C for a target, if it is not up to date, and returns its path. Its features are those of the library.
     ///
     /// # Errors
     /// As [`Firmware::build`].
@@ -88,7 +113,10 @@ impl Firmware {
         // Flags that concern the linker belong to the firmware that the library goes into.
         let is_for_compiler = |flag: &&String| flag.starts_with("target-cpu");
         let processor = target.rustflags.iter().find(is_for_compiler).map(|processor| format!("-C{processor}"));
-        let arguments = ["rustc", "--package", "frikan-c", "--profile", "drive", "--crate-type", "staticlib"];
+        let mut arguments = vec!["rustc", "--package", "frikan-c", "--profile", "drive", "--crate-type", "staticlib"];
+        if let Some(features) = &self.features {
+            arguments.extend(["--no-default-features", "--features", features]);
+        }
         let folder = self.cargo(&self.folder.join("../.."), target, processor.as_slice(), &arguments)?;
         Ok(folder.join("drive").join("libfrikan.a"))
     }
@@ -96,7 +124,9 @@ impl Firmware {
     /// Runs cargo in `folder` for a target and returns the folder of what it built.
     fn cargo(&self, folder: &Path, target: &Target, flags: &[String], arguments: &[&str]) -> Result<PathBuf> {
         let toolchain = Toolchain::find(target)?;
-        let target_folder = self.folder.join("target").join(&target.name);
+        // A program has one place in its folder, whatever its features.
+        let features = self.features.as_deref().map_or(String::new(), |features| format!("-{features}"));
+        let target_folder = self.folder.join("target").join(format!("{}{features}", target.name));
         let flags = [flags, &toolchain.flags(target)].concat();
 
         let mut cargo = Command::new(&toolchain.cargo);

@@ -151,6 +151,22 @@ registry! {
         "The file of `export --into` is not valid XML, lacks the joint, or does not say the inertia of its bodies.",
         "A xacro or a file with includes that has not been expanded, a joint of another name, or bodies that have their inertia from geometries.",
         "Name the joint by `--joint-name` as the file does; give `--inertia-of-model` where bodies have their inertia from geometries.";
+    SEVERAL_JOINTS = "FRK-D040" Data "several joints",
+        "The recording holds the states of several joints, and nothing says which of them is meant.",
+        "A bag or a table of a whole arm: `/joint_states/elbow/position`, `/joint_states/wrist/position` and so on.",
+        "Name the joint in joint.toml, `name = \"elbow\"`, or map its columns under `[columns]`.";
+    CUT_SHORT = "FRK-D041" Data "file cut short",
+        "The file ends before its own structure says that it ends.",
+        "A copy or a recording that was interrupted.",
+        "Copy the file again. Where the recording itself was interrupted, convert what is whole with the tool that wrote it.";
+    DAMAGED = "FRK-D042" Data "damaged file",
+        "The file contradicts its own format: lengths, types or checksums in it do not fit together.",
+        "A transfer in text mode, a failing disk, or a file that only has the ending of this format.",
+        "Copy the file again, or export it once more with the tool that wrote it.";
+    FORMAT_NOT_READ = "FRK-D043" Data "format that is not read",
+        "The file is of a format that this program does not read, or was built without.",
+        "A bag in SQLite, MATLAB 7.3, HDF5, a spreadsheet, or a compression other than gzip.",
+        "Convert it as the message says; CSV, NumPy, MATLAB 5 to 7, JSON, Parquet and MCAP are read.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording.",
         "One speed, one acceleration, a small range of positions, or a single frequency.",
@@ -247,6 +263,14 @@ registry! {
         "The joint never turns round. A Coulomb torque in one direction cannot be separated from an offset, nor from a constant load.",
         "A conveyor, a spindle, or an excerpt of a longer motion.",
         "Record both directions. What is found holds for the recorded direction only.";
+    NEARLY_NAMED = "FRK-W020" Warning "column that nearly has a known name",
+        "A column has almost the name of a quantity that no other column gives. It is kept as a channel by its name.",
+        "A slip of the pen, capitals, or a missing `_`.",
+        "Rename the column as the message says, or map it under `[columns]` of joint.toml.";
+    UNKNOWN_KEY = "FRK-W021" Warning "unknown key of joint.toml",
+        "joint.toml has a table or key that no command reads.",
+        "A slip of the pen, or a key of another version.",
+        "Correct it as the message says, or remove it.";
 }
 
 #[cfg(test)]

@@ -19,7 +19,9 @@ pub struct JointState {
     pub acceleration: Vec<f64>,
     /// Velocity below which the smoothed sign turns, in the unit of velocity.
     pub sign_velocity: f64,
-    /// Smoothed sign: the mean of `tanh(v / sign_velocity)` over the sample.
+    /// Time by which friction turns over before the velocity, s: that of a solver of constraints, zero for a joint.
+    pub sign_lead_s: f64,
+    /// Smoothed sign: the mean of `tanh(v / sign_velocity)` over the sample, of the velocity that is led.
     pub sign: Vec<f64>,
     /// Torque of the nominal rigid body in the unit of the actuator, where one is given.
     pub rigid_body: Option<Vec<f64>>,
@@ -239,7 +241,13 @@ impl JointState {
     /// Lets the smoothed sign turn below another velocity.
     pub(crate) fn turn_over_within(&mut self, velocity: f64) {
         self.sign_velocity = velocity;
-        self.sign = self.averaged_sign(&self.velocity, velocity);
+        self.sign = self.averaged_sign(&self.led_velocity(self.sign_lead_s), velocity);
+    }
+
+    /// The velocity that the joint is about to have after a time (s) at its acceleration; at rest it has none, and its acceleration is noise.
+    pub(crate) fn led_velocity(&self, lead_s: f64) -> Vec<f64> {
+        let rests = |i: usize| self.memory.at_rest.get(i).copied().unwrap_or(false);
+        self.map(|i| self.velocity[i] + if rests(i) { 0.0 } else { lead_s * self.acceleration[i] })
     }
 
     /// One value a sample.

@@ -2,6 +2,9 @@
 
 use crate::error::{Error, codes};
 
+/// Most samples of a simulation: an hour at 5 kHz, 3 GB of signals.
+pub const MOST_SAMPLES: f64 = 1.8e7;
+
 /// What keeps a joint from being simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
@@ -18,6 +21,11 @@ pub enum PlantError {
         /// The value found.
         value: f64,
     },
+    /// The recording would be longer than memory should hold.
+    #[error(
+        "{0:e} samples are more than the {MOST_SAMPLES:e} that a simulation has at most; lower the length or `drive.rate_Hz`"
+    )]
+    TooLong(f64),
     /// Two hidden effects each need a transmission of their own.
     #[error("`{0}` cannot be combined with another compliant or inexact transmission")]
     TwoTransmissions(String),
@@ -31,7 +39,7 @@ impl From<PlantError> for Error {
     fn from(error: PlantError) -> Self {
         let code = match error {
             PlantError::UnknownEffect(_) | PlantError::TwoTransmissions(_) => &codes::USAGE,
-            PlantError::OutOfRange { .. } | PlantError::Unstable(_) => &codes::BAD_JOINT_FILE,
+            PlantError::OutOfRange { .. } | PlantError::TooLong(_) | PlantError::Unstable(_) => &codes::BAD_JOINT_FILE,
         };
         Self::new(code, error.to_string())
     }

@@ -22,13 +22,13 @@ mod simulate;
 mod trajectory;
 
 pub use effects::{CATALOGUE, Entry, OUTSIDE, find};
-pub use error::PlantError;
+pub use error::{MOST_SAMPLES, PlantError};
 pub use joint::{Base, Control, Drive, Friction, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
 pub use measurement::recording::{Column, SimulatedRecording, Truth};
 pub(crate) use measurement::sensors::encoder_step;
 pub(crate) use mechanics::transmission::Load;
 pub(crate) use simulate::at_rest;
-pub use simulate::{conceal, simulate, simulate_again};
+pub use simulate::{conceal, refuse_length, simulate, simulate_again};
 pub use trajectory::campaign::{Campaign, Trajectory};
 pub use trajectory::motion::Motion;
 pub use trajectory::reference::Reference;

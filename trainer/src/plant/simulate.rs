@@ -1,7 +1,7 @@
 //! From a joint and a seed to a recording.
 
 use super::concealed::Concealed;
-use super::error::PlantError;
+use super::error::{MOST_SAMPLES, PlantError};
 use super::integrator::integrate;
 use super::joint::{Hidden, Joint};
 use super::moving::MovingJoint;
@@ -100,7 +100,16 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
     if !(share > 0.0 && share < 1.0) {
         return Err(PlantError::OutOfRange { key: "motor_inertia_share", range: "between 0 and 1", value: share });
     }
-    Ok(())
+    refuse_length(joint.campaign.duration_s(), joint.drive.rate_hz)
+}
+
+/// Refuses a recording of `duration_s` seconds at `rate_hz` that is longer than a simulation may be, before anything is asked for it.
+///
+/// # Errors
+/// [`PlantError::TooLong`].
+pub fn refuse_length(duration_s: f64, rate_hz: f64) -> Result<(), PlantError> {
+    let samples = duration_s * rate_hz;
+    if samples <= MOST_SAMPLES { Ok(()) } else { Err(PlantError::TooLong(samples)) }
 }
 
 /// The reference of every trajectory, with its gravity torque.

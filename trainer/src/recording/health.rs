@@ -3,7 +3,7 @@
 use super::{Channel, Quantity};
 
 /// A step of the clock above this many periods is a gap.
-const GAP_PERIODS: f64 = 3.5;
+pub(super) const GAP_PERIODS: f64 = 3.5;
 
 /// A level that the actuator reaches in at least this share of the rows may be a limit.
 const CLIPPED_SHARE: f64 = 0.005;

@@ -3,28 +3,39 @@
 //! A recording is a text table whose columns are named `<quantity>_<unit>`. [`load`] reads a file and [`parse`] any
 //! stream of bytes; both give every channel in SI or one [`Error`] with the place in the file.
 
+mod clock;
 mod columns;
+mod convert;
+mod formats;
+mod guess;
 mod health;
-mod lines;
+mod merged;
+mod names;
 mod quantity;
 mod select;
+mod source;
 mod table;
 #[cfg(test)]
 mod tests;
 mod text;
+mod vectors;
 
 use std::path::Path;
 
+pub use guess::{Proposal, Taken};
 pub use health::Health;
-pub use lines::RECORD_LIMIT_BYTES;
 pub use quantity::{Axis, Quantity, Unit};
 pub use select::Omission;
 pub use table::TextTable;
-pub use text::MINIMUM_ROWS;
+pub use text::RECORD_LIMIT_BYTES;
 
 use crate::error::{Error, Result, codes};
-use crate::files;
 use crate::joint::Joint;
+use source::Fingerprinted;
+use table::RawTable;
+
+/// Fewest rows of data that a recording may have; below it no filter and no split makes sense.
+pub const MINIMUM_ROWS: usize = 20;
 
 /// A recording in SI units, joint side.
 #[derive(Clone, Debug)]
@@ -41,6 +52,8 @@ pub struct Recording {
     pub health: Health,
     /// The rows as text.
     pub table: TextTable,
+    /// Columns that nearly have the name of a quantity that no column has, with that name.
+    pub nearly_named: Vec<(String, String)>,
     unusable: Vec<(Quantity, String)>,
     file: String,
 }
@@ -64,17 +77,26 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
-/// Reads a recording from a file.
+/// Reads a recording from a file, or from standard input where it is named `-`.
 ///
 /// # Errors
 /// `FRK-I...` when the file cannot be read, `FRK-D...` with row, column and value when its content cannot be used.
 pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
-    let file = path.display().to_string();
-    let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
-    let source = files::open(path)?;
+    let (file, label) = names_of(path);
+    let source = source::open(path)?;
     let mut recording = parse(&label, source, joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
     Ok(recording)
+}
+
+/// A path as it is shown, and the name of its file.
+fn names_of(path: &Path) -> (String, String) {
+    if path == Path::new("-") {
+        return ("standard input".to_owned(), "standard input".to_owned());
+    }
+    let file = path.display().to_string();
+    let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+    (file, label)
 }
 
 /// Reads a recording from any stream of bytes, with bounded memory for a record of any length.
@@ -82,23 +104,65 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
 /// # Errors
 /// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
 pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
-    let raw = text::read(source)?;
-    let assigned = columns::assign(&raw.table, joint)?;
-    let channels = columns::convert(&raw, &assigned.columns, joint)?;
-    if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
-        refuse_backward_time(time, &raw.table)?;
+    let (raw, fingerprint) = read(source)?;
+    interpret(label, raw, fingerprint, joint)
+}
+
+/// Proposes a `joint.toml` for a file, or for standard input where it is named `-`, and reads the recording by it.
+///
+/// # Errors
+/// As [`load`], where the file cannot be read even so.
+pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
+    let (file, label) = names_of(path);
+    let (raw, fingerprint) = read(source::open(path)?).map_err(|error| error.in_file(&file))?;
+    let stem = Path::new(&label).file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
+    let proposal = guess::propose(&raw, &stem);
+    let recording = Joint::parse(&proposal.toml).and_then(|joint| interpret(&label, raw, fingerprint, &joint));
+    let mut recording = recording.map_err(|error| error.in_file(&file))?;
+    recording.file = file;
+    Ok((proposal, recording))
+}
+
+/// The table in a stream of bytes, long enough, and the fingerprint of the stream.
+fn read(source: impl std::io::Read) -> Result<(RawTable, u64)> {
+    let mut bytes = Fingerprinted::new(source);
+    let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(formats::read)?;
+    refuse_short(&raw.table)?;
+    Ok((raw, bytes.fingerprint()))
+}
+
+fn interpret(label: &str, raw: RawTable, fingerprint: u64, joint: &Joint) -> Result<Recording> {
+    let assigned = columns::assign(&raw, joint)?;
+    let converted = convert::convert(&raw, &assigned, joint)?;
+    let (channels, mut table) = (converted.channels, raw.table);
+    if let Some(kept) = &converted.rows {
+        table = table.with_rows(kept);
     }
-    let health = Health::of(&channels, assigned.notes, Vec::new());
+    if let Some(time) = channels.iter().find(|channel| channel.quantity == Some(Quantity::Time)) {
+        refuse_backward_time(time, &table)?;
+    }
+    let notes = [raw.notes, assigned.notes, converted.notes].concat();
+    let health = Health::of(&channels, notes, Vec::new());
     Ok(Recording {
         label: label.to_owned(),
         axis: assigned.axis,
         channels,
-        content_hash: raw.fingerprint,
+        content_hash: fingerprint,
         health,
-        table: raw.table,
+        table,
+        nearly_named: assigned.nearly,
         unusable: assigned.unusable,
         file: label.to_owned(),
     })
+}
+
+fn refuse_short(table: &TextTable) -> Result<()> {
+    if table.len() >= MINIMUM_ROWS {
+        return Ok(());
+    }
+    let message = format!("a recording needs at least {MINIMUM_ROWS} rows of data");
+    let last = table.len().checked_sub(1).map_or(table.header_line(), |index| table.line(index));
+    Err(Error::new(&codes::TOO_FEW_ROWS, message).at_row(last).with_value(table.len().to_string()))
 }
 
 /// A stamp that stands twice is left to the checks.

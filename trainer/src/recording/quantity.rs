@@ -126,6 +126,32 @@ const TEMPERATURES: &[Unit] = &[
 ];
 const VOLTAGES: &[Unit] = &[unit("V", "V", 1.0), unit("mV", "V", 1e-3)];
 
+/// Other ways to write a unit, with its suffix.
+const WRITTEN_UNITS: &[(&str, &str)] = &[
+    ("sec", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("usec", "us"),
+    ("nsec", "ns"),
+    ("radians", "rad"),
+    ("degrees", "deg"),
+    ("degree", "deg"),
+    ("rev", "turn"),
+    ("turns", "turn"),
+    ("counts", "count"),
+    ("radians_s", "rad_s"),
+    ("rad_sec", "rad_s"),
+    ("degrees_s", "deg_s"),
+    ("deg_sec", "deg_s"),
+    ("rev_s", "turn_s"),
+    ("rev_min", "rpm"),
+    ("RPM", "rpm"),
+    ("counts_s", "count_s"),
+    ("N-m", "Nm"),
+    ("amps", "A"),
+    ("volts", "V"),
+];
+
 /// Words that follow a quantity in column names of flags and registers: no misspelt units.
 const FLAGS: &[&str] =
     &["enabled", "valid", "flag", "state", "status", "mode", "register", "raw", "id", "index", "limit", "error"];
@@ -189,13 +215,16 @@ impl Quantity {
         }
     }
 
-    /// The unit of this suffix; `deg/s`, `rad/s^2` and `N m` are taken for `deg_s`, `rad_s2` and `Nm`.
+    /// The unit of this suffix; `deg/s`, `rad/s^2`, `N m` and `seconds` are taken for `deg_s`, `rad_s2`, `Nm` and `s`.
     #[must_use]
     pub fn unit(self, suffix: &str) -> Option<&'static Unit> {
-        let plain: String =
-            suffix.replace('²', "2").chars().filter(|c| !matches!(c, ' ' | '^' | '·' | '*' | '°')).collect();
+        let letters = suffix.replace('²', "2").replace("°C", "C").replace('°', "deg");
+        let plain: String = letters.chars().filter(|c| !matches!(c, ' ' | '^' | '·' | '*' | '.')).collect();
         let plain = plain.replace('/', "_");
-        self.units().iter().find(|unit| unit.suffix == plain)
+        let known = |name: &str| self.units().iter().find(|unit| unit.suffix == name);
+        let written =
+            || WRITTEN_UNITS.iter().find(|(written, _)| *written == plain).and_then(|(_, suffix)| known(suffix));
+        known(&plain).or_else(written)
     }
 
     /// The suffixes that the quantity understands, for messages.
@@ -275,5 +304,12 @@ mod tests {
     fn written_units_are_the_same_as_suffixes() {
         assert_eq!(Quantity::Acceleration.unit("rad/s^2").unwrap().suffix, "rad_s2");
         assert_eq!(Quantity::Torque.unit("N·m").unwrap().suffix, "Nm");
+        assert_eq!(Quantity::Position.unit("°").unwrap().suffix, "deg");
+        for (written, suffix) in WRITTEN_UNITS {
+            assert!(
+                Quantity::ALL.iter().any(|(quantity, _)| quantity.unit(written) == quantity.unit(suffix)),
+                "{written}"
+            );
+        }
     }
 }

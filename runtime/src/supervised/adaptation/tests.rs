@@ -2,7 +2,7 @@ use super::super::adaptation_settings::AdaptationError;
 use super::super::tests::Joint16;
 use super::super::*;
 use super::*;
-use crate::compensator::Limits;
+use crate::compensator::{Compensator, Limits};
 use crate::test_models::{coulomb_model, image_of};
 use proptest::prelude::*;
 

@@ -1,10 +1,10 @@
 //! The compensator as a control loop calls it: a row holds all that the firmware hands over in one sample.
 
 use frikan_firmware_harness::{Evaluator, Row};
-use frikan_runtime::compensator::{Compensation, Compensator, Limits, Status};
-use frikan_runtime::friction::Measurement;
+use frikan_runtime::compensator::{Compensation, Limits, Status};
+use frikan_runtime::measurement::Measurement;
 
-use crate::{CELLS, reason};
+use crate::{Joint, joint, reason};
 
 /// Words of a row: whether to reset before the step (its lowest bit), gain, torque and slew of the limits, sample period, then the
 /// measurement: velocity, position, acceleration, load, temperature and four other channels.
@@ -15,7 +15,7 @@ const POSITION_LIMIT: f32 = 0.4;
 
 /// A drive that compensates the friction of one joint.
 pub struct Drive {
-    compensator: Compensator<CELLS>,
+    compensator: Joint,
     measurement: Measurement,
     /// Sample period, s.
     dt: f32,
@@ -27,7 +27,7 @@ impl Evaluator for Drive {
     const OUTPUTS: usize = 3;
 
     fn decode(image: &'static [u8]) -> Result<Self, u32> {
-        let compensator = Compensator::new(image, Limits::OFF);
+        let compensator = joint(image, Limits::OFF);
         match compensator.status() {
             Status::NoModel(error) => Err(reason(error)),
             status => {

@@ -4,12 +4,10 @@ use std::path::Path;
 
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
+use crate::plant::MOST_SAMPLES;
 use crate::recording::{self, Quantity};
 use crate::rig::{Course, Motion};
 use crate::samples::interpolate;
-
-/// Most samples of a run: an hour at 5 kHz, 2 GB of rows.
-pub(super) const MOST_SAMPLES: f64 = 1.8e7;
 
 /// The course called `motion`: one of the set, or the reference of a recording at `rate` samples a second.
 pub(super) fn course(motion: &str, rate: f64) -> Result<Course> {

@@ -4,7 +4,7 @@ use super::Diagnose;
 use crate::commands::measurement::{motion, units};
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
-use crate::diagnose::comparison::simulation::InverseLaw;
+use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
@@ -42,10 +42,20 @@ pub(super) fn comparison(arguments: &Diagnose, real: &[Recording], joint: &Joint
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
-        let law = learn_simulation(&simulation, &signals)
-            .map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
+        let learned = if arguments.by_likelihood {
+            learn_static(&simulation, &signals)
+        } else {
+            learn_simulation(&simulation, &signals)
+        };
+        let law =
+            learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let given = given_rigid_body(&real[0], joint)?;
-        Ok((Comparison::with(signals, law.at(&state)), Compared::Simulation(Box::new(law), given)))
+        let mut comparison = Comparison::with(signals, law.at(&state));
+        if arguments.by_likelihood {
+            let of_simulation = law.at(&simulation.states());
+            comparison = comparison.beside(simulation, of_simulation);
+        }
+        Ok((comparison, Compared::Simulation(Box::new(law), given)))
     } else if let Some(path) = &arguments.model {
         let (_, image) = fit::model::load(path)?;
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.

@@ -12,6 +12,7 @@ use crate::diagnose::comparison::base::Base;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
+use crate::diagnose::infer::delay::TorqueDelay;
 use crate::diagnose::proof::locked_rows::prove_alone;
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::accepted::Accepted;
@@ -153,6 +154,34 @@ pub(crate) fn unexplained_finding(worst: WorstLocked, traces: &Traces) -> Findin
         equation: "dF = c(time)".to_string(),
         location: Location { regions: vec![region], is_named: true, when_s: vec![worst.when_s] },
         ..unfitted(effect, WITHOUT_RIVAL, effect.action(), unexplained_event(worst))
+    }
+}
+
+/// A torque that was recorded at another time than the motion.
+pub(crate) fn misalignment(late: &TorqueDelay) -> Finding {
+    let effect = EffectId::TimeMisalignment;
+    let nothing = HealthNote {
+        effect,
+        blocking: false,
+        observation: Observation::RealignedTorque { delay_s: late.delay_s, period_s: 0.0 },
+    };
+    let unfitted = unfitted(effect, 1.0 / (1.0 + (-late.gain_nats).exp()), effect.action(), nothing);
+    Finding {
+        equation: "dF = -d dtau/dt".to_string(),
+        parameters: vec![Estimate::of("torque_delay", "d", Dimension::Second, late.delay_s, late.deviation_s)],
+        evidence: Evidence::Rows {
+            held_out_gain_nats: late.gain_nats,
+            family_wise: (-late.gain_nats).exp(),
+            rivals: 0,
+        },
+        fitted: Fitted {
+            coefficients: vec![late.delay_s],
+            deviation: vec![late.deviation_s],
+            ..unfitted.fitted.clone()
+        },
+        score: late.gain_nats,
+        margin: late.gain_nats,
+        ..unfitted
     }
 }
 

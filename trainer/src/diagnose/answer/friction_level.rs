@@ -38,7 +38,7 @@ pub(crate) enum FrictionLevel {
     /// It has to change, by a torque (root mean square) too small to act on.
     Small(f64),
     /// It has to change: the finding, its torque at every working row, and the refit of the base with the level as given.
-    Wrong { finding: Box<Finding>, torque: Vec<f64>, as_given: Refit },
+    Wrong { finding: Box<Finding>, torque: Vec<f64>, as_given: Box<Refit> },
 }
 
 impl FrictionLevel {
@@ -68,7 +68,7 @@ impl FrictionLevel {
         }
         let evidence = Evidence::Rows { held_out_gain_nats: proof.gain_nats, family_wise: change.p_value(), rivals: 0 };
         let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
-        Self::Wrong { finding, torque: change.torque, as_given: baseline.with_base_as_given(workbench) }
+        Self::Wrong { finding, torque: change.torque, as_given: Box::new(baseline.with_base_as_given(workbench)) }
     }
 }
 

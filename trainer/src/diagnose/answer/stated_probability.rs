@@ -49,6 +49,9 @@ const SELDOM_CONFIRMED: f64 = 0.5;
 
 /// Probability that the named effect is the true one, by its margin and its rivals; `is_first` where it was found before all others.
 pub(crate) fn probability(found: &Accepted, is_first: bool) -> f64 {
+    if let Some(stated) = &found.stated {
+        return stated.probability;
+    }
     let is_seldom_true = !is_first || matches!(found.effect(), EffectId::TransientEvent | EffectId::Unknown);
     by_rivals(found).min(if is_seldom_true { SELDOM_CONFIRMED } else { 1.0 })
 }
@@ -67,6 +70,9 @@ fn by_rivals(found: &Accepted) -> f64 {
 
 /// What is left of the probability by the rivals, shared among them by their likelihood.
 pub(crate) fn alternatives(found: &Accepted) -> Vec<(EffectId, f64)> {
+    if let Some(stated) = &found.stated {
+        return stated.alternatives.clone();
+    }
     let left = 0.97 * (1.0 - by_rivals(found));
     let nearest = found.rivals.iter().map(|(_, distance)| *distance).fold(f64::INFINITY, f64::min);
     let weights: Vec<f64> = found.rivals.iter().map(|(_, distance)| (nearest - distance).exp()).collect();
@@ -90,6 +96,7 @@ mod tests {
             rivals: rivals.to_vec(),
             standings: rivals.to_vec(),
             channels: Vec::new(),
+            stated: None,
         }
     }
 

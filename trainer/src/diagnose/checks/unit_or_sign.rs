@@ -68,7 +68,7 @@ pub(crate) fn contradicting_velocity(signals: &Signals) -> Option<HealthNote> {
 /// Fits scale x reference, rigid body or inertia with Coulomb, viscous and offset: friction that drives the joint, a given
 /// body that enters with its sign turned or near a unit's factor betray a wrong sign or unit.
 pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> {
-    let Comparison { signals, reference } = comparison;
+    let Comparison { signals, reference, .. } = comparison;
     let filter = slow_filter(signals);
     let segments = &signals.segments;
     let position = filter.over(&signals.position, segments);

@@ -28,6 +28,8 @@ pub struct Reference {
     pub outside: Outside,
     /// Its friction as pairs (velocity, torque) in ascending velocity.
     pub friction: Vec<(f64, f64)>,
+    /// Time by which its friction turns over before the velocity, s.
+    pub sign_lead_s: f64,
 }
 
 /// Where a law is asked for more than it was fitted on: there it holds its last value, and the difference is its own.
@@ -46,11 +48,13 @@ pub struct Comparison {
     pub signals: Signals,
     /// The law of a simulation or a fitted model at the recorded states.
     pub reference: Option<Reference>,
+    /// The recording of the simulation with its own law at its own states, where both stand in one model.
+    pub simulation: Option<Box<Comparison>>,
 }
 
 impl From<Signals> for Comparison {
     fn from(signals: Signals) -> Self {
-        Self { signals, reference: None }
+        Self { signals, reference: None, simulation: None }
     }
 }
 
@@ -61,7 +65,18 @@ impl Comparison {
         if signals.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
             signals.rigid_body = Some(reference.rigid_body.clone());
         }
-        Self { signals, reference: Some(reference) }
+        Self { signals, reference: Some(reference), simulation: None }
+    }
+
+    /// The same with the recording of the simulation from which the law was learned, as the recording's encoder would have read it.
+    #[must_use]
+    pub fn beside(self, mut simulation: Signals, law: Reference) -> Self {
+        let step = self.signals.position_resolution;
+        if step > simulation.position_resolution {
+            simulation.position.iter_mut().for_each(|position| *position = (*position / step).round() * step);
+            simulation.position_resolution = step;
+        }
+        Self { simulation: Some(Box::new(Self::with(simulation, law))), ..self }
     }
 
     /// The torque that needs no identification: the reference's, or the rigid body's.
@@ -85,7 +100,11 @@ impl Comparison {
     /// The same with the torque, recorded late by `delay` (s; negative where early), put back to its time.
     #[must_use]
     pub fn realigned(&self, delay: f64) -> Self {
-        Self { signals: self.signals.realigned(delay), reference: self.reference.clone() }
+        Self {
+            signals: self.signals.realigned(delay),
+            reference: self.reference.clone(),
+            simulation: self.simulation.clone(),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::numerics::pattern_search::{Movable, climb};
 use crate::physics::JointState;
 
 /// Relaxation times that are tried, s: from a short step of a simulation to a soft constraint; each is twice the one before.
-const TRIED_S: [f64; 8] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064];
+pub(crate) const TRIED_S: [f64; 8] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064];
 
 /// Torque that a relaxation time adds for each unit of Coulomb friction.
 pub(crate) fn column(state: &JointState, sign_velocity: f64, relaxation_s: f64) -> Vec<f64> {

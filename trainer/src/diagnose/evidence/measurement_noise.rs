@@ -35,7 +35,7 @@ impl MeasurementNoise {
     /// Adds a uniform error of one step and the scatter of sampling to the position, and to the torque white noise as large as what a
     /// fitted base leaves in half of the rows. `None` where the recording shows no inertia.
     pub fn of(prepared: &Prepared, comparison: &Comparison, left_by_base: &[f64]) -> Option<Self> {
-        let Comparison { signals, reference } = comparison;
+        let Comparison { signals, reference, .. } = comparison;
         let body_is_recorded = signals.rigid_body.is_some() && !signals.body_follows_position;
         let inertia = if body_is_recorded && reference.is_none() { 0.0 } else { identified_inertia(prepared)? };
         let [mut random, mut instants] = [QUANTISATION_SEED, JITTER_SEED].map(ChaCha8Rng::seed_from_u64);

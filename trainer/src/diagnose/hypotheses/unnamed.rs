@@ -43,11 +43,18 @@ impl Generic {
 
     /// The columns of one shape, at the recording's rate; none where the recording lacks a channel.
     pub(crate) fn columns(self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        self.columns_ranked(state, state, shape)
+    }
+
+    /// The same with the ranks that the channel's values have among those of another recording.
+    pub(crate) fn columns_ranked(self, state: &JointState, among: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        let Some(ranked) = self.channel.series(among) else { return Vec::new() };
         let Some((series, factor)) = self.channel.series(state).zip(self.factor.series(state)) else {
             return Vec::new();
         };
         if self.form == Form::Free {
-            let mut columns = cosines(&series, &state.memory.at_rest, &factor, shape[0] as usize);
+            let knots = rank_knots(&ranked, &among.memory.at_rest);
+            let mut columns = cosines(&series, &knots, &factor, shape[0] as usize);
             return columns.split_off(self.factor.first_order());
         }
         let column = |function: Function| series.iter().zip(&factor).map(|(x, f)| f * function(*x)).collect();
@@ -218,8 +225,8 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
 }
 
 /// Cosine series of the rank-transformed channel times the factor, up to an order.
-fn cosines(series: &[f64], at_rest: &[bool], factor: &[f64], order: usize) -> Vec<Vec<f64>> {
-    let rank = rank_transform(series, at_rest);
+fn cosines(series: &[f64], knots: &[f64], factor: &[f64], order: usize) -> Vec<Vec<f64>> {
+    let rank = rank_transform(series, knots);
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();
     let mut columns = vec![factor.to_vec(), base.iter().zip(factor).map(|(c, f)| c * f).collect()];
@@ -230,19 +237,23 @@ fn cosines(series: &[f64], at_rest: &[bool], factor: &[f64], order: usize) -> Ve
     columns
 }
 
-/// Rank of each value among 512 quantiles of what the series takes in motion, interpolated, in [0, 1].
-fn rank_transform(series: &[f64], at_rest: &[bool]) -> Vec<f64> {
-    /// Quantiles between which ranks are interpolated: finer than the shortest wave of [`POSITION_SERIES_ORDER`] by a
-    /// factor of fifty.
-    const QUANTILES: usize = 512;
-    /// Samples from which the quantiles are taken, sixteen a quantile. A limit of the computing time.
-    const RANKED_SAMPLES: usize = 16 * QUANTILES;
+/// Quantiles between which ranks are interpolated: finer than the shortest wave of [`POSITION_SERIES_ORDER`] by a factor of fifty.
+const QUANTILES: usize = 512;
+/// Samples from which the quantiles are taken, sixteen a quantile. A limit of the computing time.
+const RANKED_SAMPLES: usize = 16 * QUANTILES;
+
+/// Quantiles of what a series takes in motion.
+fn rank_knots(series: &[f64], at_rest: &[bool]) -> Vec<f64> {
     let moving: Vec<f64> = series.iter().zip(at_rest).filter(|(_, rest)| !**rest).map(|(value, _)| *value).collect();
     let all = if moving.is_empty() { series } else { &moving };
     let mut sorted: Vec<f64> = all.iter().copied().step_by((all.len() / RANKED_SAMPLES).max(1)).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let last = sorted.len() - 1;
-    let knots: Vec<f64> = (0..=QUANTILES).map(|k| sorted[last * k / QUANTILES]).collect();
+    (0..=QUANTILES).map(|k| sorted[last * k / QUANTILES]).collect()
+}
+
+/// Rank of each value among quantiles, interpolated, in [0, 1].
+fn rank_transform(series: &[f64], knots: &[f64]) -> Vec<f64> {
     series
         .iter()
         .map(|value| {

@@ -25,6 +25,8 @@ pub struct Noise {
     pub deviation: Vec<f64>,
     /// Root mean square of the coloured residual from which it was fitted.
     pub rms: f64,
+    /// How the deviation depends on the features.
+    spread: Spread,
 }
 
 /// The autoregression with the predictors of every lower order: near the start of a run there are fewer rows to predict from.
@@ -43,6 +45,7 @@ impl Noise {
             colour: Colour { predictors: vec![Vec::new()], excess: vec![1.0] },
             deviation: vec![deviation; rows],
             rms: deviation,
+            spread: Spread::even(deviation),
         }
     }
 
@@ -52,10 +55,18 @@ impl Noise {
         let colour = Colour::fit(residual, runs);
         let mut innovation = residual.to_vec();
         colour.remove(&mut innovation, runs);
-        let deviation = deviation(&innovation, runs, features);
+        let spread = Spread::fit(&innovation, runs, features);
+        let deviation = (0..innovation.len()).map(|i| spread.at(features, i)).collect();
         let count = rows_in(runs);
         let energy: f64 = runs.iter().flat_map(|run| &residual[run.clone()]).map(|e| e * e).sum();
-        Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt() }
+        Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt(), spread }
+    }
+
+    /// The same noise at other rows, by their features.
+    #[must_use]
+    pub(crate) fn at_rows_of(&self, features: &[Vec<f64>]) -> Self {
+        let rows = features.first().map_or(0, Vec::len);
+        Self { deviation: (0..rows).map(|i| self.spread.at(features, i)).collect(), ..self.clone() }
     }
 
     /// A column behind `sigma^-1 A(L)`, on the rows of the runs.
@@ -131,46 +142,73 @@ impl Colour {
     }
 }
 
-/// Standard deviation of the innovation, log-linear in the features; rescaled so that the whitened variance is one.
-fn deviation(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Vec<f64> {
-    let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
-    let energy: f64 = rows.iter().map(|&i| innovation[i] * innovation[i]).sum();
-    let mean = (energy / rows.len().max(1) as f64).max(f64::MIN_POSITIVE);
-    let flat = vec![mean.sqrt(); innovation.len()];
-    let width = features.len() + 1;
-    if rows.len() < 50 * width {
-        return flat;
+/// Standard deviation of the innovation, log-linear in the features.
+#[derive(Clone, Debug)]
+struct Spread {
+    /// Weights of one and of each feature in the logarithm of the variance; empty where it is the same everywhere.
+    weights: Vec<f64>,
+    /// Logarithm of the mean variance.
+    log_mean: f64,
+    /// Factor that makes the whitened variance one.
+    scale: f64,
+}
+
+/// Nats by which the variance of a row may differ from the mean. Chosen by judgement: a factor of 55 either way.
+const LARGEST_VARIANCE_NATS: f64 = 4.0;
+
+impl Spread {
+    fn even(deviation: f64) -> Self {
+        Self { weights: Vec::new(), log_mean: 2.0 * deviation.ln(), scale: 1.0 }
     }
-    let mut normal = DMatrix::<f64>::zeros(width, width);
-    let mut right = DVector::<f64>::zeros(width);
-    let row_of = |i: usize| -> Vec<f64> { std::iter::once(1.0).chain(features.iter().map(|f| f[i])).collect() };
-    for &i in &rows {
-        let x = row_of(i);
-        // The floor keeps one lucky zero from pulling the logarithm down.
-        let log_square = (innovation[i] * innovation[i]).max(1e-6 * mean).ln() - LOG_CHI_SQUARE_MEAN;
-        for a in 0..width {
-            right[a] += x[a] * log_square;
-            for b in 0..width {
-                normal[(a, b)] += x[a] * x[b];
+
+    fn fit(innovation: &[f64], runs: &[Range<usize>], features: &[Vec<f64>]) -> Self {
+        let rows: Vec<usize> = runs.iter().flat_map(Range::clone).collect();
+        let energy: f64 = rows.iter().map(|&i| innovation[i] * innovation[i]).sum();
+        let mean = (energy / rows.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        let flat = Self::even(mean.sqrt());
+        let width = features.len() + 1;
+        if rows.len() < 50 * width {
+            return flat;
+        }
+        let mut normal = DMatrix::<f64>::zeros(width, width);
+        let mut right = DVector::<f64>::zeros(width);
+        for &i in &rows {
+            let x: Vec<f64> = row_of(features, i).collect();
+            // The floor keeps one lucky zero from pulling the logarithm down.
+            let log_square = (innovation[i] * innovation[i]).max(1e-6 * mean).ln() - LOG_CHI_SQUARE_MEAN;
+            for a in 0..width {
+                right[a] += x[a] * log_square;
+                for b in 0..width {
+                    normal[(a, b)] += x[a] * x[b];
+                }
             }
         }
+        let ridge = 1e-6 * normal.trace();
+        for a in 0..width {
+            normal[(a, a)] += ridge;
+        }
+        let Some(factor) = normal.cholesky() else { return flat };
+        let mut spread =
+            Self { weights: factor.solve(&right).iter().copied().collect(), log_mean: mean.ln(), scale: 1.0 };
+        let white = rows.iter().map(|&i| (innovation[i] / spread.at(features, i)).powi(2)).sum::<f64>();
+        spread.scale = (white / rows.len() as f64).sqrt();
+        spread
     }
-    let ridge = 1e-6 * normal.trace();
-    for a in 0..width {
-        normal[(a, a)] += ridge;
+
+    /// Deviation at a row of the features.
+    fn at(&self, features: &[Vec<f64>], row: usize) -> f64 {
+        let log_square: f64 = match self.weights.is_empty() {
+            true => self.log_mean,
+            false => row_of(features, row).zip(&self.weights).map(|(x, w)| x * w).sum(),
+        };
+        let nearest = log_square.clamp(self.log_mean - LARGEST_VARIANCE_NATS, self.log_mean + LARGEST_VARIANCE_NATS);
+        (0.5 * nearest).exp() * self.scale
     }
-    let Some(factor) = normal.cholesky() else { return flat };
-    let weights = factor.solve(&right);
-    let log_mean = mean.ln();
-    let mut deviation: Vec<f64> = (0..innovation.len())
-        .map(|i| {
-            let log_square: f64 = row_of(i).iter().zip(weights.iter()).map(|(x, w)| x * w).sum();
-            (0.5 * log_square.clamp(log_mean - 4.0, log_mean + 4.0)).exp()
-        })
-        .collect();
-    let scale = (rows.iter().map(|&i| (innovation[i] / deviation[i]).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
-    deviation.iter_mut().for_each(|d| *d *= scale);
-    deviation
+}
+
+/// One and the features of a row.
+fn row_of(features: &[Vec<f64>], row: usize) -> impl Iterator<Item = f64> {
+    std::iter::once(1.0).chain(features.iter().map(move |feature| feature[row]))
 }
 
 /// Largest value of a feature of the noise over its mean: a sweep reaches some twelve times its mean acceleration, a

@@ -102,6 +102,7 @@ impl Prepared {
             velocity,
             acceleration,
             sign_velocity: 0.0,
+            sign_lead_s: 0.0,
             sign: Vec::new(),
             rigid_body: signals.rigid_body.as_ref().map(|series| channels.over(series, segments)),
             load: signals.load.as_ref().or(signals.rigid_body.as_ref()).map(|series| channels.over(series, segments)),

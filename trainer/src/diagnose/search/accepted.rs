@@ -25,6 +25,17 @@ pub struct Accepted {
     pub standings: Vec<(EffectId, f64)>,
     /// Of a structure without a name: its channel, then those that cannot be told from it. Empty for a named effect.
     pub channels: Vec<Channel>,
+    /// Its posterior probability, where the sets were weighed by their likelihood.
+    pub stated: Option<Stated>,
+}
+
+/// Posterior probability of an effect, and of each that may stand in for it.
+#[derive(Clone, Debug)]
+pub struct Stated {
+    /// Probability that the effect is in the model.
+    pub probability: f64,
+    /// The others, likeliest first.
+    pub alternatives: Vec<(EffectId, f64)>,
 }
 
 impl Accepted {

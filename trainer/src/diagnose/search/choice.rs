@@ -117,6 +117,7 @@ impl Round<'_, '_> {
             rivals,
             standings,
             channels: channels(best, table.iter().filter(passes), settings.ambiguity_margin),
+            stated: None,
         })
     }
 

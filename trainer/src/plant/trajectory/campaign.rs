@@ -52,7 +52,8 @@ impl Campaign {
 
     /// Length of the whole recording, s.
     pub fn duration_s(&self) -> f64 {
-        self.all().map(|trajectory| trajectory.duration_s.unwrap_or(self.trajectory_s)).sum()
+        let set = self.trajectories.iter().map(|trajectory| trajectory.duration_s.unwrap_or(self.trajectory_s));
+        self.sets.max(1) as f64 * set.sum::<f64>()
     }
 
     /// As many of the trajectories, in turn, as fill another total length, s (> 0): cut, repeated with fresh random

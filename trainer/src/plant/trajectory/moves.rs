@@ -48,7 +48,7 @@ pub(super) fn follow(moves: &[Move], samples: usize, rate: f64) -> Reference {
     for next in moves {
         let home = Move::new(0.0, HOMING_RAD_S, 0.0);
         let needed = next.duration_from(position) + home.duration_from(next.target);
-        if raw.position.len() + ((needed * rate) as usize) + rest + average > samples {
+        if ((needed * rate) as usize).saturating_add(raw.position.len() + rest + average) > samples {
             break;
         }
         travel(&mut raw, position, next, step);

@@ -87,6 +87,9 @@ fn fault(fault: &Fault, name: &str, units: Units) -> String {
         Fault::OneDirection => {
             format!("the joint moves in one direction only: friction cannot be separated from an offset of the {name}")
         }
+        Fault::NearlyNamed { column, known } => {
+            format!("the column {column} is kept as a channel of that name: did you mean {known}?")
+        }
     }
 }
 
@@ -122,6 +125,10 @@ mod tests {
             (ContradictingVelocity(Contradiction::Scaled(50.0)), "velocity is 50 times"),
             (ContradictingVelocity(Contradiction::Unrelated(0.1)), "(correlation 0.1)"),
             (OneDirection, "one direction only"),
+            (
+                Fault::NearlyNamed { column: "postion_rad".into(), known: "position_rad".into() },
+                "did you mean position_rad?",
+            ),
         ];
         for (seen, words) in cases {
             let sentence = fault(&seen, "torque", Units { actuator: "N m", rotary: true });

@@ -7,6 +7,8 @@ mod relaxation_tests;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
+#[cfg(test)]
+mod tests;
 
 use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
@@ -63,6 +65,8 @@ pub struct InverseLaw {
     resolved_speed: f64,
     /// Time by which friction turns over before the velocity, s; `None` where it does not.
     relaxation_s: Option<f64>,
+    /// The same where the friction of the law itself turns over so; zero where that is left out.
+    lead_s: f64,
     gravity: bool,
     given: bool,
     /// Hats over speed.
@@ -87,14 +91,28 @@ pub struct InverseLaw {
 pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let law = learn_with(None, &prepared, given)?;
+    let law = learn_with(None, &prepared, given, 0.0)?;
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
-    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given).unwrap_or(law) };
+    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given, 0.0).unwrap_or(law) };
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
     law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
     Ok(law)
+}
+
+/// Learns the static law of a simulation alone: rigid body and friction over velocity.
+///
+/// # Errors
+/// [`Unlearnable`] for a simulation of rest or of one velocity.
+pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
+    let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
+    let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
+    let law = learn_with(None, &prepared, given, 0.0)?;
+    match law.relaxation_s {
+        Some(lead_s) => learn_with(None, &prepared, given, lead_s),
+        None => Ok(law),
+    }
 }
 
 /// The law with given effects in it.
@@ -102,6 +120,7 @@ fn learn_with(
     simulated: Option<SimulatedEffects>,
     prepared: &Prepared,
     given: bool,
+    lead_s: f64,
 ) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
@@ -113,6 +132,7 @@ fn learn_with(
         top_speed: state.top_speed(),
         resolved_speed: state.resolved_speed(),
         relaxation_s: None,
+        lead_s,
         knots: KNOTS[KNOTS.len() - 1],
         gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
         given,
@@ -124,8 +144,10 @@ fn learn_with(
         rmse: 0.0,
     };
     let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
-    unfitted.relaxation_s =
-        relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
+    if lead_s == 0.0 {
+        unfitted.relaxation_s =
+            relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
+    }
     let laws: Vec<(InverseLaw, Vec<f64>)> =
         KNOTS.into_iter().filter_map(|knots| InverseLaw { knots, ..unfitted.clone() }.fitted(prepared)).collect();
     // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
@@ -215,8 +237,13 @@ impl InverseLaw {
         2 + 2 * usize::from(self.gravity) + usize::from(self.given)
     }
 
+    /// Smoothed sign of its friction.
+    fn sign(&self, state: &JointState) -> Vec<f64> {
+        state.averaged_sign(&state.led_velocity(self.lead_s), self.sign_velocity)
+    }
+
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {
-        let sign = state.averaged_sign(&state.velocity, self.sign_velocity);
+        let sign = self.sign(state);
         let mut columns = vec![Vec::with_capacity(state.len()); self.friction_width()];
         for (velocity, sign) in state.velocity.iter().zip(&sign) {
             for (column, value) in columns.iter_mut().zip(self.friction_columns(*velocity, *sign)) {
@@ -289,7 +316,7 @@ impl InverseLaw {
         Reference {
             torque: weighted(&columns, &self.coefficients),
             rigid_body: self.rigid_body_of(&columns),
-            jacobian: coulomb_and_viscous(state),
+            jacobian: coulomb_and_viscous(&JointState { sign: self.sign(state), ..state.clone() }),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
             replayed_residual: met.map(|met| met.torque),
             formula_error,
@@ -297,49 +324,7 @@ impl InverseLaw {
             outside: Outside::default(),
             is_fitted: false,
             friction: self.friction_curve(),
+            sign_lead_s: self.lead_s,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn moving(seconds: f64, rate: f64, phase: f64) -> Signals {
-        let period = 1.0 / rate;
-        let time: Vec<f64> = (0..(seconds * rate) as usize).map(|i| i as f64 * period).collect();
-        let swing = |t: f64| [(1.0, 0.8), (0.6, 2.1), (0.3, 5.3)].map(|(a, w): (f64, f64)| (a, w, w * t + phase));
-        let sum = |f: fn((f64, f64, f64)) -> f64| -> Vec<f64> {
-            time.iter().map(|t| swing(*t).into_iter().map(f).sum()).collect()
-        };
-        let position = sum(|(a, _, x)| a * x.sin());
-        let velocity = sum(|(a, w, x)| a * w * x.cos());
-        let acceleration = sum(|(a, w, x)| -a * w * w * x.sin());
-        let torque = (0..time.len())
-            .map(|i| {
-                0.4 * acceleration[i] + 3.0 * position[i].sin() + 2.0 * (velocity[i] / 0.002).tanh() + 0.5 * velocity[i]
-            })
-            .collect();
-        Signals::without_gap(period, time, position, torque)
-    }
-
-    #[test]
-    fn a_law_learned_elsewhere_holds_at_other_states() {
-        // Shorter, shifted in time and sampled differently.
-        let real = moving(31.0, 500.0, 0.0);
-        let law = learn(&moving(20.0, 400.0, 1.3), &real, &|_| Vec::new()).unwrap();
-        let reference = law.at(&real.states());
-        let error: f64 =
-            reference.torque.iter().zip(&real.torque).skip(500).take(14000).map(|(a, b)| (a - b).powi(2)).sum();
-        assert!((error / 14000.0).sqrt() < 0.15, "{}", (error / 14000.0).sqrt());
-        let [inertia, _, sine, _, _] = law.rigid_body();
-        assert!((inertia - 0.4).abs() < 0.02 && (sine - 3.0).abs() < 0.1, "{inertia} {sine}");
-    }
-
-    #[test]
-    fn rest_teaches_nothing() {
-        let mut still = moving(5.0, 400.0, 0.0);
-        still.position.fill(0.3);
-        assert!(learn(&still, &moving(5.0, 400.0, 0.0), &|_| Vec::new()).is_err());
     }
 }

@@ -3,29 +3,24 @@
 use frikan_shared::expression::Program;
 use frikan_shared::integer_table::IntegerTable;
 use frikan_shared::model::{Input, Law, MAX_INPUTS, Model};
-use frikan_shared::table::{SIGN_BIT, Table};
+use frikan_shared::table::Table;
 
-use crate::expression::run;
-use crate::integer_table::evaluate_steps;
-use crate::network::evaluate_network;
-use crate::table::{evaluate_geometric, evaluate_table};
+pub use crate::bounds::limited;
+use crate::bounds::unless;
+use crate::laws::expression::run;
+use crate::laws::integer_table::evaluate_steps;
+use crate::laws::network::evaluate_network;
+use crate::laws::table::{evaluate_geometric, evaluate_table};
 
-/// `value` held to `[-limit, limit]`; zero for NaN. `limit` must not be NaN, and its sign does not count.
-///
-/// In integers, which order the magnitudes of floats as their bits: no comparison of floats, whose flags take time to fetch.
+/// Whether the features that this firmware was built with suffice for a model.
 #[must_use]
-#[inline(always)]
-pub fn limited(value: f32, limit: f32) -> f32 {
-    let magnitude = value.abs().to_bits();
-    let held = magnitude.min(limit.abs().to_bits()) | (value.to_bits() & SIGN_BIT);
-    unless(magnitude > f32::INFINITY.to_bits(), f32::from_bits(held))
-}
-
-/// `value` held to `[-limit, limit]`, for values and limits that are no NaN and limits that are not negative; some number for others.
-#[must_use]
-#[inline(always)]
-pub(crate) fn within(value: f32, limit: f32) -> f32 {
-    f32::from_bits(value.abs().to_bits().min(limit.to_bits()) | (value.to_bits() & SIGN_BIT))
+pub fn is_built_in<const CELLS: usize>(model: &Model<CELLS>) -> bool {
+    let is_law = match model.law {
+        Law::Expression(_) => cfg!(feature = "expression"),
+        Law::Network(_) => cfg!(feature = "network"),
+        _ => true,
+    };
+    is_law && (cfg!(feature = "effects") || model.effects.is_empty())
 }
 
 /// A channel held to its trained range; NaN stays NaN.
@@ -60,9 +55,11 @@ fn evaluate_other<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; MAX_I
         Law::Geometric(layout) => evaluate_geometric(layout, &model.cells, *first),
         // Validation has proved what tables give to be within the limit.
         Law::Uniform(layout) => unless(first.is_nan(), evaluate_table(&Table::Uniform(*layout), &model.cells, *first)),
-        Law::Network(network) => evaluate_network(network, inputs, &model.cells),
-        Law::Expression(program) => evaluate_expression(model, inputs, program),
+        Law::Network(network) if cfg!(feature = "network") => evaluate_network(network, inputs, &model.cells),
+        Law::Expression(program) if cfg!(feature = "expression") => evaluate_expression(model, inputs, program),
         Law::IntegerTable(table) => evaluate_integer_table(model, table, *first),
+        // No compensator takes a model of these.
+        Law::Network(_) | Law::Expression(_) => 0.0,
     }
 }
 
@@ -82,10 +79,4 @@ fn evaluate_expression<const CELLS: usize>(model: &Model<CELLS>, inputs: &[f32; 
 fn evaluate_integer_table<const CELLS: usize>(model: &Model<CELLS>, table: &IntegerTable, input: f32) -> f32 {
     let value = evaluate_steps(table, &model.cells, input);
     limited(unless(input.is_nan(), value), model.output_limit)
-}
-
-/// 0 instead of `value` where `off`.
-#[inline(always)]
-fn unless(off: bool, value: f32) -> f32 {
-    f32::from_bits(if off { 0 } else { value.to_bits() })
 }

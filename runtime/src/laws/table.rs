@@ -1,5 +1,6 @@
 //! Cubic tables: finding the cell, and the cubic.
 
+#[cfg(feature = "models")]
 use frikan_shared::pool::Pool;
 use frikan_shared::table::{Cell, Geometric, Side, Table, Uniform};
 
@@ -16,7 +17,7 @@ pub struct Place {
 
 /// The place of a position: the cell is the high word of its product with `cells`, the fraction the low one.
 #[inline(always)]
-fn place_position(position: u32, cells: u32, first_cell: u32, sign: u32) -> Place {
+pub(crate) fn place_position(position: u32, cells: u32, first_cell: u32, sign: u32) -> Place {
     let product = u64::from(position) * u64::from(cells);
     Place {
         row: first_cell.wrapping_add((product >> 32) as u32),
@@ -73,6 +74,7 @@ pub fn cubic(cell: &Cell, place: Place) -> f32 {
 }
 
 /// The value of a geometric table at `input`; that at an end for NaN.
+#[cfg(feature = "models")]
 #[must_use]
 #[inline(always)]
 pub fn geometric_value<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS>, input: f32) -> f32 {
@@ -81,6 +83,7 @@ pub fn geometric_value<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS
 }
 
 /// The value of a geometric table at `input`; 0 for NaN.
+#[cfg(feature = "models")]
 #[must_use]
 #[inline(always)]
 pub fn evaluate_geometric<const CELLS: usize>(layout: &Geometric, pool: &Pool<CELLS>, input: f32) -> f32 {
@@ -91,6 +94,7 @@ pub fn evaluate_geometric<const CELLS: usize>(layout: &Geometric, pool: &Pool<CE
 }
 
 /// The value of a single table at `input`.
+#[cfg(feature = "models")]
 #[must_use]
 #[inline]
 pub fn evaluate_table<const CELLS: usize>(table: &Table, pool: &Pool<CELLS>, input: f32) -> f32 {

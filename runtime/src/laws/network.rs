@@ -7,7 +7,7 @@ use frikan_shared::network::{Coordinate, Layer, MAX_WIDTH, Network, OneHiddenLay
 use frikan_shared::pool::Pool;
 use frikan_shared::table::{Cell, Table};
 
-use crate::table::{position_geometric, position_uniform};
+use crate::laws::table::{position_geometric, position_uniform};
 
 /// Where a value lies among the cells of its edges.
 #[derive(Clone, Copy)]

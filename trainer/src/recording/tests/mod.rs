@@ -1,3 +1,5 @@
+mod dialects;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -73,7 +75,7 @@ fn broken_tables_are_told_apart() {
     refused(with_line(1, "time_s,position_rad,position_deg"), &codes::DUPLICATE_COLUMN, 1, "position_deg", "");
     refused(with_line(1, "time_s,position_rad,velocity_m_s"), &codes::MIXED_AXIS, 1, "velocity_m_s", "");
     refused(with_line(1, "a,b,c"), &codes::NO_KNOWN_COLUMN, 1, "", "a,b,c");
-    refused(with_line(1, "0,1,2"), &codes::NO_KNOWN_COLUMN, 1, "", "0,1,2");
+    refused(with_line(1, "0,1,2"), &codes::NO_KNOWN_COLUMN, 1, "", "column[0],column[1],column[2]");
 }
 
 #[test]
@@ -135,6 +137,30 @@ fn an_endless_line_is_refused_with_its_row_and_bounded_memory() {
     assert_eq!((error.code(), error.row()), (&codes::LINE_TOO_LONG, Some(ROWS as u64 + 2)));
     let error = parse("endless.csv", std::io::repeat(0), &Joint::default()).unwrap_err();
     assert_eq!(error.code(), &codes::LINE_TOO_LONG);
+}
+
+#[test]
+fn a_quotation_mark_inside_a_text_does_not_refuse_a_long_recording() {
+    let mut text = String::from("# the 3\" wheel\ntime_s,torque_Nm,remark\n");
+    let rows = 80_000;
+    for row in 0..rows {
+        text += &format!("{}e-3,0.5,12\" disc\n", row + 1);
+    }
+    assert!(text.len() > RECORD_LIMIT_BYTES);
+    assert_eq!(read(text).unwrap().len(), rows);
+}
+
+#[test]
+fn a_header_of_very_many_columns_is_read_at_once() {
+    let columns = 180_000;
+    let names: Vec<String> = (0..columns).map(|index| format!("{index:x}")).collect();
+    let row = ",1".repeat(columns);
+    let text: String = (0..MINIMUM_ROWS).map(|time| format!("{time}{row}\n")).collect();
+    let begun = std::time::Instant::now();
+    let recording = read(format!("time_s,{}\n{text}", names.join(","))).unwrap();
+    assert_eq!(recording.channels.len(), columns + 1);
+    // A second beside others; comparing every name with every other takes most of a minute.
+    assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
 }
 
 #[test]

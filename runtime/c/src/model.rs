@@ -1,0 +1,68 @@
+//! What a compensator of C is driven by: an image, as far as this library was built for it, or a law of the firmware. Audit: the law and
+//! its context are the caller's word, given at the start.
+
+use core::ffi::c_void;
+
+use frikan_runtime::compensator::{Exported, FrictionModel};
+use frikan_runtime::measurement::{Friction, Measurement};
+use frikan_runtime::shared::authentication::Trust;
+use frikan_runtime::shared::image::ImageError;
+
+use crate::types::FrikanMeasurement;
+
+/// An image decoded to memory.
+#[cfg(feature = "models")]
+pub(crate) type ImageModel = frikan_runtime::compensator::Decoded<{ crate::types::FRIKAN_CELLS }>;
+
+/// A table where it lies in flash.
+#[cfg(not(feature = "models"))]
+pub(crate) type ImageModel = frikan_runtime::in_place::TableInPlace<'static>;
+
+/// The model of exactly one image, with its tag where one is asked for.
+#[cfg(feature = "models")]
+pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
+    trust.decode(image).and_then(|image| ImageModel::new(image.model))
+}
+
+/// The model of exactly one image, with its tag where one is asked for.
+#[cfg(not(feature = "models"))]
+pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
+    trust.authentic(image).and_then(ImageModel::new)
+}
+
+/// What gives the friction.
+#[allow(clippy::large_enum_variant)]
+pub(crate) enum Model {
+    /// An image.
+    Image(ImageModel),
+    /// A law of the firmware.
+    Law(Law),
+}
+
+/// A law of the firmware and what it is called with.
+pub(crate) struct Law {
+    pub(crate) function: unsafe extern "C" fn(*mut c_void, *const FrikanMeasurement, f32) -> f32,
+    pub(crate) context: *mut c_void,
+}
+
+impl FrictionModel for Model {
+    fn friction(&mut self, measurement: &Measurement, dt: f32, is_step: i32, largest_position: f32) -> Friction {
+        match self {
+            Self::Image(model) => model.friction(measurement, dt, is_step, largest_position),
+            Self::Law(Law { function, context }) => {
+                let call = |sample: &Measurement, dt: f32| {
+                    let sample = FrikanMeasurement::from(sample);
+                    // SAFETY: the word that was given for both at the start.
+                    unsafe { function(*context, &raw const sample, dt) }
+                };
+                Exported(call).friction(measurement, dt, is_step, largest_position)
+            }
+        }
+    }
+
+    fn rest(&mut self) {
+        if let Self::Image(model) = self {
+            model.rest();
+        }
+    }
+}

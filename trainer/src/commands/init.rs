@@ -1,0 +1,95 @@
+//! `trainer init`: a `joint.toml` that reads a recording, from the recording itself.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::output::Outputs;
+use crate::error::Result;
+use crate::joint::Joint;
+use crate::recording::{self, Proposal, Recording};
+
+/// Propose a joint.toml for recordings: columns, units, joint and rate, each with the reason.
+#[derive(Args, Clone, Debug)]
+pub struct Init {
+    /// Recordings of one joint, all with the same columns; `-` is standard input
+    #[arg(required = true, value_name = "RECORDING")]
+    pub recordings: Vec<PathBuf>,
+    /// File to write; `-` for standard output
+    #[arg(short, long, value_name = "JOINT.toml")]
+    pub output: PathBuf,
+    /// Say nothing on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; nothing is written then.
+pub fn run(arguments: &Init) -> Result<()> {
+    let Some((first, others)) = arguments.recordings.split_first() else { return Ok(()) };
+    let (proposal, recording) = recording::propose(first)?;
+    let joint = Joint::parse(&proposal.toml)?;
+    others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
+    let mut outputs = Outputs::default();
+    outputs.add(&arguments.output, proposal.toml.as_bytes());
+    let inputs: Vec<&Path> = arguments.recordings.iter().map(PathBuf::as_path).collect();
+    outputs.refuse_overwriting(&inputs)?;
+    outputs.write()?;
+    if !arguments.quiet {
+        eprint!("{}", told(&recording, &proposal));
+    }
+    Ok(())
+}
+
+/// What was taken for what, a line a column.
+fn told(recording: &Recording, proposal: &Proposal) -> String {
+    let rate = proposal.rate_hz.map_or_else(String::new, |rate| format!(", {rate:.1} Hz"));
+    let mut text = format!("{}: {} rows{rate}\n", recording.file(), recording.len());
+    let width = proposal.taken.iter().map(|taken| taken.column.chars().count()).max().unwrap_or(0);
+    for taken in &proposal.taken {
+        let (quantity, unit) = (taken.quantity.name(), &taken.unit);
+        text += &format!("  {:<width$}  {quantity:<18} {unit:<7} {}\n", taken.column, taken.why);
+    }
+    if !proposal.channels.is_empty() {
+        text += &format!("  kept as channels by their names: {}\n", proposal.channels.join(", "));
+    }
+    if !proposal.other_joints.is_empty() {
+        text += &format!("  other joints: {}\n", proposal.other_joints.join(" "));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+
+    #[test]
+    fn a_proposal_reads_what_it_was_made_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, output) = (folder.path().join("log.csv"), folder.path().join("joint.toml"));
+        let mut text = String::from("t,q1,dq1,tau1,kp\n");
+        for row in 0..200 {
+            let time = 0.004 * f64::from(row);
+            writeln!(text, "{},{},{},{},80", 1000.0 * time, time.sin(), time.cos().to_degrees(), 0.5 * time.cos())
+                .unwrap();
+        }
+        std::fs::write(&path, text).unwrap();
+        let init = Init { recordings: vec![path.clone(), path.clone()], output: output.clone(), quiet: true };
+        run(&init).unwrap();
+        let recording = recording::load(&path, &Joint::load(&output).unwrap()).unwrap();
+        let velocity = recording.values(recording::Quantity::Velocity).unwrap();
+        assert!((velocity[0] - 1.0).abs() < 1e-12 && recording.actuator().is_some());
+        assert!((recording.health.period_s.unwrap() - 0.004).abs() < 1e-12);
+        let (proposal, recording) = recording::propose(&path).unwrap();
+        let lines = told(&recording, &proposal);
+        assert!(
+            lines.contains("the derivative of the position in deg_s") && lines.contains("channels by their names: kp"),
+            "{lines}"
+        );
+        let over = run(&Init { output: path.clone(), ..init }).unwrap_err();
+        assert_eq!(over.exit_status(), 2);
+    }
+}

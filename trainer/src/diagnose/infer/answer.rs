@@ -1,0 +1,97 @@
+//! What is named of the sets that were weighed, and how sure each name is.
+
+use crate::diagnose::evidence::score::GroupEvidence;
+use crate::diagnose::hypotheses::channel::Channel;
+use crate::diagnose::infer::inferred::Inferred;
+use crate::diagnose::search::accepted::{Accepted, Stated};
+use crate::diagnose::search::scored::Scored;
+use crate::inference::sets::{Member, Set};
+use crate::physics::EffectId;
+
+/// Probability of an effect together with all that may stand in for it, above which it is told: more likely than not.
+const TOLD_FROM: f64 = 0.5;
+
+impl Inferred {
+    /// The members of the likeliest set of which something is more likely than not to be missing.
+    pub fn accepted(&self) -> Vec<Accepted> {
+        let Some(set) = self.posterior.likeliest() else { return Vec::new() };
+        set.members.iter().filter_map(|member| self.told(*member, set)).collect()
+    }
+
+    /// A member with what may stand in for it; `None` where nothing is as likely.
+    fn told(&self, member: Member, set: &Set) -> Option<Accepted> {
+        let entry = &self.candidates.entries[member.candidate];
+        let effect_of = |candidate: usize| self.candidates.entries[candidate].label.effect();
+        let stand_ins = self.posterior.stand_ins(member.candidate);
+        let mut probability = self.posterior.inclusion(member.candidate);
+        let mut alternatives: Vec<(EffectId, f64)> = Vec::new();
+        let mut channels: Vec<Channel> = entry.label.channel().into_iter().collect();
+        for (candidate, of_rival) in &stand_ins {
+            let effect = effect_of(*candidate);
+            if effect == entry.label.effect() {
+                // Another function of the same kind: an unnamed structure of another channel, a ripple of another order.
+                probability += of_rival;
+                let channel = self.candidates.entries[*candidate].label.channel();
+                channels.extend(channel.filter(|channel| !channels.contains(channel)));
+                continue;
+            }
+            match alternatives.iter_mut().find(|(known, _)| *known == effect) {
+                Some((_, sum)) => *sum += of_rival,
+                None => alternatives.push((effect, *of_rival)),
+            }
+        }
+        let together = probability + alternatives.iter().map(|(_, probability)| probability).sum::<f64>();
+        if together < TOLD_FROM {
+            return None;
+        }
+        let without: Vec<usize> = set.key().into_iter().filter(|other| *other != member.candidate).collect();
+        let evidence = |key: &[usize]| {
+            self.posterior.sets.iter().find(|(set, _)| set.key() == key).map_or(0.0, |(set, _)| set.log_evidence)
+        };
+        let score = self.temper * (set.log_evidence - evidence(&without));
+        let distance = |rival: f64| (probability / rival.max(f64::MIN_POSITIVE)).ln();
+        let standings: Vec<(EffectId, f64)> =
+            alternatives.iter().map(|(effect, rival)| (*effect, distance(*rival))).collect();
+        Some(Accepted {
+            label: entry.label.clone(),
+            shape: entry.shapes[member.variant].shape.clone(),
+            score,
+            family_wise: self.posterior.nothing(),
+            fold_gain: vec![score],
+            margin: standings.first().map_or(score, |(_, distance)| *distance),
+            rivals: standings.clone(),
+            standings,
+            channels,
+            stated: Some(Stated { probability: probability.min(1.0), alternatives }),
+        })
+    }
+
+    /// Every candidate by what it would bring alone, best first.
+    pub fn table(&self) -> Vec<Scored> {
+        let mut table: Vec<Scored> = Vec::new();
+        for (index, entry) in self.candidates.entries.iter().enumerate() {
+            let Some(shaped) = entry.shapes.first() else { continue };
+            let score = self.alone[index] + entry.log_prior - self.price;
+            table.push(Scored {
+                label: entry.label.clone(),
+                shape: shaped.shape.clone(),
+                score,
+                own_score: score,
+                family_wise: 1.0 / (1.0 + score.exp()),
+                evidence: GroupEvidence {
+                    best: 0,
+                    statistic: 0.0,
+                    degrees: shaped.columns.len(),
+                    held_out: score,
+                    fold_gain: Vec::new(),
+                    criterion: score,
+                },
+                group: index,
+                surprise: 0.0,
+                explained: 0.0,
+            });
+        }
+        table.sort_by(|a, b| b.score.total_cmp(&a.score));
+        table
+    }
+}

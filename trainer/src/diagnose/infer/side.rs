@@ -1,0 +1,87 @@
+//! One side of a comparison: a prepared recording or simulation, its base, and columns on its rows.
+
+use crate::diagnose::comparison::base::{Base, Delay};
+use crate::diagnose::hypotheses::label::Label;
+use crate::diagnose::noise::autoregression::{Noise, noise_features};
+use crate::diagnose::preparation::states::Prepared;
+use crate::physics::{Hypothesis, JointState};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A prepared recording or simulation with what it is compared with.
+#[derive(Clone)]
+pub(crate) struct Side<'a> {
+    pub prepared: &'a Prepared,
+    /// Filtered torque that base and effects have to explain.
+    pub target: Vec<f64>,
+    /// Filtered columns of the base: its parameters, and what trades with an effect by nature.
+    pub columns: Vec<Vec<f64>>,
+    /// Runs of rows that are weighed.
+    pub runs: Vec<Range<usize>>,
+    /// What the variance of the noise depends on, at every row.
+    pub features: Vec<Vec<f64>>,
+}
+
+impl<'a> Side<'a> {
+    /// The open rows of a recording, with nothing that stands for a delay of the torque.
+    pub fn without_delay(prepared: &'a Prepared, base: &Base) -> Self {
+        let mut columns = base.columns.clone();
+        if matches!(base.delay, Delay::OfSampling(_)) {
+            columns.pop();
+        }
+        Self::of_open_rows(prepared, base, columns)
+    }
+
+    /// The open rows of a recording whose torque is in step with the motion but for a part of a sample.
+    pub fn new(prepared: &'a Prepared, base: &Base) -> Self {
+        let mut columns = base.columns.clone();
+        // A part of a sample between torque and motion, as it shows in the recorded torque itself: where friction turns over at another
+        // instant than the base has it, the rate of the predicted torque is that of another.
+        columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.torque)));
+        Self::of_open_rows(prepared, base, columns)
+    }
+
+    fn of_open_rows(prepared: &'a Prepared, base: &Base, columns: Vec<Vec<f64>>) -> Self {
+        let (runs, features) = (prepared.open_runs(), noise_features(prepared));
+        Self { runs, features, columns, target: base.target.clone(), prepared }
+    }
+
+    /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.
+    pub fn filtered(
+        &self,
+        hypotheses: &[Box<dyn Hypothesis + Send>],
+        (label, shape): (&Label, &[f64]),
+        among: &JointState,
+    ) -> Vec<Vec<f64>> {
+        let state = &self.prepared.state;
+        let columns = match label {
+            Label::Named(effect) => {
+                let hypothesis = hypotheses.iter().find(|hypothesis| hypothesis.id() == *effect);
+                hypothesis.map(|hypothesis| hypothesis.columns(state, shape)).unwrap_or_default()
+            }
+            Label::Generic(rival) => rival.columns_ranked(state, among, shape),
+        };
+        self.prepared.filtered_all(&columns)
+    }
+
+    /// Columns behind the noise's whitening filter, on the weighed rows alone.
+    pub fn whitened(&self, columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+        columns.par_iter().map(|column| self.on_rows(&noise.whitened(column, &self.runs))).collect()
+    }
+
+    /// A column on the weighed rows alone.
+    pub fn on_rows(&self, column: &[f64]) -> Vec<f64> {
+        self.runs.iter().flat_map(|run| &column[run.clone()]).copied().collect()
+    }
+
+    /// Places of each open block among the weighed rows.
+    pub fn blocks(&self) -> Vec<Range<usize>> {
+        let mut end = 0;
+        let lengths = self.prepared.open_blocks().into_iter().map(|runs| runs.iter().map(Range::len).sum::<usize>());
+        let place = |length: usize| {
+            end += length;
+            end - length..end
+        };
+        lengths.map(place).collect()
+    }
+}
