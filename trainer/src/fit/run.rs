@@ -86,11 +86,13 @@ fn fit_once(
     let classical = classical(&material, &data);
 
     tell(Stage::Compiling);
+    let (found, of_the_sign) = first.found.on_all(&data)?;
+    let correlation_length = found.uncertainty.correlation_length;
     let refitted = training.refit(&first.pruned.result)?;
     let learnt = training.learnt(&refitted);
     let verdict =
         judge(&material, &first.models, &trials, freedom(first, &learnt), options.representation, &options.budget)?;
-    let Shipped { model, fit } = shipped(&builder, verdict.form, first, &learnt, &data, options)?;
+    let Shipped { model, fit } = shipped(&builder, verdict.form, first, found, &learnt, &data, options)?;
     let violation = Violation::of(&model, &material);
 
     let name = joint.name.clone().unwrap_or_default();
@@ -126,7 +128,7 @@ fn fit_once(
         representation: verdict.form.representation(),
         held_out: material.repeats.is_none(),
         choice: verdict.reason,
-        remarks: remarks(&material, first, verdict.form, recordings),
+        remarks: remarks(&material, first, of_the_sign, verdict.form, recordings),
         sound,
         train_score: Score::over(&train),
         train_split: SplitScore::over(&train),
@@ -134,7 +136,7 @@ fn fit_once(
         tests,
         cloud: cloud(&material),
         law_curve: law_curve(&model, &inputs),
-        band: training.band(&refitted, first.found.last.uncertainty.correlation_length)?,
+        band: training.band(&refitted, correlation_length)?,
         image,
     })
 }
@@ -151,6 +153,7 @@ fn shipped(
     builder: &Builder<'_>,
     form: Form,
     first: &Turn,
+    found: FormFit,
     learnt: &TrainedNetwork,
     data: &LawData,
     options: &Options,
@@ -158,11 +161,8 @@ fn shipped(
     let place = Form::ALL.iter().position(|other| *other == form).unwrap_or(0);
     let of = |fit: FormFit| builder.expression(&fit).map(|model| Shipped { model, fit });
     let (last, compared_fit) = match form {
-        Form::Network => {
-            let fit = first.found.last.clone();
-            (builder.table(learnt).map(|model| Shipped { model, fit: fit.clone() }), Some(fit))
-        }
-        Form::Found => (of(first.found.last.clone()), Some(first.found.open.clone())),
+        Form::Network => (builder.table(learnt).map(|model| Shipped { model, fit: found.clone() }), Some(found)),
+        Form::Found => (of(found), Some(first.found.open.clone())),
         Form::Simple | Form::SimpleAsFitted => {
             let (sound, free) = simple(data);
             let pick = |sound: Option<Simple>, free: Option<Simple>| {
@@ -236,11 +236,16 @@ fn parameters(material: &Material, fit: &FormFit, learnt: &TrainedNetwork, by_ex
     parameters
 }
 
-fn remarks(material: &Material, turn: &Turn, form: Form, recordings: &[Recording]) -> Vec<String> {
+fn remarks(
+    material: &Material,
+    turn: &Turn,
+    of_the_sign: Vec<String>,
+    form: Form,
+    recordings: &[Recording],
+) -> Vec<String> {
     let mut remarks = Vec::new();
     if matches!(form, Form::Found | Form::Network) {
-        let discovery = &turn.found.discovery;
-        remarks.extend(discovery.remarks.iter().chain(&discovery.smoothing).cloned());
+        remarks.extend(turn.found.discovery.remarks.iter().cloned().chain(of_the_sign));
     }
     if let Some(repeats) = &material.repeats {
         remarks.push(format!("{}: the law was chosen by what its constants cost.", repeats.sentence));

@@ -6,6 +6,7 @@ pub(crate) mod covariance;
 pub(crate) mod derivatives;
 pub mod filter;
 pub(crate) mod hat_functions;
+pub(crate) mod jackknife;
 pub(crate) mod least_squares;
 pub(crate) mod pattern_search;
 pub(crate) mod products;

@@ -3,10 +3,10 @@
 
 use super::Samples;
 use super::bending::BendingLaw;
-use super::blocks::{ERROR_BLOCKS, even_blocks};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::numerics::averages::Averages;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::least_squares::weighted;
 use crate::numerics::regression::least_squares;
 use crate::recording::Axis;

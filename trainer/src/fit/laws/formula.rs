@@ -11,8 +11,8 @@ use crate::fit::data::rigid;
 use crate::fit::data::turns;
 use crate::fit::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use crate::law::{
-    self, Channel, ChannelRole, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nuisance, Remainder,
-    SearchOptions, Start, Structure, Unary, discover, fit_form, remainder, render, settle,
+    self, Channel, ChannelRole, Discovery, Expr, FormFit, Interval, KnownForm, Language, LawData, LawError, Nuisance,
+    Remainder, SearchOptions, Start, Structure, Unary, discover, fit_form, remainder, render, settle,
 };
 use crate::parameter::Parameter;
 use crate::samples;
@@ -32,8 +32,8 @@ pub(in crate::fit) struct Found {
     pub(in crate::fit) discovery: Discovery,
     /// Fitted to the open blocks only; what candidates are compared by.
     pub(in crate::fit) open: FormFit,
-    /// Fitted to all samples.
-    pub(in crate::fit) last: FormFit,
+    /// Its non-linear constants, where other rows start from.
+    constants: Vec<f64>,
 }
 
 /// Rows as the law room takes them: averages over their states.
@@ -79,37 +79,53 @@ fn law_states(states: &samples::states::States, inputs: &[ChosenInput]) -> law::
     law::States { averages: states.averages.clone(), channels: inputs.iter().map(of_state).collect() }
 }
 
-/// Looks for the formula in `points`, beginning also at `starts`, and fits it to `data`, the averages of the same rows. A classical law that
-/// describes those better than what the search found, its constants paid for, takes its place.
+/// Looks for the formula in `points`, beginning also at `starts`, and fits it to `data`, the averages of the same rows. Another law of the search's
+/// front or a classical one that describes those better, its constants paid for, takes its place.
 pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, starts: Vec<Start>) -> Result<Found> {
     let open = turns::open(split);
     let options = SearchOptions { starts, ..SearchOptions::default() };
-    let mut discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
+    let discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
     let open_data = data.select(&open);
     let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
-    let own = remainder(&discovery.law.structure, &few, Some(&discovery.law)).map_err(|error| refused(&error))?;
+    let law = &discovery.law;
+    let constants: Vec<f64> = law.parameters.iter().take(law.structure.nonlinear().len()).map(|p| p.value).collect();
+    let own = remainder(&law.structure, &few, Some(&constants)).map_err(|error| refused(&error))?;
     // One effective number of samples for all, or their criteria would not compare.
     let effective = few.rows() as f64 / own.correlation_length;
     let criterion = |left: &Remainder, structure: &Structure| {
         let misfit = effective * left.mean_square.max(f64::MIN_POSITIVE).ln();
         misfit + effective.ln() * structure.constants() as f64
     };
-    let limit = criterion(&own, &discovery.law.structure) - BIC_DIFFERENCE_THRESHOLD;
-    let rival = |form: &KnownForm| {
-        let left = remainder(&form.structure(), &few, None).ok().filter(|left| left.converged)?;
-        Some((criterion(&left, &form.structure()), *form))
+    let limit = criterion(&own, &law.structure) - BIC_DIFFERENCE_THRESHOLD;
+    let front = discovery.front.iter().filter(|entry| entry.nodes <= options.max_nodes);
+    let front = front.map(|entry| (entry.structure.clone(), Some(entry.constants.as_slice())));
+    let rivals: Vec<_> = front.chain(KnownForm::ALL.map(|form| (form.structure(), None))).collect();
+    let judged = |(structure, constants): &(Structure, Option<&[f64]>)| {
+        let left = remainder(structure, &few, *constants).ok().filter(|left| left.converged)?;
+        Some((criterion(&left, structure), structure.clone(), left.constants))
     };
-    let rivals: Vec<Option<(f64, KnownForm)>> = KnownForm::ALL.par_iter().map(rival).collect();
-    let best = rivals.into_iter().flatten().filter(|(value, _)| *value < limit).min_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((_, form)) = best {
-        discovery.law = fit_form(form, &few, None).map_err(|error| refused(&error))?.law;
+    let judged: Vec<_> = rivals.par_iter().map(judged).collect();
+    let better = judged.into_iter().flatten().filter(|(value, ..)| *value < limit);
+    let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (structure, constants) = best.map_or((law.structure.clone(), own.constants), |(_, s, c)| (s, c));
+    let (open, _) = settled((&structure, &constants), &open_data, Interval::Linearised)?;
+    Ok(Found { open, constants, discovery })
+}
+
+/// A law fitted from constants that some of the rows gave it, and what is to be said of its sign.
+fn settled(
+    (structure, constants): (&Structure, &[f64]),
+    data: &LawData,
+    intervals: Interval,
+) -> Result<(FormFit, Vec<String>)> {
+    settle(structure, constants, &thinned(data, MOST_SAMPLES), intervals).map_err(|error| refused(&error))
+}
+
+impl Found {
+    /// The formula fitted to all rows, and what is to be said of its sign.
+    pub(in crate::fit) fn on_all(&self, data: &LawData) -> Result<(FormFit, Vec<String>)> {
+        settled((&self.open.law.structure, &self.constants), data, Interval::Profile)
     }
-    let settled =
-        |data: &LawData| settle(&discovery.law, &thinned(data, MOST_SAMPLES)).map_err(|error| refused(&error));
-    let (open, _) = settled(&open_data)?;
-    let (last, smoothing) = settled(data)?;
-    discovery.smoothing = smoothing;
-    Ok(Found { open, last, discovery })
 }
 
 /// Every `k`-th sample, so that at most `most` are left.

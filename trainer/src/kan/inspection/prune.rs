@@ -8,13 +8,15 @@ use crate::kan::network::layers::Network;
 use crate::kan::training::dataset::Dataset;
 use crate::kan::training::fit::{FitOptions, FitResult, Trained, refit_from};
 use crate::kan::training::settings::ProgressCallback;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
+use std::ops::Range;
 
 /// What may be removed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PruneOptions {
     /// Edges of a lower score are removed together.
     pub edge_threshold: f64,
-    /// Rise of the error criterion, relative, that a removal may cost where too few blocks are held out for a standard error of it. Negative
+    /// Rise of the error criterion, relative, that a removal may cost where too few rows are held out for a standard error of it. Negative
     /// values demand an improvement.
     pub tolerance: f64,
     /// Root-mean-square error, relative to the target's standard deviation, that is as good as none.
@@ -94,8 +96,8 @@ pub struct Pruned {
     pub removed: Vec<Removed>,
 }
 
-/// Fewest held-out blocks by whose scatter the error of a criterion is told.
-const LEAST_BLOCKS: usize = 3;
+/// Fewest pieces of held-out rows by whose scatter the error of a criterion is told.
+const LEAST_PIECES: usize = 3;
 
 /// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs. What is left is the smallest that is found
 /// within one standard error of the best held-out error (Breiman, Friedman, Olshen & Stone 1984).
@@ -145,22 +147,26 @@ pub fn prune(
     Ok(Pruned { result: current.into_result(dataset, 0), removed })
 }
 
-/// Standard error of the mean square over held-out blocks, of a ratio of sums over blocks of unequal size (Cochran 1977); `None` where there are
-/// too few of them.
+/// Standard error of the mean square over held-out rows, from the scatter over pieces of them, of a ratio of sums over pieces of unequal size (Cochran
+/// 1977); `None` where there are too few.
 fn standard_error(trained: &Trained, dataset: &Dataset) -> Option<f64> {
     let blocks = &dataset.blocks.validation;
-    if blocks.len() < LEAST_BLOCKS {
+    let rows: usize = blocks.iter().map(ExactSizeIterator::len).sum();
+    let cut = |block: &Range<usize>| {
+        let parts = even_blocks(block.len(), (ERROR_BLOCKS * block.len()).div_ceil(rows));
+        let begin = block.start;
+        parts.into_iter().map(move |part| begin + part.start..begin + part.end)
+    };
+    let pieces: Vec<Range<usize>> = blocks.iter().flat_map(cut).collect();
+    if pieces.len() < LEAST_PIECES {
         return None;
     }
-    let rows: usize = blocks.iter().map(ExactSizeIterator::len).sum();
-    let scatter: f64 = blocks
-        .iter()
-        .map(|block| {
-            let sum = trained.model.residual_sum(dataset, std::slice::from_ref(block));
-            (sum - trained.criterion * block.len() as f64).powi(2)
-        })
-        .sum();
-    let inflation = blocks.len() as f64 / (blocks.len() - 1) as f64;
+    let off = |piece: &Range<usize>| {
+        let sum = trained.model.residual_sum(dataset, std::slice::from_ref(piece));
+        sum - trained.criterion * piece.len() as f64
+    };
+    let scatter: f64 = pieces.iter().map(|piece| off(piece).powi(2)).sum();
+    let inflation = pieces.len() as f64 / (pieces.len() - 1) as f64;
     Some((inflation * scatter).sqrt() / rows as f64)
 }
 

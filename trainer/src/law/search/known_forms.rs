@@ -137,19 +137,15 @@ pub fn fit_form(form: KnownForm, data: &LawData, smoothing: Option<f64>) -> Resu
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
 pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
-    fit_from_starts(structure, data, smoothing, None)
-}
-
-/// [`fit_structure`] that also starts from the constants of a law that was fitted to other samples of the same joint.
-///
-/// # Errors
-/// When the data cannot be fitted at all, see [`LawError`].
-pub fn refit(law: &Law, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
-    fit_from_starts(&law.structure, data, smoothing, Some(law))
+    let extents = Extents::new(data)?;
+    let problem = check(structure, data, &extents)?;
+    let held: Vec<Nonlinear> = smoothing.map(|_| Nonlinear::Smoothing).into_iter().collect();
+    let fit = from_grid(&problem, structure, smoothing);
+    Ok(described(&problem, &fit, &held, Interval::Profile))
 }
 
 /// What the best fit of a structure leaves.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Remainder {
     /// Mean square, squared unit of the target.
     pub mean_square: f64,
@@ -157,49 +153,48 @@ pub struct Remainder {
     pub correlation_length: f64,
     /// Whether the optimiser ended at a minimum.
     pub converged: bool,
+    /// The non-linear constants, in the order of [`Structure::nonlinear`].
+    pub constants: Vec<f64>,
 }
 
-/// What a structure leaves of the data at its best, also looked for from the constants of a law; nothing is said of its constants.
+/// What a structure leaves of the data at its best, looked for from non-linear constants where they are given, else from a grid; nothing is said of
+/// how well they are known.
 ///
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
-pub fn remainder(structure: &Structure, data: &LawData, start: Option<&Law>) -> Result<Remainder, LawError> {
+pub fn remainder(structure: &Structure, data: &LawData, constants: Option<&[f64]>) -> Result<Remainder, LawError> {
     let extents = Extents::new(data)?;
     let problem = check(structure, data, &extents)?;
-    let fit = best_fit(&problem, structure, None, start);
+    let fit = match constants {
+        Some(constants) => problem.fit_from(structure, constants, Held::default(), Effort::FINAL),
+        None => from_grid(&problem, structure, None),
+    };
     Ok(Remainder {
         mean_square: fit.rss / data.rows() as f64,
         correlation_length: correlation_length(&problem.residuals(&fit)),
         converged: fit.converged,
+        constants: fit.params[..structure.nonlinear().len()].to_vec(),
     })
 }
 
-/// [`refit`] with the smoothing of the sign fixed where the data cannot tell it from a step, and what is to be said of that.
+/// Fits a structure from non-linear constants that other samples of the same joint gave it, with the smoothing of the sign fixed where the data
+/// cannot tell it from a step, and what is to be said of that.
 ///
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
-pub fn settle(law: &Law, data: &LawData) -> Result<(FormFit, Vec<String>), LawError> {
-    let extents = Extents::new(data)?;
-    let problem = check(&law.structure, data, &extents)?;
-    let free = best_fit(&problem, &law.structure, None, Some(law));
-    let length = correlation_length(&problem.residuals(&free));
-    let evidence = Evidence::of(&problem, length);
-    let mut remarks = Vec::new();
-    let (fit, held) = fix_smoothing(&problem, free, evidence, &mut remarks);
-    Ok((described(&problem, &fit, &held), remarks))
-}
-
-fn fit_from_starts(
+pub fn settle(
     structure: &Structure,
+    constants: &[f64],
     data: &LawData,
-    smoothing: Option<f64>,
-    start: Option<&Law>,
-) -> Result<FormFit, LawError> {
+    intervals: Interval,
+) -> Result<(FormFit, Vec<String>), LawError> {
     let extents = Extents::new(data)?;
     let problem = check(structure, data, &extents)?;
-    let held: Vec<Nonlinear> = smoothing.map(|_| Nonlinear::Smoothing).into_iter().collect();
-    let fit = best_fit(&problem, structure, smoothing, start);
-    Ok(described(&problem, &fit, &held))
+    let free = problem.fit_from(structure, constants, Held::default(), Effort::FINAL);
+    let evidence = Evidence::of(&problem, correlation_length(&problem.residuals(&free)));
+    let mut remarks = Vec::new();
+    let (fit, held) = fix_smoothing(&problem, free, evidence, &mut remarks);
+    Ok((described(&problem, &fit, &held, intervals), remarks))
 }
 
 /// The problem, where the data are enough for the structure.
@@ -211,23 +206,18 @@ fn check<'a>(structure: &Structure, data: &'a LawData, extents: &'a Extents) -> 
     Ok(Problem::new(data, extents))
 }
 
-/// The best fit from a grid of starts and from a law.
-fn best_fit(problem: &Problem<'_>, structure: &Structure, smoothing: Option<f64>, start: Option<&Law>) -> Fit {
+/// The best fit from a grid of starts.
+fn from_grid(problem: &Problem<'_>, structure: &Structure, smoothing: Option<f64>) -> Fit {
     let known: Vec<(Nonlinear, f64)> = smoothing.map(|k| (Nonlinear::Smoothing, k)).into_iter().collect();
     let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
     let holding = Held { nonlinear: &held, coefficient: None };
-    let rough = problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH);
-    let fit = problem.polish(&rough, &held);
-    let Some(law) = start else { return fit };
-    let psi: Vec<f64> = law.parameters.iter().take(structure.nonlinear().len()).map(|p| p.value).collect();
-    let resumed = problem.fit_from(structure, &psi, holding, Effort::FINAL);
-    if resumed.rss < fit.rss { resumed } else { fit }
+    problem.polish(&problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH), &held)
 }
 
 /// A fit with names, intervals and scores, constants in `held` being given.
-fn described(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear]) -> FormFit {
+fn described(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], intervals: Interval) -> FormFit {
     let rows = problem.rows() as f64;
-    let uncertainty = analyse(problem, fit, held, Interval::Profile);
+    let uncertainty = analyse(problem, fit, held, intervals);
     let fit = rounded(problem, fit, &uncertainty);
     let effective = rows / uncertainty.correlation_length;
     let free = fit.structure.constants() - held.len() + problem.data().nuisance.len();
