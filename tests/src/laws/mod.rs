@@ -15,7 +15,7 @@ const BLOCKS: usize = 10;
 #[must_use]
 pub fn data(channels: Vec<Channel>, target: Vec<f64>) -> LawData {
     let blocks = (0..target.len()).map(|i| i * BLOCKS / target.len()).collect();
-    LawData { channels, target, target_unit: "N m".into(), nuisance: Vec::new(), blocks }
+    LawData { channels, target, target_unit: "N m".into(), nuisance: Vec::new(), states: None, blocks }
 }
 
 /// A channel of velocities, rad/s.

@@ -5,9 +5,9 @@ use super::model::HostModel;
 use super::predict::predict;
 use crate::error::Result;
 use crate::numerics::hat_functions::law_error_hats;
+use crate::numerics::jackknife::ERROR_BLOCKS;
 use crate::numerics::least_squares::{gram, moments, solve_symmetric};
 use crate::numerics::regression::least_squares;
-use crate::samples::blocks::ERROR_BLOCKS;
 use crate::samples::top_speed;
 use frikan_shared::model::{LawError, SLOW_SHARE};
 use nalgebra::{DMatrix, DVector};
@@ -34,7 +34,8 @@ impl<'a> Residual<'a> {
         let samples = &material.samples;
         let predicted = predict(model, samples)?.total();
         let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-        let left = measured.iter().zip(&predicted).map(|(measured, predicted)| measured - predicted).collect();
+        let predicted = predicted.iter().zip(&material.bend).map(|(predicted, bend)| predicted + bend);
+        let left = measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect();
         let velocity = samples.velocity.as_deref().unwrap_or_default();
         let top_speed = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
         Ok(Self { left, velocity, top_speed })

@@ -4,11 +4,10 @@
 use super::data::gather::Material;
 use super::law_error::Residual;
 use crate::numerics::hat_functions::law_error_hats;
-use crate::numerics::least_squares::{gram, moments, solve_symmetric};
-use crate::samples::blocks::{ERROR_BLOCKS, even_blocks};
+use crate::numerics::jackknife::Jackknife;
 use crate::samples::rigid_body::TermKind;
 use frikan_shared::model::{RIGID_BODY_CONSTANTS, RigidBodyError, SLOW_SHARE};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// Covariance of the identified constants of the rigid body: the delete-one-block jackknife of least squares with a friction law that is
@@ -57,26 +56,11 @@ fn place(kind: TermKind) -> usize {
 /// the rows at which the joint slides say of the target. No rows where the columns cannot be told apart.
 fn errors(rigid: &[Vec<f64>], law: Vec<Vec<f64>>, target: &[f64], sliding: &[Range<usize>]) -> DMatrix<f64> {
     let columns = [rigid, &law].concat();
-    let sums = |runs: &[Range<usize>]| (gram(&columns, runs), moments(&columns, target, runs));
-    let blocks: Vec<_> =
-        even_blocks(target.len(), ERROR_BLOCKS).iter().map(|block| sums(std::slice::from_ref(block))).collect();
-    let (all, moment) = sums(std::slice::from_ref(&(0..target.len())));
-    // Knots without a row, and such as a single block alone has, stay where they are.
-    let slack = DMatrix::from_diagonal(&all.diagonal().map(|energy| LEAST_ENERGY_SHARE * energy.max(1.0)));
-    let solve = |gram: DMatrix<f64>, moment: DVector<f64>| solve_symmetric(&(gram + &slack), &moment);
-    let without = |(gram, of): &(DMatrix<f64>, DVector<f64>)| solve(&all - gram, &moment - of);
-    let without: Vec<DVector<f64>> = blocks.iter().filter_map(without).collect();
-    let count = without.len() as f64;
-    let mean = without.iter().fold(DVector::zeros(columns.len()), |sum, one| sum + one) / count.max(1.0);
-    let scale = ((count - 1.0) / count.max(1.0)).max(0.0).sqrt();
-    let mut rows: Vec<DVector<f64>> = without.iter().map(|one| (one - &mean) * scale).collect();
-    let (gram, moment) = sums(sliding);
-    rows.extend(solve(gram, moment));
+    let jackknife = Jackknife::new(&columns, target);
+    let mut rows = jackknife.errors();
+    rows.extend(jackknife.of(sliding));
     DMatrix::from_fn(rows.len(), rigid.len(), |row, column| rows[row][column])
 }
-
-/// Least energy that a column is given beside that of its rows, as a share: in directions of less nothing is identified.
-const LEAST_ENERGY_SHARE: f64 = 1e-9;
 
 /// The upper triangle R of a QR decomposition: the sum of the products of all rows is R'R.
 fn factor(errors: DMatrix<f64>) -> RigidBodyError {
@@ -96,6 +80,7 @@ mod tests {
     use crate::numerics::least_squares::weighted;
     use crate::numerics::random::normal;
     use crate::numerics::regression::least_squares;
+    use nalgebra::DVector;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
 

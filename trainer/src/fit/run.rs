@@ -15,7 +15,7 @@ use super::gate::confounded::Identified;
 use super::gate::{ONE_WAY, withheld};
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
-use super::laws::formula::{self, classical, law_data, law_parameters};
+use super::laws::formula::{self, at_velocity, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
 use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
@@ -78,7 +78,9 @@ fn fit_once(
 
     let training = TrainingData::new(&material, &inputs, options)?;
     let data = law_data(&material, &inputs);
-    let turns = material.turns.iter().map(|split| Turn::take(&builder, &training, &data, split, progress));
+    let points = at_velocity(&material, &data);
+    let turns = material.turns.iter();
+    let turns = turns.map(|split| Turn::take(&builder, &training, (&points, &data), split, progress));
     let turns = turns.collect::<Result<Vec<_>>>()?;
     let trials = turn::trials(&turns, &material.turns, &material)?;
     let first = turns.first().ok_or_else(no_image)?;
@@ -86,11 +88,13 @@ fn fit_once(
     let classical = classical(&material, &data);
 
     tell(Stage::Compiling);
+    let (found, of_the_sign) = first.found.on_all(&data)?;
+    let correlation_length = found.uncertainty.correlation_length;
     let refitted = training.refit(&first.pruned.result)?;
     let learnt = training.learnt(&refitted);
     let verdict =
         judge(&material, &first.models, &trials, freedom(first, &learnt), options.representation, &options.budget)?;
-    let Shipped { model, fit } = shipped(&builder, verdict.form, first, &learnt, &data, options)?;
+    let Shipped { model, fit } = shipped(&builder, verdict.form, first, found, &learnt, &data, options)?;
     let violation = Violation::of(&model, &material);
 
     let name = joint.name.clone().unwrap_or_default();
@@ -110,7 +114,7 @@ fn fit_once(
 
     let by_expression = verdict.form != Form::Network;
     let identified = Identified::by(&material);
-    let band = training.band(&refitted, first.found.last.uncertainty.correlation_length)?;
+    let band = training.band(&refitted, correlation_length)?;
     let parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
     let sound = soundness(&material, &fit, &learnt, verdict.form, violation).and(|| {
         let place = Form::ALL.iter().position(|form| *form == verdict.form).unwrap_or(0);
@@ -132,7 +136,7 @@ fn fit_once(
         representation: verdict.form.representation(),
         held_out: material.repeats.is_none(),
         choice: verdict.reason,
-        remarks: remarks(&material, first, verdict.form, recordings, &identified),
+        remarks: remarks(&material, first, of_the_sign, verdict.form, recordings, &identified),
         sound,
         train_score: Score::over(&train),
         train_split: SplitScore::over(&train),
@@ -157,6 +161,7 @@ fn shipped(
     builder: &Builder<'_>,
     form: Form,
     first: &Turn,
+    found: FormFit,
     learnt: &TrainedNetwork,
     data: &LawData,
     options: &Options,
@@ -164,11 +169,8 @@ fn shipped(
     let place = Form::ALL.iter().position(|other| *other == form).unwrap_or(0);
     let of = |fit: FormFit| builder.expression(&fit).map(|model| Shipped { model, fit });
     let (last, compared_fit) = match form {
-        Form::Network => {
-            let fit = first.found.last.clone();
-            (builder.table(learnt).map(|model| Shipped { model, fit: fit.clone() }), Some(fit))
-        }
-        Form::Found => (of(first.found.last.clone()), Some(first.found.open.clone())),
+        Form::Network => (builder.table(learnt).map(|model| Shipped { model, fit: found.clone() }), Some(found)),
+        Form::Found => (of(found), Some(first.found.open.clone())),
         Form::Simple | Form::SimpleAsFitted => {
             let (sound, free) = simple(data);
             let pick = |sound: Option<Simple>, free: Option<Simple>| {
@@ -256,6 +258,7 @@ fn parameters(
 fn remarks(
     material: &Material,
     turn: &Turn,
+    of_the_sign: Vec<String>,
     form: Form,
     recordings: &[Recording],
     identified: &Identified,
@@ -265,7 +268,7 @@ fn remarks(
         remarks.push(ONE_WAY.to_owned());
     }
     if matches!(form, Form::Found | Form::Network) {
-        remarks.extend(turn.found.discovery.remarks.clone());
+        remarks.extend(turn.found.discovery.remarks.iter().cloned().chain(of_the_sign));
     }
     if let Some(repeats) = &material.repeats {
         remarks.push(format!("{}: the law was chosen by what its constants cost.", repeats.sentence));

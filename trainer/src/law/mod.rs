@@ -13,14 +13,14 @@ mod search;
 
 pub use judge::choice::FrontEntry;
 pub use judge::description::{Law, NuisanceCoefficient, Parameter};
-pub use judge::uncertainty::Uncertainty;
+pub use judge::uncertainty::{Interval, Uncertainty};
 pub use model::canonical::canonical;
-pub use model::data::{Channel, ChannelRole, LawData, LawError, Nuisance};
+pub use model::data::{Channel, ChannelRole, LawData, LawError, Nuisance, States};
 pub use model::expression::{Expr, Step, Unary};
 pub use model::program::expression_of;
 pub use model::structure::{Layout, Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 pub use render::{Language, latex, render, significant};
 pub use search::discover::{Discovery, SearchOptions, discover};
-pub use search::known_forms::{FormFit, KnownForm, fit_form, fit_structure, rank_forms, refit};
+pub use search::known_forms::{FormFit, KnownForm, Remainder, fit_form, fit_structure, rank_forms, remainder, settle};
 pub use search::matching::{Function, Match, matches};
 pub use search::proposals::{Activation, Start, proposals};

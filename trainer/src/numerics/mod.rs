@@ -1,11 +1,13 @@
 //! Numerics that every room uses: filters, least squares over runs of rows, covariances, statistics, random draws. Knows no physics.
 
+pub mod averages;
 pub(crate) mod between_samples;
 pub(crate) mod covariance;
 pub(crate) mod derivatives;
 pub(crate) mod dry_friction;
 pub mod filter;
 pub(crate) mod hat_functions;
+pub(crate) mod jackknife;
 pub(crate) mod least_squares;
 pub(crate) mod pattern_search;
 pub(crate) mod products;

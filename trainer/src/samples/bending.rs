@@ -2,6 +2,7 @@
 //! off fairly; the law itself is found later.
 
 use crate::error::{Error, Result, codes};
+use crate::numerics::averages::Averages;
 
 /// Velocity knots on each side of zero, at squared spacing: denser at zero.
 const KNOTS: usize = 12;
@@ -28,9 +29,19 @@ impl BendingLaw {
 
     /// One column for every knot forward, then for every knot backward; each is the torque at its knot.
     pub(super) fn columns(&self, velocity: &[f64]) -> Vec<Vec<f64>> {
+        self.columns_as(velocity, |column| column)
+    }
+
+    /// The same averaged over states of such velocities.
+    pub(super) fn averaged_columns(&self, velocity: &[f64], averages: &Averages) -> Vec<Vec<f64>> {
+        self.columns_as(velocity, |column| averages.over(&column))
+    }
+
+    fn columns_as(&self, velocity: &[f64], made: impl Fn(Vec<f64>) -> Vec<f64>) -> Vec<Vec<f64>> {
         let side = |knots: &[f64], sign: f64| -> Vec<Vec<f64>> {
             let value = |knot: usize, v: f64| if sign * v > 0.0 { hat(knots, knot, v.abs()) } else { 0.0 };
-            (0..knots.len()).map(|knot| velocity.iter().map(|&v| value(knot, v)).collect()).collect()
+            let column = |knot: usize| velocity.iter().map(|&v| value(knot, v)).collect();
+            (0..knots.len()).map(|knot| made(column(knot))).collect()
         };
         let mut columns = side(&self.forward, 1.0);
         columns.extend(side(&self.backward, -1.0));

@@ -44,15 +44,6 @@ pub struct Split {
     pub locked: Vec<Range<usize>>,
 }
 
-/// Blocks over which residuals may be correlated, for standard errors. Chosen by judgement: half as many leave the spread of a constant to
-/// chance, and noise is correlated over less than a fortieth of a recording.
-pub(crate) const ERROR_BLOCKS: usize = 40;
-
-/// Blocks of nearly the same length.
-pub(crate) fn even_blocks(length: usize, count: usize) -> Vec<Range<usize>> {
-    (0..count).map(|k| k * length / count..(k + 1) * length / count).filter(|block| !block.is_empty()).collect()
-}
-
 /// Rest before each segment, s: from the last sample of the one before to its first; 0 before the first segment and without a
 /// clock (empty `time`).
 #[must_use]

@@ -4,12 +4,12 @@
 use std::ops::Range;
 
 use super::bending::BendingLaw;
-use super::blocks::even_blocks;
 use super::prepare::prepare;
 use super::rigid_body::{given_torque, terms};
 use super::{Preparation, SLIDING_SPEED_SHARE, Samples, top_speed};
 use crate::error::Result;
 use crate::joint::Joint;
+use crate::numerics::jackknife::even_blocks;
 use crate::numerics::products::dot;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::t_statistic;

@@ -14,6 +14,7 @@ mod prepare;
 pub mod relevance;
 pub mod rigid_body;
 pub mod spikes;
+pub(crate) mod states;
 #[cfg(test)]
 mod tests;
 mod width;

@@ -207,7 +207,7 @@ fn quietest(motions: &[Motion], candidates: &[Preparation]) -> Preparation {
 }
 
 /// What the choice needs to know of one recording's motion.
-struct Motion {
+pub(super) struct Motion {
     period_s: f64,
     /// Noise of the recorded position and of the recorded velocity; `None` where there is none.
     position_noise: Option<f64>,
@@ -221,7 +221,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(recording: &Recording) -> Result<Self> {
+    pub(super) fn of(recording: &Recording) -> Result<Self> {
         let time = &recording.require(&[Quantity::Time], "a motion")?.values;
         let period_s = recording.health.period_s.unwrap_or(1.0);
         let motion = recording.require(&[Quantity::Position, Quantity::Velocity], "a motion")?;
@@ -268,6 +268,15 @@ impl Motion {
             VelocitySource::Derived => self.position_noise.is_some(),
             VelocitySource::Recorded => self.velocity_noise.is_some(),
         }
+    }
+
+    /// Noise of what the velocity is derived from or recorded as; 0 where it is not recorded.
+    pub(super) fn noise(&self, velocity: VelocitySource) -> f64 {
+        let noise = match velocity {
+            VelocitySource::Derived => self.position_noise,
+            VelocitySource::Recorded => self.velocity_noise,
+        };
+        noise.unwrap_or(0.0)
     }
 
     /// Shortest filter that is tried: one period, and noise of a derived velocity in bounds,

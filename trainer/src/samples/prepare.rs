@@ -25,7 +25,7 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
     let stride = preparation.stride(grid.period_s);
     let torque_filter = filter.advanced_by(preparation.torque_delay_s);
     let window = 2 * filter.half_width() + 1;
-    let usable: Vec<&Segment> = grid.segments.iter().filter(|segment| segment.points >= window).collect();
+    let usable = usable(&grid, &filter);
     if usable.is_empty() {
         let message = format!("no uninterrupted stretch has the {window} samples that the filter needs");
         return Err(Error::new(&codes::SEGMENTS_TOO_SHORT, message).in_file(recording.file()));
@@ -50,6 +50,11 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
     smooth_temperatures(&mut samples);
     samples.recordings = vec![(recording.label.clone(), 0..samples.time.len())];
     Ok(samples)
+}
+
+/// Segments that are as long as the filter.
+pub(super) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Segment> {
+    grid.segments.iter().filter(|segment| segment.points > 2 * filter.half_width()).collect()
 }
 
 /// One sample for every row of the recording, at the row's own time: for predictions beside the recorded rows. The

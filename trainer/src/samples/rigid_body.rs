@@ -3,9 +3,11 @@
 
 use super::Samples;
 use super::bending::BendingLaw;
-use super::blocks::{ERROR_BLOCKS, even_blocks};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
+use crate::numerics::averages::Averages;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
+use crate::numerics::least_squares::weighted;
 use crate::numerics::regression::least_squares;
 use crate::recording::Axis;
 
@@ -99,7 +101,9 @@ pub struct Separation {
     pub given: Vec<f64>,
     /// Rigid-body torque at every sample, given and identified, offset included.
     pub rigid_body: Vec<f64>,
-    /// Actuator minus rigid body: friction with everything that is not yet explained.
+    /// What friction averaged over the states of a sample is more than friction at its velocity; zero where it is not averaged.
+    pub bend: Vec<f64>,
+    /// Actuator minus rigid body and bend: friction with everything that is not yet explained.
     pub friction: Vec<f64>,
     /// Root mean square of what the bending friction law leaves.
     pub rmse: f64,
@@ -185,22 +189,40 @@ pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
 /// # Errors
 /// `FRK-D009` when actuator or velocity is missing, `FRK-D014` as [`given_torque`], `FRK-D016` without motion.
 pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
+    let moving = moving_samples(samples.require_velocity()?);
+    separate_by(samples, joint, &moving, &|law, velocity| law.columns(velocity))
+}
+
+/// The same on some rows, each of which averages the law over states of such velocities.
+///
+/// # Errors
+/// As [`separate`].
+pub(crate) fn separate_averaged(
+    samples: &Samples,
+    joint: &Joint,
+    rows: &[usize],
+    (velocity, averages): (&[f64], &Averages),
+) -> Result<Separation> {
+    separate_by(samples, joint, rows, &|law, _| law.averaged_columns(velocity, averages))
+}
+
+/// Columns of a law at the moving rows, from their velocity.
+type Columns<'a> = dyn Fn(&BendingLaw, &[f64]) -> Vec<Vec<f64>> + 'a;
+
+fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: &Columns<'_>) -> Result<Separation> {
     let actuator = samples.actuator.as_deref().ok_or_else(|| {
         Error::new(&codes::MISSING_COLUMN, "separating friction needs the torque, force or current of the actuator")
             .in_column("torque_Nm")
     })?;
-    let velocity = samples.require_velocity()?;
     let given = given_torque(samples, joint)?;
     let terms = terms(samples, joint);
-
-    let moving = moving_samples(velocity);
     let pick = |column: &[f64]| moving.iter().map(|&i| column[i]).collect::<Vec<f64>>();
-    let moving_velocity = pick(velocity);
+    let moving_velocity = pick(samples.require_velocity()?);
     let law = BendingLaw::over(&moving_velocity)?;
     // The offset is no column of its own: the law holds it, and it is read off afterwards.
     let own_column: Vec<&Term> = terms.iter().filter(|term| term.kind != TermKind::TorqueOffset).collect();
     let mut columns: Vec<Vec<f64>> = own_column.iter().map(|term| pick(&term.column)).collect();
-    columns.extend(law.columns(&moving_velocity));
+    columns.extend(law_columns(&law, &moving_velocity));
     let target: Vec<f64> = moving.iter().map(|&i| actuator[i] - given[i]).collect();
     let fit = least_squares(&columns, &target, &even_blocks(target.len(), ERROR_BLOCKS));
 
@@ -221,7 +243,15 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
             *sum += parameter.value * x;
         }
     }
-    let friction = actuator.iter().zip(&rigid_body).map(|(total, body)| total - body).collect();
+    let mut bend = vec![0.0; samples.len()];
+    let curve = &fit.coefficients[own_column.len()..];
+    let averaged = weighted(&columns[own_column.len()..], curve);
+    let at_velocity = weighted(&law.columns(&moving_velocity), curve);
+    for ((&row, averaged), at_velocity) in moving.iter().zip(averaged).zip(at_velocity) {
+        bend[row] = averaged - at_velocity;
+    }
+    let taken_off = rigid_body.iter().zip(&bend).map(|(body, bend)| body + bend);
+    let friction = actuator.iter().zip(taken_off).map(|(total, off)| total - off).collect();
     let given_inertia = joint
         .rigid_body
         .inertia_kgm2
@@ -232,6 +262,7 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
         parameters,
         given,
         rigid_body,
+        bend,
         friction,
         rmse: fit.rmse,
         rank_deficiency: fit.rank_deficiency,

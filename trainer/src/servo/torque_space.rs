@@ -8,12 +8,12 @@ use crate::actuator::{Constant, Kind, Known, Open, Partial};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::numerics::hat_functions::law_error_hats;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::regression::{LinearFit, least_squares};
 use crate::numerics::statistics::NORMAL_95;
 use crate::parameter::Parameter;
 use crate::recording::{Quantity, Recording};
 use crate::rollout::Body;
-use crate::samples::blocks::{ERROR_BLOCKS, even_blocks};
 use crate::samples::rigid_body::{TermKind, given_torque, terms};
 use crate::samples::{Preparation, Request, Samples, prepare, top_speed};
 

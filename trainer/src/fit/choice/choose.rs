@@ -40,8 +40,9 @@ impl Trial {
         let judged = if locked.is_empty() { (0..material.rows.len()).collect() } else { locked };
         for position in judged {
             let row = material.rows[position];
-            self.filtered.push((filtered[row] - predicted[row]).powi(2));
-            self.recorded.push((recorded[row] - predicted[row]).powi(2));
+            let predicted = predicted[row] + material.bend[row];
+            self.filtered.push((filtered[row] - predicted).powi(2));
+            self.recorded.push((recorded[row] - predicted).powi(2));
             self.labels.push(material.labels[position]);
         }
     }
@@ -151,7 +152,7 @@ pub(in crate::fit) fn effective_rows(material: &Material, new_share: f64) -> f64
     columns.push(velocity.iter().map(|v| v.signum()).collect());
     columns.push(velocity);
     let whole: Vec<_> = std::iter::once(0..material.rows.len()).collect();
-    let fit = least_squares(&columns, &material.pick(&material.target), &whole);
+    let fit = least_squares(&columns, &material.target_at_velocity(), &whole);
     let length = crate::samples::blocks::correlation_time(&fit.residuals, &whole);
     (new_share * material.rows.len() as f64 / length as f64).max(std::f64::consts::E)
 }

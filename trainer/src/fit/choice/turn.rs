@@ -35,7 +35,7 @@ impl Turn {
     pub(in crate::fit) fn take(
         builder: &Builder<'_>,
         training: &TrainingData,
-        data: &LawData,
+        (points, data): (&LawData, &LawData),
         split: &Split,
         progress: ProgressCallback<'_>,
     ) -> Result<Self> {
@@ -44,7 +44,7 @@ impl Turn {
         let (fitted, pruned) = training.train(split, progress)?;
         tell(Stage::Searching);
         let learnt = training.learnt(&pruned.result);
-        let found = search(split, data, activations::starts(&learnt.network, &learnt.graph, builder.inputs))?;
+        let found = search(split, points, data, activations::starts(&learnt.network, &learnt.graph, builder.inputs))?;
         let (sound, free) = simple(&data.select(&turns::open(split)));
         let of = |simple: &Option<Simple>| simple.as_ref().and_then(|simple| builder.expression(&simple.fit));
         let models = Form::ALL.map(|form| match form {

@@ -6,10 +6,12 @@ use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
 use crate::fit::options::Options;
 use crate::joint::Joint;
+use crate::numerics::derivatives::first_derivative;
 use crate::recording::Recording;
 use crate::samples::blocks::{Split, blocks, correlation_time};
 use crate::samples::delay::torque_delay;
-use crate::samples::rigid_body::{Separation, TermKind, separate};
+use crate::samples::rigid_body::{Separation, TermKind, separate, separate_averaged};
+use crate::samples::states::{States, states};
 use crate::samples::{Preparation, Request, Samples, prepare};
 
 /// Below this share of the top speed friction is no function of velocity.
@@ -32,9 +34,13 @@ pub(in crate::fit) struct RigidColumn {
 #[derive(Clone, Debug)]
 pub(in crate::fit) struct Material {
     pub(in crate::fit) samples: Samples,
-    /// Actuator less the rigid body given in `joint.toml`, or friction where it is recorded separated.
+    /// Actuator less the rigid body given in `joint.toml`, or friction where it is recorded separated: averages over states.
     pub(in crate::fit) target: Vec<f64>,
-    /// Friction after a preliminary separation; what inputs are judged by.
+    /// What friction averaged over the states of a sample is more than friction at its velocity.
+    pub(in crate::fit) bend: Vec<f64>,
+    /// The states that each row averages over; `None` where rows are no averages.
+    pub(in crate::fit) states: Option<States>,
+    /// Friction after a preliminary separation, without the bend; what inputs are judged by.
     pub(in crate::fit) friction: Vec<f64>,
     pub(in crate::fit) columns: Vec<RigidColumn>,
     /// `None` where friction is recorded separated.
@@ -82,21 +88,28 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         .in_column("velocity")
         .with_value(first.to_string()));
     }
-    let (separation, target, friction) = match &samples.friction {
-        Some(friction) => (None, friction.clone(), friction.clone()),
+    let moving = if samples.friction.is_none() { moving(&velocity) } else { (0..velocity.len()).collect() };
+    let stride = moving.len().div_ceil(MOST_ROWS).max(1);
+    let moving: Vec<usize> = moving.into_iter().step_by(stride).collect();
+    let (separation, states, target, friction) = match &samples.friction {
+        Some(friction) => (None, None, friction.clone(), friction.clone()),
         None => {
-            let separation = separate(&samples, joint).map_err(|error| error.in_file(label))?;
+            let states = states(recordings, &preparation, &samples, &moving)?;
+            let separation = match &states {
+                Some(states) => separate_averaged(&samples, joint, &states.rows, (&states.velocity, &states.averages)),
+                None => separate(&samples, joint),
+            };
+            let separation = separation.map_err(|error| error.in_file(label))?;
             let actuator = samples.actuator.as_deref().unwrap_or_default();
             let target = actuator.iter().zip(&separation.given).map(|(total, given)| total - given).collect();
             let friction = separation.friction.clone();
-            (Some(separation), target, friction)
+            (Some(separation), states, target, friction)
         }
     };
+    let bend = separation.as_ref().map_or_else(|| vec![0.0; samples.len()], |separation| separation.bend.clone());
     let columns = separation.iter().flat_map(|s| &s.terms);
     let columns = columns.map(|term| RigidColumn { kind: term.kind, values: term.column.clone() }).collect();
-    let moving = if separation.is_some() { moving(&velocity) } else { (0..velocity.len()).collect() };
-    let stride = moving.len().div_ceil(MOST_ROWS).max(1);
-    let rows: Vec<usize> = moving.into_iter().step_by(stride).collect();
+    let rows = states.as_ref().map_or(moving, |states| states.rows.clone());
     let (correlation, cut) = cut(&samples, correlation_time(&friction, &samples.segments));
     let pieces = rows_of(&cut, &rows);
     let mut labels = vec![0; rows.len()];
@@ -108,6 +121,8 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
     Ok(Material {
         samples,
         target,
+        bend,
+        states,
         friction,
         columns,
         separation,
@@ -150,8 +165,32 @@ fn rows_of(pieces: &[Range<usize>], rows: &[usize]) -> Vec<Range<usize>> {
 }
 
 impl Material {
+    /// What the law at the velocity of each row and the rigid body have to explain: the target without the bend.
+    pub(in crate::fit) fn target_at_velocity(&self) -> Vec<f64> {
+        self.rows.iter().map(|&row| self.target[row] - self.bend[row]).collect()
+    }
+
     /// The values of a column at the rows that are learnt from.
     pub(in crate::fit) fn pick(&self, column: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|&row| column[row]).collect()
+    }
+
+    /// Columns that no part of law or rigid body stands for, with name and unit of their coefficient: what the torque's delay, as far as it is
+    /// not known, makes of the rigid body; and what stiction makes of a reversal. A joint that stops for a moment within a sample is held by as much
+    /// as its inertia would have taken, so that friction goes with the acceleration there.
+    pub(in crate::fit) fn artefacts(&self) -> Vec<(&'static str, String, Vec<f64>)> {
+        let unit = self.samples.actuator_unit;
+        let mut artefacts = Vec::new();
+        if let Some(separation) = self.separation.as_ref().filter(|_| self.torque_delay_s != 0.0) {
+            let period_s = self.samples.rate_hz.map_or(1.0, |rate| 1.0 / rate);
+            let rate = first_derivative(&separation.rigid_body, &self.samples.segments, period_s);
+            artefacts.push(("torque_advance", "s".to_owned(), self.pick(&rate)));
+        }
+        if let Some((states, acceleration)) = self.states.as_ref().zip(self.samples.acceleration.as_deref()) {
+            let held = states.turning.iter().zip(self.pick(acceleration)).map(|(turning, a)| turning * a).collect();
+            artefacts.push(("stiction", format!("{unit} s2"), held));
+        }
+        artefacts.retain(|(_, _, column): &(_, _, Vec<f64>)| column.iter().any(|value| *value != 0.0));
+        artefacts
     }
 }

@@ -11,10 +11,11 @@ use crate::fit::data::rigid;
 use crate::fit::data::turns;
 use crate::fit::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use crate::law::{
-    self, Channel, Discovery, Expr, FormFit, KnownForm, Language, LawData, LawError, Nonlinear, Nuisance,
-    SearchOptions, Start, Unary, discover, fit_form, refit, render,
+    self, Channel, ChannelRole, Discovery, Expr, FormFit, Interval, KnownForm, Language, LawData, LawError, Nuisance,
+    Remainder, SearchOptions, Start, Structure, Unary, discover, fit_form, remainder, render, settle,
 };
 use crate::parameter::Parameter;
+use crate::samples;
 use crate::samples::blocks::Split;
 
 /// Most samples that constants are fitted to; more would change no digit that is printed.
@@ -31,11 +32,11 @@ pub(in crate::fit) struct Found {
     pub(in crate::fit) discovery: Discovery,
     /// Fitted to the open blocks only; what candidates are compared by.
     pub(in crate::fit) open: FormFit,
-    /// Fitted to all samples.
-    pub(in crate::fit) last: FormFit,
+    /// Its non-linear constants, where other rows start from.
+    constants: Vec<f64>,
 }
 
-/// Samples as the law room takes them.
+/// Rows as the law room takes them: averages over their states.
 pub(in crate::fit) fn law_data(material: &Material, inputs: &[ChosenInput]) -> LawData {
     let axis = material.samples.axis;
     let actuator = material.samples.actuator_unit;
@@ -50,54 +51,81 @@ pub(in crate::fit) fn law_data(material: &Material, inputs: &[ChosenInput]) -> L
         unit: rigid::unit(column.kind, axis, actuator),
         values: material.pick(&column.values),
     });
+    let artefacts = material.artefacts().into_iter();
+    let artefacts = artefacts.map(|(name, unit, values)| Nuisance { name: name.to_owned(), unit, values });
     LawData {
         channels: inputs.iter().map(channel).collect(),
         target: material.pick(&material.target),
         target_unit: rigid::printed(actuator).to_owned(),
-        nuisance: nuisance.collect(),
+        // Those of the rigid body come first.
+        nuisance: nuisance.chain(artefacts).collect(),
+        states: material.states.as_ref().map(|states| law_states(states, inputs)),
         blocks: material.labels.clone(),
     }
 }
 
-/// Looks for the formula, beginning also at `starts`, and fits it. A classical law that describes the samples better than what the search found, its
-/// constants paid for, takes its place.
-pub(in crate::fit) fn search(split: &Split, data: &LawData, starts: Vec<Start>) -> Result<Found> {
-    let open_data = data.select(&turns::open(split));
-    let options = SearchOptions { starts, ..SearchOptions::default() };
-    let mut discovery = discover(&open_data, &options).map_err(|error| refused(&error))?;
-    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
-    let fixed = fixed_smoothing(&discovery);
-    let own = refit(&discovery.law, &few, fixed).map_err(|error| refused(&error))?;
-    let rivals: Vec<FormFit> = KnownForm::ALL
-        .par_iter()
-        .map(|form| fit_form(*form, &few, fixed).ok())
-        .collect::<Vec<_>>()
-        .into_iter()
-        .flatten()
-        .collect();
-    // One effective number of samples for all, or their criteria would not compare.
-    let effective = few.rows() as f64 / own.uncertainty.correlation_length;
-    let criterion = |fit: &FormFit| {
-        let constants = fit.law.parameters.len() as f64;
-        2.0 * effective * fit.rmse.max(f64::MIN_POSITIVE).ln() + effective.ln() * constants
-    };
-    let limit = criterion(&own) - BIC_DIFFERENCE_THRESHOLD;
-    let better = rivals.into_iter().filter(|rival| rival.converged && criterion(rival) < limit);
-    let best = better.fold(own, |best, rival| if criterion(&rival) < criterion(&best) { rival } else { best });
-    discovery.law = best.law;
-    let fixed = fixed_smoothing(&discovery);
-    let settled =
-        |data: &LawData| refit(&discovery.law, &thinned(data, MOST_SAMPLES), fixed).map_err(|error| refused(&error));
-    let (open, last) = (settled(&open_data)?, settled(data)?);
-    Ok(Found { open, last, discovery })
+/// The same rows with what the law at their own velocity has to explain, for what works point by point.
+pub(in crate::fit) fn at_velocity(material: &Material, data: &LawData) -> LawData {
+    LawData { target: material.target_at_velocity(), states: None, ..data.clone() }
 }
 
-/// The smoothing of the sign, where the search had to fix it.
-fn fixed_smoothing(discovery: &Discovery) -> Option<f64> {
-    let nonlinear = discovery.law.structure.nonlinear();
-    let at = nonlinear.iter().position(|n| *n == Nonlinear::Smoothing)?;
-    let parameter = &discovery.law.parameters[at];
-    (!parameter.determined).then_some(parameter.value)
+/// The states of the rows with all channels: the velocity of each, and what else the law reads as its row has it, since a law is bent over
+/// velocity.
+fn law_states(states: &samples::states::States, inputs: &[ChosenInput]) -> law::States {
+    let of_state = |input: &ChosenInput| match input.role {
+        ChannelRole::Velocity => states.velocity.clone(),
+        _ => states.nearest.iter().map(|&row| input.values[row]).collect(),
+    };
+    law::States { averages: states.averages.clone(), channels: inputs.iter().map(of_state).collect() }
+}
+
+/// Looks for the formula in `points`, beginning also at `starts`, and fits it to `data`, the averages of the same rows. Another law of the search's
+/// front or a classical one that describes those better, its constants paid for, takes its place.
+pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+    let open = turns::open(split);
+    let options = SearchOptions { starts, ..SearchOptions::default() };
+    let discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
+    let open_data = data.select(&open);
+    let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
+    let law = &discovery.law;
+    let constants: Vec<f64> = law.parameters.iter().take(law.structure.nonlinear().len()).map(|p| p.value).collect();
+    let own = remainder(&law.structure, &few, Some(&constants)).map_err(|error| refused(&error))?;
+    // One effective number of samples for all, or their criteria would not compare.
+    let effective = few.rows() as f64 / own.correlation_length;
+    let criterion = |left: &Remainder, structure: &Structure| {
+        let misfit = effective * left.mean_square.max(f64::MIN_POSITIVE).ln();
+        misfit + effective.ln() * structure.constants() as f64
+    };
+    let limit = criterion(&own, &law.structure) - BIC_DIFFERENCE_THRESHOLD;
+    let front = discovery.front.iter().filter(|entry| entry.nodes <= options.max_nodes);
+    let front = front.map(|entry| (entry.structure.clone(), Some(entry.constants.as_slice())));
+    let rivals: Vec<_> = front.chain(KnownForm::ALL.map(|form| (form.structure(), None))).collect();
+    let judged = |(structure, constants): &(Structure, Option<&[f64]>)| {
+        let left = remainder(structure, &few, *constants).ok().filter(|left| left.converged)?;
+        Some((criterion(&left, structure), structure.clone(), left.constants))
+    };
+    let judged: Vec<_> = rivals.par_iter().map(judged).collect();
+    let better = judged.into_iter().flatten().filter(|(value, ..)| *value < limit);
+    let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (structure, constants) = best.map_or((law.structure.clone(), own.constants), |(_, s, c)| (s, c));
+    let (open, _) = settled((&structure, &constants), &open_data, Interval::Linearised)?;
+    Ok(Found { open, constants, discovery })
+}
+
+/// A law fitted from constants that some of the rows gave it, and what is to be said of its sign.
+fn settled(
+    (structure, constants): (&Structure, &[f64]),
+    data: &LawData,
+    intervals: Interval,
+) -> Result<(FormFit, Vec<String>)> {
+    settle(structure, constants, &thinned(data, MOST_SAMPLES), intervals).map_err(|error| refused(&error))
+}
+
+impl Found {
+    /// The formula fitted to all rows, and what is to be said of its sign.
+    pub(in crate::fit) fn on_all(&self, data: &LawData) -> Result<(FormFit, Vec<String>)> {
+        settled((&self.open.law.structure, &self.constants), data, Interval::Profile)
+    }
 }
 
 /// Every `k`-th sample, so that at most `most` are left.

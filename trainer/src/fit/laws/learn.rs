@@ -50,7 +50,7 @@ impl TrainingData {
         }
         Ok(Self {
             inputs: inputs.iter().map(|input| input.values.clone()).collect(),
-            target: material.pick(&material.target).iter().map(|total| total - offset.unwrap_or(0.0)).collect(),
+            target: material.target_at_velocity().iter().map(|total| total - offset.unwrap_or(0.0)).collect(),
             linear: own.map(|column| material.pick(&column.values)).collect(),
             offset,
             options: training,

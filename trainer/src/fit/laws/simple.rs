@@ -130,6 +130,7 @@ mod tests {
                 unit: "kg m²".into(),
                 values: acceleration,
             }],
+            states: None,
             blocks: (0..n).map(|i| i / 100).collect(),
         }
     }

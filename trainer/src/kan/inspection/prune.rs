@@ -6,15 +6,18 @@ use super::attribution::Attribution;
 use crate::kan::network::error::KanError;
 use crate::kan::network::layers::Network;
 use crate::kan::training::dataset::Dataset;
-use crate::kan::training::fit::{FitOptions, FitResult, refit_from};
+use crate::kan::training::fit::{FitOptions, FitResult, Trained, refit_from};
 use crate::kan::training::settings::ProgressCallback;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
+use std::ops::Range;
 
 /// What may be removed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PruneOptions {
     /// Edges of a lower score are removed together.
     pub edge_threshold: f64,
-    /// Rise of the error criterion, relative, that a removal may cost. Negative values demand an improvement.
+    /// Rise of the error criterion, relative, that a removal may cost where too few rows are held out for a standard error of it. Negative
+    /// values demand an improvement.
     pub tolerance: f64,
     /// Root-mean-square error, relative to the target's standard deviation, that is as good as none.
     pub negligible: f64,
@@ -93,7 +96,11 @@ pub struct Pruned {
     pub removed: Vec<Removed>,
 }
 
-/// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs.
+/// Fewest pieces of held-out rows by whose scatter the error of a criterion is told.
+const LEAST_PIECES: usize = 3;
+
+/// Prunes a trained network: hidden nodes one at a time, weakest first, then weak edges, then inputs. What is left is the smallest that is found
+/// within one standard error of the best held-out error (Breiman, Friedman, Olshen & Stone 1984).
 ///
 /// # Errors
 /// As [`crate::kan::fit`].
@@ -111,7 +118,11 @@ pub fn prune(
         refit_from(network, linear, noise_variance, dataset, &refit_options, progress)
     };
     let mut current = refit(fitted.network.clone(), &fitted.linear_coefficients);
-    let mut best = current.criterion;
+    let limit_of = |best: &Trained| {
+        let rise = standard_error(best, dataset).unwrap_or(pruning.tolerance * best.criterion);
+        (best.criterion + rise).max(pruning.negligible.powi(2))
+    };
+    let (mut best, mut limit) = (current.criterion, limit_of(&current));
     let mut removed = Vec::new();
 
     for stage in [nodes, edges, inputs] {
@@ -124,15 +135,39 @@ pub fn prune(
                 continue;
             }
             let trial = refit(network, &current.model.linear_coefficients());
-            let limit = (best * (1.0 + pruning.tolerance)).max(pruning.negligible.powi(2));
             if trial.criterion <= limit {
-                best = best.min(trial.criterion);
+                if trial.criterion < best {
+                    (best, limit) = (trial.criterion, limit_of(&trial));
+                }
                 current = trial;
                 removed.extend(group);
             }
         }
     }
     Ok(Pruned { result: current.into_result(dataset, 0), removed })
+}
+
+/// Standard error of the mean square over held-out rows, from the scatter over pieces of them, of a ratio of sums over pieces of unequal size (Cochran
+/// 1977); `None` where there are too few.
+fn standard_error(trained: &Trained, dataset: &Dataset) -> Option<f64> {
+    let blocks = &dataset.blocks.validation;
+    let rows: usize = blocks.iter().map(ExactSizeIterator::len).sum();
+    let cut = |block: &Range<usize>| {
+        let parts = even_blocks(block.len(), (ERROR_BLOCKS * block.len()).div_ceil(rows));
+        let begin = block.start;
+        parts.into_iter().map(move |part| begin + part.start..begin + part.end)
+    };
+    let pieces: Vec<Range<usize>> = blocks.iter().flat_map(cut).collect();
+    if pieces.len() < LEAST_PIECES {
+        return None;
+    }
+    let off = |piece: &Range<usize>| {
+        let sum = trained.model.residual_sum(dataset, std::slice::from_ref(piece));
+        sum - trained.criterion * piece.len() as f64
+    };
+    let scatter: f64 = pieces.iter().map(|piece| off(piece).powi(2)).sum();
+    let inflation = pieces.len() as f64 / (pieces.len() - 1) as f64;
+    Some((inflation * scatter).sqrt() / rows as f64)
 }
 
 fn score_of(group: &[Removed]) -> f64 {

@@ -6,9 +6,11 @@ mod values;
 
 use super::projection::{Basis, dot};
 use crate::law::model::data::LawData;
+use crate::law::model::expression::Expr;
 use crate::law::model::ranges::{Extents, Range};
 use crate::law::model::structure::{Nonlinear, Structure};
-use crate::law::model::tape::Tape;
+use crate::law::model::tape::{Columns, Tape};
+use crate::numerics::averages::Averages;
 
 /// Data prepared for many fits: what the nuisance columns explain is projected out once.
 #[derive(Debug)]
@@ -60,6 +62,25 @@ impl Effort {
     pub const FINAL: Self = Self { iterations: 200, tolerance: 1e-15 };
 }
 
+/// Expressions evaluated for every sample: at its channels, or averaged over its states.
+#[derive(Debug)]
+pub struct RowTape<'a> {
+    tape: Tape,
+    averages: Option<&'a Averages>,
+}
+
+impl RowTape<'_> {
+    /// As [`Tape::run`].
+    pub fn run(&self, params: &[f64], slopes: bool) -> Columns {
+        let mut columns = self.tape.run(params, slopes);
+        if let Some(averages) = self.averages {
+            let of_slopes = columns.slopes.iter_mut().flatten().flatten();
+            columns.values.iter_mut().chain(of_slopes).for_each(|column| *column = averages.over(column));
+        }
+        columns
+    }
+}
+
 struct Point {
     rss: f64,
     residual: Vec<f64>,
@@ -103,17 +124,18 @@ impl<'a> Problem<'a> {
         self.fit_from(&fit.structure, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL)
     }
 
-    /// Channels as slices.
-    pub fn channels(&self) -> &[&'a [f64]] {
-        &self.channels
+    fn tape(&self, structure: &Structure) -> RowTape<'_> {
+        self.tape_of(&structure.columns(self.extents.layout()), structure.nonlinear().len())
     }
 
-    fn tape(&self, structure: &Structure) -> Tape {
-        let columns = structure.columns(self.extents.layout());
-        Tape::new(&columns, structure.nonlinear().len(), &self.channels, self.rows())
+    /// Expressions of the channels that are evaluated for every sample.
+    pub fn tape_of(&self, outputs: &[Expr], params: usize) -> RowTape<'_> {
+        let averages = self.data.states.as_ref().map(|states| &states.averages);
+        let places = self.channels.first().map_or(0, |channel| channel.len());
+        RowTape { tape: Tape::new(outputs, params, &self.channels, places), averages }
     }
 
-    fn at(&self, tape: &Tape, psi: &[f64], pinned: Option<(usize, f64)>, jacobian: bool) -> Point {
+    fn at(&self, tape: &RowTape<'_>, psi: &[f64], pinned: Option<(usize, f64)>, jacobian: bool) -> Point {
         let mut columns = tape.run(psi, jacobian);
         let mut basis = Basis::default();
         let mut residual = self.target.clone();
@@ -203,7 +225,7 @@ impl<'a> Problem<'a> {
     /// One accepted step: the new constants, the point there and the share by which the sum of squares fell.
     fn step(
         &self,
-        tape: &Tape,
+        tape: &RowTape<'_>,
         (ranges, free, pinned): (&[Range], &[usize], Option<(usize, f64)>),
         psi: &[f64],
         point: &Point,

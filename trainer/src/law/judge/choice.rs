@@ -24,6 +24,8 @@ pub type Explored = BTreeMap<Structure, Fit>;
 pub struct FrontEntry {
     /// Which law.
     pub structure: Structure,
+    /// Its non-linear constants, in the order of [`Structure::nonlinear`].
+    pub constants: Vec<f64>,
     /// With numbers.
     pub expression: Expr,
     /// Nodes of the expression.
@@ -121,6 +123,7 @@ pub(in crate::law) fn front(candidates: &[Candidate]) -> Vec<FrontEntry> {
     });
     let entry = |c: &Candidate| FrontEntry {
         structure: c.fit.structure.clone(),
+        constants: c.fit.params[..c.fit.structure.nonlinear().len()].to_vec(),
         expression: c.expression.clone(),
         nodes: c.nodes,
         rmse: c.rmse,

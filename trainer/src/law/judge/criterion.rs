@@ -1,8 +1,8 @@
 //! The criterion by which laws are compared, in nats: misfit and penalties. A penalty is half the logarithm of the (effective) number of samples for each constant (Schwarz 1978), and how
 //! many like it there are to try or how far it is from what friction usually does (Chen & Chen 2008).
 
-use crate::law::fitting::problem::Fit;
-use crate::law::model::structure::{Modulation, Nonlinear, Shape, SignForm, Structure, Term};
+use crate::law::fitting::problem::{Fit, Problem};
+use crate::law::model::structure::{Modulation, Shape, SignForm, Term};
 
 /// Nats for each term: the library offers about this many (in the logarithm) equally likely ones.
 const TERM_PENALTY_NATS: f64 = 2.5;
@@ -50,13 +50,6 @@ pub fn prior(fit: &Fit) -> f64 {
     of_sign(fit.structure.sign()) + terms + SIGN_PENALTY_NATS * wrong.count() as f64
 }
 
-/// Number of fitted constants.
-pub fn constants(structure: &Structure) -> usize {
-    let orders = structure.nonlinear().iter().filter(|n| matches!(n, Nonlinear::Order(_))).count();
-    // An order is found by a scan and costs as two.
-    structure.nonlinear().len() + orders + structure.terms().len()
-}
-
 /// How many effective samples there are, and below which mean square a fit counts as exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence {
@@ -68,7 +61,20 @@ pub struct Evidence {
     pub exact: f64,
 }
 
+/// Held-out blocks guard against what correlated residuals pretend, so that no fewer samples than this are counted.
+const LEAST_EFFECTIVE: f64 = 200.0;
+
 impl Evidence {
+    /// Of residuals that are correlated over this many samples.
+    pub fn of(problem: &Problem<'_>, correlation_length: f64) -> Self {
+        let rows = problem.rows();
+        Self {
+            rows,
+            effective: (rows as f64 / correlation_length).max(LEAST_EFFECTIVE.min(rows as f64)),
+            exact: EXACT_RESIDUAL_RATIO * EXACT_RESIDUAL_RATIO * problem.total() / rows as f64,
+        }
+    }
+
     /// Negative log likelihood of a mean squared residual, up to a constant.
     pub fn misfit(&self, mean_square: f64) -> f64 {
         0.5 * self.effective * libm::log(mean_square.max(self.exact).max(f64::MIN_POSITIVE))
@@ -77,14 +83,14 @@ impl Evidence {
     /// Score of a fit on the samples it was fitted to, nats; lower is better.
     pub fn score(&self, fit: &Fit) -> f64 {
         self.misfit(fit.rss / self.rows as f64)
-            + 0.5 * libm::log(self.effective) * constants(&fit.structure) as f64
+            + 0.5 * libm::log(self.effective) * fit.structure.constants() as f64
             + prior(fit)
     }
 
     /// Score from a mean square over held-out samples, which has already paid about one nat for each constant.
     pub fn held_out(&self, fit: &Fit, mean_square: f64) -> f64 {
         let each = (0.5 * libm::log(self.effective) - 1.0).max(0.0);
-        self.misfit(mean_square) + each * constants(&fit.structure) as f64 + prior(fit)
+        self.misfit(mean_square) + each * fit.structure.constants() as f64 + prior(fit)
     }
 }
 

@@ -1,10 +1,11 @@
-//! How well the constants of a fitted law are determined: linearised covariance, profile-likelihood intervals (Bates &
-//! Watts 1988, chapter 6), condition, correlations.
+//! How well the constants of a fitted law are determined: standard errors by leaving out blocks, profile-likelihood intervals (Bates & Watts
+//! 1988, chapter 6) scaled to them, condition, correlations.
 
 use super::criterion::{EXACT_RESIDUAL_RATIO, correlation_length};
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
+use crate::law::fitting::projection::dot;
 use crate::law::model::structure::Nonlinear;
-use crate::law::model::tape::Tape;
+use crate::numerics::jackknife::Jackknife;
 
 /// Two-sided 95 % point of the normal distribution.
 pub(in crate::law) const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -20,7 +21,7 @@ const REFIT_EFFORT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
 /// What the data say about the constants of a law, in the order of its parameters: non-linear ones, then the coefficients of the terms.
 #[derive(Clone, Debug)]
 pub struct Uncertainty {
-    /// Standard errors: from the linearised covariance or the wider side of the profile interval, whichever is larger;
+    /// Standard errors: from leaving out blocks or the wider side of the profile interval, whichever is larger;
     /// infinite where the data say nothing, zero where held.
     pub standard_errors: Vec<f64>,
     /// 95 % intervals.
@@ -53,7 +54,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let free: Vec<usize> = (0..count).filter(|&k| names.get(k).is_none_or(|n| !held.contains(n))).collect();
     let rows = problem.rows();
     let template = fit.structure.template(problem.extents().layout());
-    let mut columns = Tape::new(&[template], count, problem.channels(), rows).run(&fit.params, true);
+    let mut columns = problem.tape_of(&[template], count).run(&fit.params, true);
     let slopes = columns.slopes.swap_remove(0);
     let nuisance = &problem.data().nuisance;
     let jacobian: Vec<&[f64]> = nuisance
@@ -65,12 +66,18 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let correlation_length = correlation_length(&residuals);
     let freedom = (rows as f64 - jacobian.len() as f64).max(1.0);
     let noise = (fit.rss / freedom).sqrt();
-    let spread = noise * correlation_length.sqrt();
-
     let linear = linearised(&jacobian, rows);
+    let jackknife = without_blocks(&jacobian, &residuals);
+    // A deviation of the noise for each constant: that of independent noise of one strength which would leave it as uncertain.
+    let spread_of = |place: usize| {
+        let spread = jackknife[place] / linear.errors[place];
+        if spread.is_finite() { spread } else { noise * correlation_length.sqrt() }
+    };
     let mut standard_errors = vec![0.0; count];
+    let mut spreads = vec![0.0; count];
     for (i, &k) in free.iter().enumerate() {
-        standard_errors[k] = spread * linear.errors[nuisance.len() + i];
+        spreads[k] = spread_of(nuisance.len() + i);
+        standard_errors[k] = spreads[k] * linear.errors[nuisance.len() + i];
     }
     let entangled = linear
         .entangled
@@ -84,7 +91,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         .map(|k| {
             let se = standard_errors[k];
             if profiled && free.contains(&k) {
-                profile(problem, fit, held, k, se, spread)
+                profile(problem, fit, held, k, (se, spreads[k]))
             } else {
                 [fit.params[k] - NORMAL_95 * se, fit.params[k] + NORMAL_95 * se]
             }
@@ -94,7 +101,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         let vague =
             |k: &usize| *k < names.len() && standard_errors[*k] > MULTISTART_RELATIVE_ERROR * fit.params[*k].abs();
         for k in free.iter().copied().filter(vague) {
-            other_optima(problem, fit, held, k, spread, &mut intervals);
+            other_optima(problem, fit, held, k, &spreads, &mut intervals);
         }
         for &k in &free {
             let [low, high] = intervals[k];
@@ -103,7 +110,8 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
         }
     }
     let coefficients = problem.nuisance_coefficients(fit);
-    let nuisance = coefficients.into_iter().zip(&linear.errors).map(|(c, e)| (c, spread * e)).collect();
+    let error_of = |place: usize| spread_of(place) * linear.errors[place];
+    let nuisance = coefficients.into_iter().enumerate().map(|(place, c)| (c, error_of(place))).collect();
     Uncertainty {
         standard_errors,
         intervals,
@@ -115,6 +123,19 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     }
 }
 
+/// Standard errors of the coefficients of a linear model by leaving out blocks of rows, from its columns and what it leaves.
+fn without_blocks(jacobian: &[&[f64]], residuals: &[f64]) -> Vec<f64> {
+    let norms: Vec<f64> = jacobian.iter().map(|column| dot(column, column).sqrt()).collect();
+    let scaled = |(column, norm): (&&[f64], &f64)| match column.len() {
+        0 => vec![0.0; residuals.len()],
+        _ => column.iter().map(|value| value / norm).collect(),
+    };
+    let columns: Vec<Vec<f64>> = jacobian.iter().zip(&norms).map(scaled).collect();
+    let errors = Jackknife::new(&columns, residuals).errors();
+    let error = |place: usize| errors.iter().map(|error| error[place].powi(2)).sum::<f64>().sqrt();
+    norms.iter().enumerate().map(|(place, norm)| error(place) / norm).collect()
+}
+
 struct Linearised {
     /// Standard errors for unit noise.
     errors: Vec<f64>,
@@ -124,7 +145,7 @@ struct Linearised {
 
 fn linearised(jacobian: &[&[f64]], rows: usize) -> Linearised {
     let n = jacobian.len();
-    let norms: Vec<f64> = jacobian.iter().map(|c| crate::law::fitting::projection::dot(c, c).sqrt()).collect();
+    let norms: Vec<f64> = jacobian.iter().map(|c| dot(c, c).sqrt()).collect();
     let live: Vec<usize> = (0..n).filter(|&j| norms[j] > 0.0 && norms[j].is_finite()).collect();
     let mut errors = vec![f64::INFINITY; n];
     if live.is_empty() || rows < live.len() {
@@ -165,7 +186,7 @@ fn other_optima(
     fit: &Fit,
     held: &[Nonlinear],
     k: usize,
-    spread: f64,
+    spreads: &[f64],
     intervals: &mut [[f64; 2]],
 ) {
     let names = fit.structure.nonlinear();
@@ -181,14 +202,13 @@ fn other_optima(
             range.lower + share * (range.upper - range.lower)
         };
         let tried = problem.fit_from(&fit.structure, &psi, Held { nonlinear: &kept, coefficient: None }, REFIT_EFFORT);
-        let room = NORMAL_95 * NORMAL_95 - (tried.rss - fit.rss) / (spread * spread);
+        let room = NORMAL_95 * NORMAL_95 - (tried.rss - fit.rss) / (spreads[k] * spreads[k]);
         if room <= 0.0 {
             continue;
         }
-        let reach = room.sqrt() * spread;
         let errors = problem.coefficient_errors(&tried);
         for (j, interval) in intervals.iter_mut().enumerate() {
-            let half = if j < names.len() { 0.0 } else { reach * errors[j - names.len()] };
+            let half = if j < names.len() { 0.0 } else { room.sqrt() * spreads[j] * errors[j - names.len()] };
             interval[0] = interval[0].min(tried.params[j] - half);
             interval[1] = interval[1].max(tried.params[j] + half);
         }
@@ -196,7 +216,7 @@ fn other_optima(
 }
 
 /// Profile-likelihood interval of constant `k`: where the sum of squares, all else refitted, has risen by 1.96² variances.
-fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, se: f64, spread: f64) -> [f64; 2] {
+fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, (se, spread): (f64, f64)) -> [f64; 2] {
     let names = fit.structure.nonlinear();
     let best = fit.params[k];
     let limits = problem.ranges(&fit.structure).get(k).map(|r| (r.lower, r.upper));

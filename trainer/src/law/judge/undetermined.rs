@@ -47,6 +47,10 @@ pub(in crate::law) fn drop_undetermined(
     }
 }
 
+/// Twice the negative log likelihood that a wider smoothing may cost where the data cannot tell it from a step: it moves no other constant by
+/// more than a third of its standard error.
+const SMOOTHING_COST: f64 = 0.1;
+
 /// Fixes the smoothing of the sign where the data cannot tell it from a step.
 pub(in crate::law) fn fix_smoothing(
     problem: &Problem<'_>,
@@ -69,13 +73,15 @@ pub(in crate::law) fn fix_smoothing(
     };
     let steepest = sign.width(problem.extents().steepest(sign));
     if with_width(steepest).1 > 3.84 {
-        return (fit, Vec::new());
+        // Steeper than can be told is a step, however steep.
+        let is_step = sign.width(fit.params[at]) <= steepest;
+        return if is_step { (problem.polish(&fit, &held), held) } else { (fit, Vec::new()) };
     }
     // The widest that is as good, by bisection in the logarithm.
     let (mut good, mut bad) = (steepest, problem.extents().fastest());
     for _ in 0..12 {
         let middle = (good * bad).sqrt();
-        if with_width(middle).1 < 1.0 { good = middle } else { bad = middle }
+        if with_width(middle).1 < SMOOTHING_COST { good = middle } else { bad = middle }
     }
     let fixed = problem.polish(&with_width(good).0, &held);
     let bound = sign.from_width(good);

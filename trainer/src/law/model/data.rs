@@ -1,5 +1,7 @@
 //! What a law is found from: channels, a target, columns that are fitted along with it, and blocks to hold out.
 
+use crate::numerics::averages::Averages;
+
 /// What a channel means to a friction law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ChannelRole {
@@ -39,6 +41,15 @@ pub struct Nuisance {
     pub values: Vec<f64>,
 }
 
+/// States that a filtered sample averages over: the law of each of them counts with its weight, not the law of their average.
+#[derive(Clone, Debug)]
+pub struct States {
+    /// The states of each sample.
+    pub averages: Averages,
+    /// `channels[i][state]`: the channels of the data, in their order.
+    pub channels: Vec<Vec<f64>>,
+}
+
 /// Samples of `target = law(channels) + sum of nuisance coefficient x column + noise`, in the order of recording.
 #[derive(Clone, Debug)]
 pub struct LawData {
@@ -50,6 +61,8 @@ pub struct LawData {
     pub target_unit: String,
     /// Columns fitted along.
     pub nuisance: Vec<Nuisance>,
+    /// What a law is averaged over; `None` where it holds for the channels of a sample themselves.
+    pub states: Option<States>,
     /// Block of each sample: samples of one block are held out together. Any labels; at least two different ones.
     pub blocks: Vec<usize>,
 }
@@ -157,11 +170,24 @@ impl LawData {
             target: pick(&self.target),
             target_unit: self.target_unit.clone(),
             nuisance: self.nuisance.iter().map(|c| Nuisance { values: pick(&c.values), ..c.clone() }).collect(),
+            states: self.states.as_ref().map(|states| states.select(rows)),
             blocks: rows.iter().map(|&r| self.blocks[r]).collect(),
         }
     }
 
+    /// Columns that a law is evaluated on.
     pub(in crate::law) fn columns(&self) -> Vec<&[f64]> {
-        self.channels.iter().map(|c| c.values.as_slice()).collect()
+        match &self.states {
+            Some(states) => states.channels.iter().map(Vec::as_slice).collect(),
+            None => self.channels.iter().map(|c| c.values.as_slice()).collect(),
+        }
+    }
+}
+
+impl States {
+    fn select(&self, rows: &[usize]) -> Self {
+        let (averages, kept) = self.averages.select(rows);
+        let pick = |values: &Vec<f64>| kept.iter().map(|&state| values[state]).collect();
+        Self { averages, channels: self.channels.iter().map(pick).collect() }
     }
 }

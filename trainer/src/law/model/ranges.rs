@@ -63,8 +63,7 @@ impl Extents {
     pub fn new(data: &LawData) -> Result<Self, LawError> {
         data.check()?;
         let velocity = data.velocity()?;
-        let mut speeds: Vec<f64> =
-            data.channels[velocity].values.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
+        let mut speeds: Vec<f64> = data.columns()[velocity].iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
         speeds.sort_by(f64::total_cmp);
         let fastest = speeds[speeds.len() - 1];
         let slow = speeds[SAMPLES_IN_TRANSITION.min(speeds.len() - 1)].max(REST_SPEED_RATIO * fastest);

@@ -245,6 +245,13 @@ impl Structure {
         self.terms.contains(&term)
     }
 
+    /// Number of constants that are fitted; an order is found by a scan and costs as two.
+    pub fn constants(&self) -> usize {
+        let nonlinear = self.nonlinear();
+        let orders = nonlinear.iter().filter(|n| matches!(n, Nonlinear::Order(_))).count();
+        nonlinear.len() + orders + self.terms().len()
+    }
+
     /// Non-linear constants, sorted. They are parameters `0..`, the coefficients of the terms follow.
     pub fn nonlinear(&self) -> Vec<Nonlinear> {
         let mut all: Vec<Nonlinear> = self.terms.iter().flat_map(|t| t.nonlinear()).collect();

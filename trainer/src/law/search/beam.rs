@@ -111,7 +111,7 @@ fn promising(
         let base = reduced(parent, &change);
         let (found, rss) = problem.screen(&base, &change.added);
         start.extend(found.into_iter().filter(|(n, _)| parent.nonlinear().iter().all(|(k, _)| k != n)));
-        let cost = crate::law::judge::criterion::constants(&structure) as f64;
+        let cost = structure.constants() as f64;
         let score = evidence.misfit(rss / problem.rows() as f64) + 0.5 * libm::log(evidence.effective) * cost;
         screened.push((score, Child { structure, start, rss }));
     }

@@ -6,7 +6,7 @@ use super::beam::{Beam, explore};
 use super::proposals::Start;
 use crate::law::fitting::problem::{Fit, Problem};
 use crate::law::judge::choice::{Candidate, FrontEntry, best, choose, finalists, front};
-use crate::law::judge::criterion::{EXACT_RESIDUAL_RATIO, Evidence, correlation_length};
+use crate::law::judge::criterion::{Evidence, correlation_length};
 use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
 use crate::law::judge::rounding::rounded;
 use crate::law::judge::uncertainty::{Interval, analyse};
@@ -44,8 +44,10 @@ pub struct Discovery {
     pub law: Law,
     /// Laws that no simpler one equals, by complexity.
     pub front: Vec<FrontEntry>,
-    /// What the data do not determine, in sentences.
+    /// What else the data do not determine, in sentences.
     pub remarks: Vec<String>,
+    /// How smooth the sign was taken to be, in a sentence, where the data do not determine it.
+    pub smoothing: Vec<String>,
     /// Coefficients of the nuisance columns beside the chosen law.
     pub nuisance: Vec<NuisanceCoefficient>,
     /// Root mean square of the residuals of the chosen law, unit of the target.
@@ -80,7 +82,8 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let chosen = choose(&candidates, options.max_nodes).fit.clone();
     let mut remarks = Vec::new();
     let chosen = drop_undetermined(&problem, chosen, evidence, &mut remarks);
-    let (fit, held) = fix_smoothing(&problem, chosen, evidence, &mut remarks);
+    let mut smoothing = Vec::new();
+    let (fit, held) = fix_smoothing(&problem, chosen, evidence, &mut smoothing);
     let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);
     let fit = rounded(&problem, &fit, &uncertainty);
@@ -90,6 +93,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
         law,
         front,
         remarks,
+        smoothing,
         nuisance,
         rmse: (fit.rss / data.rows() as f64).sqrt(),
         r2: 1.0 - fit.rss / problem.total().max(f64::MIN_POSITIVE),
@@ -97,15 +101,6 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     })
 }
 
-/// Held-out blocks guard against what correlated residuals pretend, so that no fewer samples than this are counted.
-const LEAST_EFFECTIVE: f64 = 200.0;
-
 fn evidence_of(problem: &Problem<'_>, fit: Option<&Fit>) -> Evidence {
-    let rows = problem.rows();
-    let length = fit.map_or(1.0, |f| correlation_length(&problem.residuals(f)));
-    Evidence {
-        rows,
-        effective: (rows as f64 / length).max(LEAST_EFFECTIVE.min(rows as f64)),
-        exact: EXACT_RESIDUAL_RATIO * EXACT_RESIDUAL_RATIO * problem.total() / rows as f64,
-    }
+    Evidence::of(problem, fit.map_or(1.0, |f| correlation_length(&problem.residuals(f))))
 }

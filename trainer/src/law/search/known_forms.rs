@@ -2,12 +2,13 @@
 
 use rayon::prelude::*;
 
-use crate::law::fitting::problem::{Effort, Held, Problem};
+use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::judge::choice::held_out_mean_square;
-use crate::law::judge::criterion::constants;
+use crate::law::judge::criterion::{Evidence, correlation_length};
 use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
 use crate::law::judge::rounding::rounded;
 use crate::law::judge::uncertainty::{Interval, Uncertainty, analyse};
+use crate::law::judge::undetermined::fix_smoothing;
 use crate::law::model::data::{LawData, LawError};
 use crate::law::model::ranges::Extents;
 use crate::law::model::structure::{Nonlinear, Shape, SignForm, Structure, Term};
@@ -136,53 +137,101 @@ pub fn fit_form(form: KnownForm, data: &LawData, smoothing: Option<f64>) -> Resu
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
 pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
-    fit_from_starts(structure, data, smoothing, None)
+    let extents = Extents::new(data)?;
+    let problem = check(structure, data, &extents)?;
+    let held: Vec<Nonlinear> = smoothing.map(|_| Nonlinear::Smoothing).into_iter().collect();
+    let fit = from_grid(&problem, structure, smoothing);
+    Ok(described(&problem, &fit, &held, Interval::Profile))
 }
 
-/// [`fit_structure`] that also starts from the constants of a law that was fitted to other samples of the same joint.
+/// What the best fit of a structure leaves.
+#[derive(Clone, Debug)]
+pub struct Remainder {
+    /// Mean square, squared unit of the target.
+    pub mean_square: f64,
+    /// Samples over which it is correlated.
+    pub correlation_length: f64,
+    /// Whether the optimiser ended at a minimum.
+    pub converged: bool,
+    /// The non-linear constants, in the order of [`Structure::nonlinear`].
+    pub constants: Vec<f64>,
+}
+
+/// What a structure leaves of the data at its best, looked for from non-linear constants where they are given, else from a grid; nothing is said of
+/// how well they are known.
 ///
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
-pub fn refit(law: &Law, data: &LawData, smoothing: Option<f64>) -> Result<FormFit, LawError> {
-    fit_from_starts(&law.structure, data, smoothing, Some(law))
+pub fn remainder(structure: &Structure, data: &LawData, constants: Option<&[f64]>) -> Result<Remainder, LawError> {
+    let extents = Extents::new(data)?;
+    let problem = check(structure, data, &extents)?;
+    let fit = match constants {
+        Some(constants) => problem.fit_from(structure, constants, Held::default(), Effort::FINAL),
+        None => from_grid(&problem, structure, None),
+    };
+    Ok(Remainder {
+        mean_square: fit.rss / data.rows() as f64,
+        correlation_length: correlation_length(&problem.residuals(&fit)),
+        converged: fit.converged,
+        constants: fit.params[..structure.nonlinear().len()].to_vec(),
+    })
 }
 
-fn fit_from_starts(
+/// Fits a structure from non-linear constants that other samples of the same joint gave it, with the smoothing of the sign fixed where the data
+/// cannot tell it from a step, and what is to be said of that.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn settle(
     structure: &Structure,
+    constants: &[f64],
     data: &LawData,
-    smoothing: Option<f64>,
-    start: Option<&Law>,
-) -> Result<FormFit, LawError> {
+    intervals: Interval,
+) -> Result<(FormFit, Vec<String>), LawError> {
     let extents = Extents::new(data)?;
-    let needed = constants(structure) + data.nuisance.len() + 1;
+    let problem = check(structure, data, &extents)?;
+    let free = problem.fit_from(structure, constants, Held::default(), Effort::FINAL);
+    let evidence = Evidence::of(&problem, correlation_length(&problem.residuals(&free)));
+    let mut remarks = Vec::new();
+    let (fit, held) = fix_smoothing(&problem, free, evidence, &mut remarks);
+    Ok((described(&problem, &fit, &held, intervals), remarks))
+}
+
+/// The problem, where the data are enough for the structure.
+fn check<'a>(structure: &Structure, data: &'a LawData, extents: &'a Extents) -> Result<Problem<'a>, LawError> {
+    let needed = structure.constants() + data.nuisance.len() + 1;
     if data.rows() < needed {
         return Err(LawError::TooFewSamples { samples: data.rows(), constants: needed });
     }
-    let problem = Problem::new(data, &extents);
+    Ok(Problem::new(data, extents))
+}
+
+/// The best fit from a grid of starts.
+fn from_grid(problem: &Problem<'_>, structure: &Structure, smoothing: Option<f64>) -> Fit {
     let known: Vec<(Nonlinear, f64)> = smoothing.map(|k| (Nonlinear::Smoothing, k)).into_iter().collect();
     let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
     let holding = Held { nonlinear: &held, coefficient: None };
-    let rough = problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH);
-    let mut fit = problem.polish(&rough, &held);
-    if let Some(law) = start {
-        let psi: Vec<f64> = law.parameters.iter().take(structure.nonlinear().len()).map(|p| p.value).collect();
-        let resumed = problem.fit_from(structure, &psi, holding, Effort::FINAL);
-        fit = if resumed.rss < fit.rss { resumed } else { fit };
-    }
-    let uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
-    let fit = rounded(&problem, &fit, &uncertainty);
-    let effective = data.rows() as f64 / uncertainty.correlation_length;
-    let free = constants(structure) - held.len() + data.nuisance.len();
-    let mean_square = fit.rss / data.rows() as f64;
-    Ok(FormFit {
-        law: describe(&problem, &fit, &uncertainty, &held),
-        nuisance: nuisance_coefficients(&problem, &fit, &uncertainty),
+    problem.polish(&problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH), &held)
+}
+
+/// A fit with names, intervals and scores, constants in `held` being given.
+fn described(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], intervals: Interval) -> FormFit {
+    let rows = problem.rows() as f64;
+    let uncertainty = analyse(problem, fit, held, intervals);
+    let fit = rounded(problem, fit, &uncertainty);
+    let effective = rows / uncertainty.correlation_length;
+    let free = fit.structure.constants() - held.len() + problem.data().nuisance.len();
+    let mean_square = fit.rss / rows;
+    let holding = Held { nonlinear: held, coefficient: None };
+    FormFit {
+        law: describe(problem, &fit, &uncertainty, held),
+        nuisance: nuisance_coefficients(problem, &fit, &uncertainty),
         rmse: mean_square.sqrt(),
-        held_out_rmse: held_out_mean_square(&problem, &fit, holding, FOLDS).sqrt(),
+        held_out_rmse: held_out_mean_square(problem, &fit, holding, FOLDS).sqrt(),
         bic: effective * libm::log(mean_square.max(f64::MIN_POSITIVE)) + libm::log(effective) * free as f64,
         converged: fit.converged,
         uncertainty,
-    })
+    }
 }
 
 /// Fits every form and ranks them by held-out likelihood, each constant paying what the Bayesian criterion asks of it beyond
@@ -199,7 +248,7 @@ pub fn rank_forms(data: &LawData) -> Result<Vec<(KnownForm, FormFit)>, LawError>
     let effective = data.rows() as f64 / length;
     let each = (0.5 * libm::log(effective) - 1.0).max(0.0);
     let score = |(form, fit): &(KnownForm, FormFit)| {
-        effective * libm::log(fit.held_out_rmse.max(f64::MIN_POSITIVE)) + each * constants(&form.structure()) as f64
+        effective * libm::log(fit.held_out_rmse.max(f64::MIN_POSITIVE)) + each * form.structure().constants() as f64
     };
     let mut ranked: Vec<(f64, (KnownForm, FormFit))> = fits.into_iter().map(|f| (score(&f), f)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));

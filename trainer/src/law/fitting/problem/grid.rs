@@ -3,7 +3,6 @@
 use super::{Effort, Fit, Held, Problem};
 use crate::law::fitting::projection::{Basis, dot};
 use crate::law::model::structure::{Nonlinear, Structure, Term};
-use crate::law::model::tape::Tape;
 
 impl Problem<'_> {
     /// Adds terms to a fitted law without moving its constants: the values of the newly needed constants that serve best
@@ -30,7 +29,7 @@ impl Problem<'_> {
                 None => self.extents.range(*n, parent.structure.sign()).starts,
             })
             .collect();
-        let tape = Tape::new(&child.columns(layout), names.len(), &self.channels, self.rows());
+        let tape = self.tape_of(&child.columns(layout), names.len());
         let mut best = (f64::INFINITY, Vec::new());
         for index in 0..axes.iter().map(Vec::len).product() {
             let mut rest = index;

@@ -2,7 +2,6 @@
 
 use super::{Fit, Problem};
 use crate::law::fitting::projection::Basis;
-use crate::law::model::tape::Tape;
 
 impl Problem<'_> {
     /// Coefficients of the nuisance columns beside a fitted law.
@@ -27,7 +26,7 @@ impl Problem<'_> {
     /// The law at every sample, without the nuisance columns.
     pub fn law_values(&self, fit: &Fit) -> Vec<f64> {
         let template = fit.structure.template(self.extents.layout());
-        Tape::new(&[template], fit.params.len(), &self.channels, self.rows()).run(&fit.params, false).values.remove(0)
+        self.tape_of(&[template], fit.params.len()).run(&fit.params, false).values.remove(0)
     }
 
     /// Residuals of law and nuisance columns together.
