@@ -87,7 +87,7 @@ fn a_sample_of_the_whole_drive_stays_within_its_budget_on_cortex_m4f() {
     let mut models = models::with_every_effect().into_iter();
     let (_, model) = models.find(|(name, _)| name == "table of 1 inputs with one element").unwrap();
     std::fs::write(folder.path().join("model.frk"), models::image(&model)).unwrap();
-    for (more, budget) in [(&[][..], 720), (&["--adapt"], 860)] {
+    for (more, budget) in [(&[][..], 860), (&["--adapt"], 1010)] {
         let line = ["--image", "model.frk", "--motion", "sine", "--duration", "4", "--target", "cortex-m4f"];
         let run = json(folder.path(), &[&line[..], more].concat());
         let most = run["instructions"]["max"].as_u64().unwrap();

@@ -2,6 +2,7 @@
 
 mod actuator;
 mod columns;
+mod in_recording;
 mod keys;
 mod urdf;
 

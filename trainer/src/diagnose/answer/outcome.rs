@@ -6,6 +6,7 @@ use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
+use crate::diagnose::infer::answer::ProbableSet;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::discarded::Discarded;
 use crate::diagnose::proof::locked_rows::Proof;
@@ -108,15 +109,6 @@ pub struct Finding {
     pub nearest: Option<(EffectId, f64)>,
     /// Gain on locked data in nats when this effect alone is left out.
     pub locked_gain_nats: Option<f64>,
-}
-
-/// Effects that may be missing together.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ProbableSet {
-    /// Effects of the catalogue, `unknown` among them; none where nothing is missing.
-    pub effects: Vec<EffectId>,
-    /// Their probability.
-    pub probability: f64,
 }
 
 /// The amplitude that would have been seen.

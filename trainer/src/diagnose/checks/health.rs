@@ -5,7 +5,7 @@ use crate::diagnose::checks::unit_or_sign::{contradicting_velocity, wrong_sign_o
 use crate::diagnose::comparison::reference::{Comparison, Outside};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::statistics::{NORMAL_95, quantile};
+use crate::numerics::statistics::quantile;
 use crate::physics::EffectId;
 use crate::samples::spikes::{PRINTED, Spikes};
 
@@ -15,9 +15,9 @@ const CLIPPED_SHARE: f64 = 0.02;
 /// Step of the recorded torque over its 90 % quantile, above which it is noted. Chosen by judgement: a hundredth of the
 /// torque is a tenth of a friction that is a tenth of it.
 const NOTED_STEP_SHARE: f64 = 0.01;
-/// Error of a level of the torque over its 90 % quantile, above which no effect is looked for: a twentieth of the torque is half of a
-/// friction that is a tenth of it. Chosen by judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
-const BLOCKING_LEVEL_SHARE: f64 = 0.05;
+/// The same above which no effect is looked for: steps of a twentieth of the torque are half of a friction that is a tenth of it. Chosen by
+/// judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
+const BLOCKING_STEP_SHARE: f64 = 0.05;
 /// Cut-off that a coarse encoder has to leave, Hz; below it no effect is looked for. Chosen by judgement: a reversal at half a hertz
 /// still passes, with its harmonics; joints of MuJoCo behind encoders of 12 to 14 bits are answered rightly from 7 Hz on.
 const LEAST_BAND_HZ: f64 = 6.0;
@@ -81,13 +81,12 @@ fn replaced(spikes: &Spikes) -> HealthNote {
 }
 
 /// Torque steps of more than the noise. Each time that the torque passes from one to the next its error is another one, of a variance of
-/// a twelfth of the step's square, as if it were noise (Widrow & Kollar 2008): a level of the torque is known the better the more often that
-/// happens, and only a torque that stays on few steps hides it.
-fn coarse_torque(TorqueStep { step, share, passed }: TorqueStep) -> Option<HealthNote> {
-    let error_of_level = NORMAL_95 * share / (12.0 * passed as f64).sqrt();
+/// a twelfth of the step's square, as if it were noise (Widrow & Kollar 2008): it hides friction only where the steps are a sizeable share of
+/// the torque.
+fn coarse_torque(TorqueStep { step, share }: TorqueStep) -> Option<HealthNote> {
     (share > NOTED_STEP_SHARE).then_some(HealthNote {
         effect: EffectId::Quantisation,
-        blocking: error_of_level > BLOCKING_LEVEL_SHARE,
+        blocking: share > BLOCKING_STEP_SHARE,
         observation: Observation::CoarseTorque { step },
     })
 }
@@ -97,8 +96,6 @@ fn coarse_torque(TorqueStep { step, share, passed }: TorqueStep) -> Option<Healt
 struct TorqueStep {
     step: f64,
     share: f64,
-    /// How often the torque passes from one step to the next.
-    passed: usize,
 }
 
 /// The step in which the torque is recorded, where most of its changes are a single one.
@@ -112,11 +109,7 @@ fn torque_step(signals: &Signals) -> Option<TorqueStep> {
     let steps: Vec<f64> = changes.filter(|step| *step > 0.1 * NOTED_STEP_SHARE * usual).collect();
     let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let is_single = quantile(steps.iter().copied(), 0.5) < 1.5 * smallest;
-    (steps.len() > LEAST_TORQUE_CHANGES && is_single).then_some(TorqueStep {
-        step: smallest,
-        share: smallest / usual,
-        passed: steps.len(),
-    })
+    (steps.len() > LEAST_TORQUE_CHANGES && is_single).then_some(TorqueStep { step: smallest, share: smallest / usual })
 }
 
 /// A torque that was put back to the time of the motion by `delay` (s) before anything was fitted.
@@ -180,8 +173,7 @@ mod tests {
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
         let blocking =
             |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
-        let found = [1.0, 5.0, 40.0, 400.0].map(blocking);
-        assert_eq!(found, [Some(true), Some(false), Some(false), None]);
+        assert_eq!([5.0, 40.0, 400.0].map(blocking), [Some(true), Some(false), None]);
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! What is named of the sets that were weighed, and how sure each name is.
 
-use crate::diagnose::answer::outcome::ProbableSet;
 use crate::diagnose::evidence::score::GroupEvidence;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::infer::inferred::Inferred;
@@ -8,6 +7,7 @@ use crate::diagnose::search::accepted::{Accepted, Stated};
 use crate::diagnose::search::scored::Scored;
 use crate::inference::sets::{Member, Set};
 use crate::physics::EffectId;
+use serde::Serialize;
 
 /// Probability of an effect together with all that may stand in for it, above which it is told: more likely than not.
 const TOLD_FROM: f64 = 0.5;
@@ -18,6 +18,15 @@ const TOLD_FROM: f64 = 0.5;
 pub(crate) const LEAST_NAMED_SHARE: f64 = 0.005;
 /// Probability from which a set is told.
 const LEAST_SET_PROBABILITY: f64 = 0.01;
+
+/// Effects that may be missing together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbableSet {
+    /// Effects of the catalogue, `unknown` among them; none where nothing is missing.
+    pub effects: Vec<EffectId>,
+    /// Their probability.
+    pub probability: f64,
+}
 
 impl Inferred {
     /// Sets of effects with their probabilities, whatever shape or channel each effect has.
