@@ -213,8 +213,8 @@ mod tests {
         assert_eq!(
             told,
             [
-                (0, "a/elbow", "elbow", "2025-02-01", "a/elbow/20250201.csv.gz"),
-                (1, "a/elbow", "elbow", "2025-03-01", "a/elbow/2025-03-01.csv"),
+                (0, "a/elbow", "elbow", "2025-03-01", "a/elbow/2025-03-01.csv"),
+                (1, "a/elbow", "elbow", "2025-02-01", "a/elbow/20250201.csv.gz"),
                 (2, "b/elbow", "", "2025-03-01", "b/elbow/2025-03-01.csv"),
             ]
         );
