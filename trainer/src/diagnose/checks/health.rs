@@ -15,8 +15,8 @@ const CLIPPED_SHARE: f64 = 0.02;
 /// Step of the recorded torque over its 90 % quantile, above which it is noted. Chosen by judgement: a hundredth of the
 /// torque is a tenth of a friction that is a tenth of it.
 const NOTED_STEP_SHARE: f64 = 0.01;
-/// The same above which no effect is looked for: steps of a twentieth of the torque are half of a friction that is a tenth of it. Chosen by
-/// judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
+/// The same above which no effect is looked for: steps of a twentieth of the torque are half of a friction that is a
+/// tenth of it. Chosen by judgement: the test `coarse_steps_are_told_and_block_where_they_hide_friction` holds both.
 const BLOCKING_STEP_SHARE: f64 = 0.05;
 /// Cut-off that a coarse encoder has to leave, Hz; below it no effect is looked for. Chosen by judgement: a reversal at half a hertz
 /// still passes, with its harmonics; joints of MuJoCo behind encoders of 12 to 14 bits are answered rightly from 7 Hz on.
@@ -42,9 +42,9 @@ impl AsRecorded {
         Self { notes: replaced.chain(clipped_torque(signals, step)).collect(), step }
     }
 
-    /// The notes on it.
-    pub fn notes(&self) -> impl Iterator<Item = HealthNote> {
-        self.notes.iter().cloned().chain(self.step.and_then(coarse_torque))
+    /// The notes on it, beside a base that leaves some of it (root mean square).
+    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
+        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base)))
     }
 }
 
@@ -80,13 +80,12 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
-/// Torque steps of more than the noise. Each time that the torque passes from one to the next its error is another one, of a variance of
-/// a twelfth of the step's square, as if it were noise (Widrow & Kollar 2008): it hides friction only where the steps are a sizeable share of
-/// the torque.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep) -> Option<HealthNote> {
-    (share > NOTED_STEP_SHARE).then_some(HealthNote {
+/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
+/// error is as large as all that the base leaves.
+fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
+    (share > NOTED_STEP_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: share > BLOCKING_STEP_SHARE,
+        blocking: share > BLOCKING_STEP_SHARE || step / 12f64.sqrt() >= left_by_base,
         observation: Observation::CoarseTorque { step },
     })
 }
@@ -171,9 +170,19 @@ mod tests {
 
     #[test]
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
-        let blocking =
-            |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
-        assert_eq!([5.0, 40.0, 400.0].map(blocking), [Some(true), Some(false), None]);
+        let blocking = |largest: f64| {
+            torque_step(&in_steps(largest, largest))
+                .and_then(|step| coarse_torque(step, f64::INFINITY))
+                .map(|note| note.blocking)
+        };
+        assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
+    }
+
+    #[test]
+    fn fine_steps_block_where_they_are_all_that_is_left() {
+        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0));
+        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
+        assert!(blocks(0.25) && !blocks(0.35));
     }
 
     #[test]
