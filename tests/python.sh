@@ -3,9 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+tests/setup.sh python
 python=$PWD/target/python/bin/python
 if [ ! -x "$python" ]; then
-    echo "python: skipped, there is no target/python (tests/setup.sh makes it where there is a network)"
+    echo "python: skipped, there is no target/python, which needs a network once"
     exit 0
 fi
 cargo build --quiet --package frikan-trainer --bin trainer

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need and is missing: Rust's cross targets, the emulators, a C compiler for the target,
-# cargo-nextest, robot simulators, what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
+# cargo-nextest, robot simulators; with `python` what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
 set -euo pipefail
 
 readonly targets=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf
@@ -117,6 +117,8 @@ cross_targets
 emulators
 c_compiler
 test_runner
-# Robot simulators, and what builds and tests the Python package.
 python_environment simulators tests/simulators/requirements.txt
-python_environment python trainer/python/requirements.txt
+# What builds and tests the Python package: `tests/setup.sh python`.
+if [ "${1:-}" = python ]; then
+    python_environment python trainer/python/requirements.txt
+fi
