@@ -112,3 +112,20 @@ fn wrong_usage_is_2() {
     assert_eq!(no_image.status, 3);
     assert!(no_image.messages.contains("FRK-D020"), "{}", no_image.messages);
 }
+
+#[test]
+fn results_do_not_go_over_what_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    std::fs::write(file("arm.csv"), swinging(1000, |_| None)).unwrap();
+    let joint = "[actuator]\nkind = \"pd\"\n";
+    std::fs::write(file("out.actuator.toml"), joint).unwrap();
+    // The constants of the actuator go beside the image, where the joint's own file is.
+    let fit = run(folder.path(), &["fit", "arm.csv", "--joint", "out.actuator.toml", "-o", "out.frk", "--quiet"]);
+    assert_eq!(fit.status, 2, "{}", fit.messages);
+    assert!(fit.messages.contains("this file is also an input"), "{}", fit.messages);
+    assert_eq!(std::fs::read_to_string(file("out.actuator.toml")).unwrap(), joint);
+    let check = run(folder.path(), &["check", "arm.csv", "--json", "arm.csv"]);
+    assert!(check.status == 2 && check.output.is_empty(), "{}", check.messages);
+    assert!(std::fs::read_to_string(file("arm.csv")).unwrap().starts_with(HEADER));
+}

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::measurement;
-use super::output::Outputs;
+use super::output::{Outputs, refuse_unwritable};
 use crate::checks::survey::{Fact, Motion, Seen, survey};
 use crate::error::{Error, Result, codes};
 use crate::figures::{digits, quantity};
@@ -59,6 +59,8 @@ impl Severity {
 /// # Errors
 /// Whatever reading a recording or the joint reports, and what keeps a recording from being looked at at all.
 pub fn run(arguments: &Check) -> Result<u8> {
+    let read = arguments.recordings.iter().chain(&arguments.joint).map(PathBuf::as_path);
+    refuse_unwritable(&arguments.json, &read.collect::<Vec<_>>())?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let (recordings, warnings) = load_all(&arguments.recordings, |source| load_with_faults(source, &joint))?;
     let mut items: Vec<Item> = warnings.iter().map(of_warning).collect();
@@ -90,9 +92,6 @@ pub fn run(arguments: &Check) -> Result<u8> {
     if arguments.json.as_deref() != Some(std::path::Path::new("-")) {
         outputs.add("-".as_ref(), text(verdict, &items, &identified));
     }
-    let read: Vec<&std::path::Path> =
-        arguments.recordings.iter().chain(&arguments.joint).map(PathBuf::as_path).collect();
-    outputs.refuse_overwriting(&read)?;
     outputs.write()?;
     Ok(status)
 }

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::measurement::{self, Source, actuator_file, profile};
 use super::output::{Outputs, print, refuse_unwritable, say};
 use super::progress::Reporter;
+use crate::actuator::Kind;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Representation;
@@ -129,10 +130,11 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         let message = "`--rate` has to be a finite number above zero";
         return Err(Error::new(&codes::USAGE, message).with_value(rate.to_string()));
     }
-    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint).map(PathBuf::as_path);
-    let written = [Some(&arguments.output), arguments.json.as_ref(), arguments.report.as_ref()];
-    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
+    let read = arguments.recordings.iter().chain(&arguments.tests).chain(&arguments.joint).map(PathBuf::as_path);
+    let actuator = (joint.actuator.kind != Kind::Torque).then(|| actuator_file(&arguments.output));
+    let written = [Some(&arguments.output), actuator.as_ref(), arguments.json.as_ref(), arguments.report.as_ref()];
+    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let options = Options {
         seed: arguments.seed,
         inputs: arguments.inputs.clone(),

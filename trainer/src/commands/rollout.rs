@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::measurement::{self, motion};
-use super::output::{Outputs, print};
+use super::output::{Outputs, print, refuse_unwritable, say};
 use crate::error::{Error, Result, codes};
 use crate::fit::model;
 use crate::recording::{self, Axis};
@@ -50,6 +50,9 @@ pub fn run(arguments: &Rollout) -> Result<()> {
         let message = "`--window` has to be a finite number of seconds above zero";
         return Err(Error::new(&codes::USAGE, message).with_value(seconds.to_string()));
     }
+    let read = [Some(arguments.model.as_path()), Some(&arguments.recording), arguments.joint.as_deref()];
+    let written = arguments.output.iter().chain(&arguments.json);
+    refuse_unwritable(written, &read.into_iter().flatten().collect::<Vec<_>>())?;
     let (_, image) = model::load(&arguments.model)?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let joint = measurement::with_identified(joint, &arguments.model)?;
@@ -72,11 +75,9 @@ pub fn run(arguments: &Rollout) -> Result<()> {
     if let Some(path) = &arguments.json {
         outputs.add(path, format!("{}\n", summary(&rollout, unit, window)));
     }
-    let read = [Some(arguments.model.as_path()), Some(&arguments.recording), arguments.joint.as_deref()];
-    outputs.refuse_overwriting(&read.into_iter().flatten().collect::<Vec<_>>())?;
     outputs.write()?;
     if !arguments.quiet {
-        warnings.iter().for_each(|warning| eprintln!("{warning}"));
+        warnings.iter().for_each(|warning| say(&warning.to_string()));
     }
     // With JSON on standard output the text would get in its way.
     if arguments.json.as_deref() == Some(Path::new("-")) {
