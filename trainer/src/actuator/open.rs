@@ -15,6 +15,19 @@ pub enum Open {
     Kd,
 }
 
+impl Open {
+    /// The constant that says it of an actuator of a kind.
+    #[must_use]
+    pub fn constant(self, kind: Kind) -> Constant {
+        match (self, kind) {
+            (Self::Gain, Kind::Current) => Constant::TorqueConstant,
+            (Self::Gain, _) => Constant::TorquePerVolt,
+            (Self::Kp, _) => Constant::Kp,
+            (Self::Kd, _) => Constant::Kd,
+        }
+    }
+}
+
 /// An actuator of which some constants may be open; those are at the middle of their bounds, or at 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Partial {

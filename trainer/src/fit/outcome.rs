@@ -35,6 +35,11 @@ impl Form {
     /// All of them, in the order in which each has to beat the one before.
     pub const ALL: [Self; 4] = [Self::Simple, Self::SimpleAsFitted, Self::Found, Self::Network];
 
+    /// Its place among all of them.
+    pub(super) fn place(self) -> usize {
+        self as usize
+    }
+
     /// How an image holds it.
     #[must_use]
     pub fn representation(self) -> Representation {

@@ -117,8 +117,7 @@ fn fit_once(
     let band = training.band(&refitted, correlation_length)?;
     let parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
     let sound = soundness(&material, &fit, &learnt, verdict.form, violation).and(|| {
-        let place = Form::ALL.iter().position(|form| *form == verdict.form).unwrap_or(0);
-        withheld(&material, &identified, trials[place].as_ref(), &parameters, uncertain_share(&band))
+        withheld(&material, &identified, trials[verdict.form.place()].as_ref(), &parameters, uncertain_share(&band))
     });
     Ok(Outcome {
         joint: name,
@@ -166,7 +165,6 @@ fn shipped(
     data: &LawData,
     options: &Options,
 ) -> Result<Shipped> {
-    let place = Form::ALL.iter().position(|other| *other == form).unwrap_or(0);
     let of = |fit: FormFit| builder.expression(&fit).map(|model| Shipped { model, fit });
     let (last, compared_fit) = match form {
         Form::Network => (builder.table(learnt).map(|model| Shipped { model, fit: found.clone() }), Some(found)),
@@ -181,7 +179,7 @@ fn shipped(
             (pick(sound, free).and_then(of), pick(held_sound, held_free))
         }
     };
-    let compared = first.models[place].clone().zip(compared_fit).map(|(model, fit)| Shipped { model, fit });
+    let compared = first.models[form.place()].clone().zip(compared_fit).map(|(model, fit)| Shipped { model, fit });
     let material = builder.material;
     let is_better = |held: &Shipped, last: &Shipped| {
         let breaks = |shipped: &Shipped| Violation::of(&shipped.model, material).is_any();

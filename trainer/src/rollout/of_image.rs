@@ -7,7 +7,7 @@ use super::image::ImageFriction;
 use super::score::Score;
 use super::series::Series;
 use super::simulate::{Rig, State, recorded, simulate, starts};
-use crate::actuator::{Constant, Kind, Open, Partial};
+use crate::actuator::{Kind, Open, Partial};
 use crate::compile::host_model::HostModel;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
@@ -44,14 +44,8 @@ pub fn of_image(model: &HostModel, recording: &Recording, joint: &Joint, window_
     let partial = Partial::of(joint.actuator.kind, &joint.actuator.constants);
     let has_kp = recording.channel(crate::recording::Quantity::Kp).is_some();
     if let Some(open) = partial.open.iter().find(|open| !(has_kp && **open == Open::Kp)) {
-        let constant = match (open, partial.actuator.kind) {
-            (Open::Gain, Kind::Current) => Constant::TorqueConstant,
-            (Open::Gain, _) => Constant::TorquePerVolt,
-            (Open::Kp, _) => Constant::Kp,
-            (Open::Kd, _) => Constant::Kd,
-        };
         let message = "a simulation needs this constant of the actuator; `trainer fit` identifies it and writes it beside its image";
-        let key = format!("actuator.{}", constant.key());
+        let key = format!("actuator.{}", open.constant(partial.actuator.kind).key());
         return Err(Error::new(&codes::MISSING_PARAMETER, message).in_column(key));
     }
     let series = Series::of(recording, &partial.actuator)?;

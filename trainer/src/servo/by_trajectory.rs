@@ -182,10 +182,7 @@ fn parameters(shot: &Shot, joint: &Joint) -> Vec<Parameter> {
     let kind = joint.actuator.kind;
     let of = |(what, half): &(What, f64)| {
         let (name, symbol, unit) = match what {
-            What::Actuator(constant) => {
-                let (_, name, symbol, unit) = super::torque_space::described(kind, *constant);
-                (name, symbol, unit)
-            }
+            What::Actuator(constant) => super::torque_space::described(kind, *constant),
             What::BackEmf => ("back_emf", "k²/R", "N m s/rad"),
             What::Delay => ("delay", "T_d", "s"),
             What::Inertia => ("inertia", "J", "kg m²"),

@@ -203,7 +203,7 @@ impl Problem {
     fn tell(&self, kind: Kind, open: &[Open], joint: &Joint, identified: &mut Identified) -> Result<()> {
         for (index, constant) in open.iter().enumerate() {
             let (value, error) = (self.fit.coefficients[index], self.fit.standard_error(index));
-            let (key, name, symbol, unit) = described(kind, *constant);
+            let (key, (name, symbol, unit)) = (constant.constant(kind), described(kind, *constant));
             // A damping that nothing tells from viscous friction is counted as such.
             let is_small = *constant == Open::Kd && value.abs() < 2.0 * error;
             if !self.has_scale || !is_small && (value <= 0.0 || error > MOST_ERROR * value) {
@@ -230,7 +230,7 @@ impl Problem {
             let ci95 = [value - NORMAL_95 * error, value + NORMAL_95 * error];
             let (name, symbol, unit) = ("back_emf".to_owned(), "k²/R".to_owned(), "N m s/rad".to_owned());
             identified.parameters.push(Parameter { name, symbol, value, unit, ci95 });
-        } else if kind.is_motor() && identified.partial.clone().counts_back_emf_as_friction() {
+        } else if kind.is_motor() && identified.partial.counts_back_emf_as_friction() {
             let sentence = "Torque constant and resistance are known by their quotient only, and what the motor loses by its speed is counted as \
                             viscous friction: let the joint coast switched off for a while, or give one of them.";
             identified.remarks.push(sentence.to_owned());
@@ -265,12 +265,13 @@ fn given(samples: &Samples, commanded: &[Commanded<'_>], joint: &Joint) -> Resul
     Ok((torque, gravity))
 }
 
-pub(super) fn described(kind: Kind, open: Open) -> (Constant, &'static str, &'static str, &'static str) {
+/// Name, symbol and unit of a constant that is identified.
+pub(super) fn described(kind: Kind, open: Open) -> (&'static str, &'static str, &'static str) {
     match (open, kind) {
-        (Open::Gain, Kind::Current) => (Constant::TorqueConstant, "torque_constant", "k", "N m/A"),
-        (Open::Gain, _) => (Constant::TorquePerVolt, "torque_per_volt", "k/R", "N m/V"),
-        (Open::Kp, _) => (Constant::Kp, "kp", "k_p", "N m/rad"),
-        (Open::Kd, _) => (Constant::Kd, "kd", "k_d", "N m s/rad"),
+        (Open::Gain, Kind::Current) => ("torque_constant", "k", "N m/A"),
+        (Open::Gain, _) => ("torque_per_volt", "k/R", "N m/V"),
+        (Open::Kp, _) => ("kp", "k_p", "N m/rad"),
+        (Open::Kd, _) => ("kd", "k_d", "N m s/rad"),
     }
 }
 

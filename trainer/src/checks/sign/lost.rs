@@ -7,6 +7,7 @@
 use crate::checks::law::{Columns, PositionTerms, moving};
 use crate::checks::motion::{smooth, top_speed, torque};
 use crate::checks::note::{Fault, Note};
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::products::norm;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::{mean, t_statistic};
@@ -16,8 +17,7 @@ use std::ops::Range;
 
 /// Turns of fitting and giving signs: signs settle within a few.
 const MOST_TURNS: usize = 30;
-/// Blocks on which both laws are compared, and standard errors of their difference from which it is clear.
-const BLOCKS: usize = 40;
+/// Standard errors of the difference of both laws from which it is clear.
 const CLEAR: f64 = 4.0;
 /// Share of the samples in which the law has the lesser sign, at least: a law that hardly changes its sign says nothing of it.
 const LESSER_SIGN: f64 = 0.1;
@@ -38,8 +38,7 @@ pub(in crate::checks) fn magnitude(recording: &Recording) -> Option<Note> {
     let pick = |series: &[f64]| rows.iter().map(|row| series[*row]).collect::<Vec<f64>>();
     let columns: Vec<Vec<f64>> = columns.iter().map(|column| pick(column)).collect();
     let torque = pick(torque(&samples)?);
-    let blocks: Vec<Range<usize>> =
-        (0..BLOCKS).map(|block| block * rows.len() / BLOCKS..(block + 1) * rows.len() / BLOCKS).collect();
+    let blocks = even_blocks(rows.len(), ERROR_BLOCKS);
     let as_recorded = least_squares(&columns, &torque, &blocks).residuals;
     // Whatever dominates the torque gives its signs to begin with.
     let begun = columns.iter().map(|column| settled(&columns, &torque, column, &blocks));

@@ -204,7 +204,7 @@ fn jacobian<const CELLS: usize>(model: &Model<CELLS>, state: &JointState) -> Vec
             let column = |j: usize| unnamed(rows.iter().map(|row| row[j]).collect());
             (0..hats(0.0, 1.0, 1.0, odd).len()).map(column).collect()
         }
-        Movement::Beside => coulomb_and_viscous(state),
+        Movement::Beside => coulomb_and_viscous(&state.sign, &state.velocity),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
-use crate::physics::{EffectId, JointState};
+use crate::physics::EffectId;
 
 /// A law at the states of a recording.
 #[derive(Clone, Debug, Default)]
@@ -109,8 +109,8 @@ impl Comparison {
 }
 
 /// Coulomb and viscous friction that may move beside a law, with the names of their changes.
-pub(crate) fn coulomb_and_viscous(state: &JointState) -> Vec<(&'static str, Vec<f64>)> {
-    vec![("coulomb_torque_change", state.sign.clone()), ("viscous_coefficient_change", state.velocity.clone())]
+pub(crate) fn coulomb_and_viscous(sign: &[f64], velocity: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
+    vec![("coulomb_torque_change", sign.to_vec()), ("viscous_coefficient_change", velocity.to_vec())]
 }
 
 /// Velocities at which a reference's friction is tabulated, denser towards zero.

@@ -65,6 +65,7 @@ impl Entry {
 }
 
 /// All candidates; columns have unit root mean square over the weighed rows of the recording.
+#[derive(Default)]
 pub(crate) struct Candidates {
     pub entries: Vec<Entry>,
     /// Filtered columns at the rows of the recording.
@@ -83,14 +84,7 @@ impl Candidates {
     /// Builds what the recording can show.
     pub fn new(hypotheses: &[Box<dyn Hypothesis + Send>], real: &Side, simulated: Option<&Side>) -> Self {
         let state = &real.prepared.state;
-        let mut candidates = Self {
-            entries: Vec::new(),
-            real: Vec::new(),
-            simulated: Vec::new(),
-            solver: 0..0,
-            solver_of_recording: 0..0,
-            solver_sizes: Vec::new(),
-        };
+        let mut candidates = Self::default();
         if simulated.is_some() {
             let lead = |side: &Side| {
                 let state = &side.prepared.state;
@@ -264,14 +258,7 @@ impl Candidates {
 
     /// The candidates with some of their shapes (places of candidate and shape) alone; unnamed functions keep theirs.
     pub fn only(&self, keep: impl Fn(Member) -> bool) -> Self {
-        let mut kept = Self {
-            entries: Vec::new(),
-            real: Vec::new(),
-            simulated: Vec::new(),
-            solver: 0..0,
-            solver_of_recording: 0..0,
-            solver_sizes: Vec::new(),
-        };
+        let mut kept = Self::default();
         let mut moved: BTreeMap<usize, usize> = BTreeMap::new();
         let mut take = |kept: &mut Self, columns: &Range<usize>| {
             if columns.is_empty() {

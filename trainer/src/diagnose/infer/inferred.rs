@@ -9,7 +9,7 @@ use crate::diagnose::noise::autoregression::Noise;
 use crate::inference::evidence::Model;
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
-use crate::numerics::least_squares::fit_residual;
+use crate::numerics::least_squares::{fit_residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::Hypothesis;
 
@@ -93,11 +93,8 @@ pub(crate) fn infer(
     let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
         let own = weighing.own(&weighed, &likeliest.members);
         let of_member = |member: &Member| {
-            let places = candidates.places(std::slice::from_ref(member));
-            let columns: Vec<&Vec<f64>> = places.iter().map(|&place| &candidates.real[place]).collect();
-            let torque: Vec<f64> = (0..real.target.len())
-                .map(|i| columns.iter().zip(&places).map(|(column, &place)| own[place] * column[i]).sum())
-                .collect();
+            let columns = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
+            let torque = weighted(&candidates.real[columns.clone()], &own[columns]);
             root_mean_square(&real.on_rows(&fit_residual(&real.columns, &torque, &real.runs).unwrap_or(torque)))
         };
         likeliest.members.iter().map(of_member).collect()

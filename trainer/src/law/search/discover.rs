@@ -46,8 +46,6 @@ pub struct Discovery {
     pub front: Vec<FrontEntry>,
     /// What else the data do not determine, in sentences.
     pub remarks: Vec<String>,
-    /// How smooth the sign was taken to be, in a sentence, where the data do not determine it.
-    pub smoothing: Vec<String>,
     /// Coefficients of the nuisance columns beside the chosen law.
     pub nuisance: Vec<NuisanceCoefficient>,
     /// Root mean square of the residuals of the chosen law, unit of the target.
@@ -82,8 +80,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let chosen = choose(&candidates, options.max_nodes).fit.clone();
     let mut remarks = Vec::new();
     let chosen = drop_undetermined(&problem, chosen, evidence, &mut remarks);
-    let mut smoothing = Vec::new();
-    let (fit, held) = fix_smoothing(&problem, chosen, evidence, &mut smoothing);
+    let (fit, held) = fix_smoothing(&problem, chosen, evidence, &mut Vec::new());
     let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);
     let fit = rounded(&problem, &fit, &uncertainty);
@@ -93,7 +90,6 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
         law,
         front,
         remarks,
-        smoothing,
         nuisance,
         rmse: (fit.rss / data.rows() as f64).sqrt(),
         r2: 1.0 - fit.rss / problem.total().max(f64::MIN_POSITIVE),

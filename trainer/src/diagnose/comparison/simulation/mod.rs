@@ -316,7 +316,7 @@ impl InverseLaw {
         Reference {
             torque: weighted(&columns, &self.coefficients),
             rigid_body: self.rigid_body_of(&columns),
-            jacobian: coulomb_and_viscous(&JointState { sign: self.sign(state), ..state.clone() }),
+            jacobian: coulomb_and_viscous(&self.sign(state), &state.velocity),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
             replayed_residual: met.map(|met| met.torque),
             formula_error,
