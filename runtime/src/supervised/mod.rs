@@ -170,7 +170,6 @@ impl Supervisor {
         self.monitor.take(&self.settings, &self.pace, &observed, answer.torque);
         self.is_implausible |= !self.plausibility.observe(&self.settings, &self.pace, velocity, of_position);
         let is_plausible = !self.is_implausible;
-        // Without a reference somebody pushes, and what the push does would pass for friction.
         let is_sliding = observed.slides && observed.velocity.abs() > 2.0 * rest;
         // Without a reference somebody pushes, and what the push does would pass for friction; where it stands, the observer still remembers
         // the motion.
