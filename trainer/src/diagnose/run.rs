@@ -22,9 +22,10 @@ use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::infer::answer::LEAST_NAMED_SHARE;
 use crate::diagnose::infer::candidates::Candidates;
-use crate::diagnose::infer::delay::{Start, TorqueDelay, shifted};
+use crate::diagnose::infer::delay::{TorqueDelay, shifted, torque_delay};
 use crate::diagnose::infer::inferred::{Inferred, infer};
 use crate::diagnose::infer::side::Side;
+use crate::diagnose::infer::weighing::{Weighing, friction_of};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::Prepared;
@@ -81,13 +82,6 @@ pub fn learn_simulation(simulation: &Signals, real: &Signals) -> Result<InverseL
         found.into_iter().map(|finding| finding.fitted).collect()
     })
 }
-
-/// Log likelihood ratio of a delay longer than the sampling's own from which it is told, nats: very strong evidence, five nats (Kass and
-/// Raftery 1995), at the exponent of a quarter that noise of unknown kind usually leaves of it.
-const DELAY_NATS: f64 = 20.0;
-/// The same by the scatter of its gain from block to block, over its standard error: one in a hundred for a dozen blocks (Student) and the
-/// few delays that differ.
-const DELAY_DEVIATIONS: f64 = 3.0;
 
 /// What is asked for, whatever becomes of the signals on the way.
 #[derive(Clone, Copy)]
@@ -252,33 +246,25 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     turn_over_as_simulated(&mut prepared, comparison);
     let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
     let simulated = of_simulation(&prepared, comparison);
-    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
+    let side = simulated.as_ref().map(|(prepared, base)| Side::without_delay(prepared, base));
     let real = Side::without_delay(&prepared, &base);
     let candidates = Candidates::new(&hypotheses, &real, side.as_ref());
-    let start = Start::new(&candidates, &real, side.as_ref());
-    let late = start.torque_delay(&candidates, &real);
-    let is_own = late.delay_s.abs() <= LONGEST_SAMPLING_DELAY * period;
+    let (noise, delay) = torque_delay(&candidates, &real, side.as_ref(), LONGEST_SAMPLING_DELAY * period);
     // The drive answers to the grain of its encoder some samples later.
-    let explained = 2.0 * late.gain_nats * start.noise.rms * start.noise.rms;
-    let is_shown = late.gain_nats > DELAY_NATS && late.shown_deviations > DELAY_DEVIATIONS;
-    let is_told = !is_own && is_shown && explained > position_error_energy(&prepared, comparison);
-    let longest = if is_told { f64::INFINITY } else { LONGEST_SAMPLING_DELAY * period };
-    let late = TorqueDelay { delay_s: late.delay_s.clamp(-longest, longest), ..late };
-    let in_step = shifted(&Side::new(&prepared, &base), late.delay_s);
-    let inferred = infer(
-        &hypotheses,
-        candidates,
-        (&in_step, side.as_ref()),
-        start.put_back(&real, late.delay_s),
-        options.settings.seed,
-    );
-    let mut diagnosis = diagnose_locked(&comparison.realigned(late.delay_s), request, Some(&inferred))?;
-    diagnosis.realigned_by_s = late.delay_s;
-    if !is_told {
-        diagnosis.sampling_delay_s += late.delay_s;
-        diagnosis.health.push(late_torque(late.delay_s, period));
-    } else {
-        diagnosis.put_first(misalignment(&late), Vec::new());
+    let is_more_than_grain = |late: &TorqueDelay| {
+        2.0 * late.gain_nats * noise.rms * noise.rms > position_error_energy(&prepared, comparison)
+    };
+    let told = delay.filter(is_more_than_grain);
+    let late_s = told.map_or(0.0, |late| late.delay_s);
+    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
+    let real = shifted(&Side::new(&prepared, &base), late_s);
+    let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
+    let inferred = infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), options.settings.seed);
+    let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;
+    diagnosis.realigned_by_s = late_s;
+    match &told {
+        Some(late) => diagnosis.put_first(misalignment(late), Vec::new()),
+        None => diagnosis.health.push(late_torque(diagnosis.sampling_delay_s, period)),
     }
     Ok(diagnosis)
 }

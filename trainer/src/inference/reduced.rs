@@ -138,17 +138,6 @@ impl RandomEffects {
         twice - of_random.tr_mul(&self.across)
     }
 
-    /// Energy that the random effects take more of a target of which their products (one row) are changed on the candidates' rows.
-    pub fn energy_change(&self, moments: &DMatrix<f64>) -> f64 {
-        let changed = DVector::from_fn(self.places.len(), |i, _| self.moments[i] + moments[(0, self.places[i])]);
-        self.weighed(&changed).norm_squared() - self.weighed(&self.moments).norm_squared()
-    }
-
-    /// Takes other products with the target: `moments` (one row) is what is added to those of all candidates.
-    pub fn change_moments(&mut self, moments: &DMatrix<f64>) {
-        self.moments.iter_mut().zip(&self.places).for_each(|(of, place)| *of += moments[(0, *place)]);
-    }
-
     fn weighed(&self, moments: &DVector<f64>) -> DVector<f64> {
         let mut weighed = DVector::from_fn(moments.len(), |i, _| self.scale[i] * moments[i]);
         self.factor.l_dirty().solve_lower_triangular_mut(&mut weighed);

@@ -15,6 +15,19 @@ pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
 }
 
+/// Value of which those below and above (value, weight) weigh half at most; `None` of none.
+pub(crate) fn weighted_median(values: &[(f64, f64)]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * sorted.iter().map(|(_, weight)| weight).sum::<f64>();
+    let mut below = 0.0;
+    let reaches_half = |(_, weight): &&(f64, f64)| {
+        below += weight;
+        below >= half
+    };
+    sorted.iter().find(reaches_half).map(|(value, _)| *value)
+}
+
 /// Root of the mean square; 0 of none.
 pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()

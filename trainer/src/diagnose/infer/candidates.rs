@@ -58,6 +58,11 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
+    /// Whether it tells where and not why: a function without a name, or an event of any cause.
+    pub fn tells_no_cause(&self) -> bool {
+        self.is_function() || matches!(self.label, Label::Named(EffectId::TransientEvent))
+    }
+
     /// Whether it is a smooth function without a name.
     pub fn is_function(&self) -> bool {
         matches!(&self.label, Label::Generic(rival) if rival.form == Form::Free)

@@ -105,11 +105,12 @@ pub(crate) fn infer(
 /// Sets with the member of each whose shape is refined: members of probable sets, and effects with a name in the place of a function
 /// without one, which has no shape to refine.
 fn to_refine(candidates: &Candidates, field: &Field, posterior: &Posterior) -> Vec<(Vec<Member>, Member)> {
-    let is_function = |member: &Member| candidates.entries[member.candidate].is_function();
+    let tells_no_cause = |member: &Member| candidates.entries[member.candidate].tells_no_cause();
     let mut sets: Vec<(Vec<Member>, Member)> = Vec::new();
     let mut add = |set: &[Member], member: Member| {
         let is_done = sets.iter().any(|(_, done)| done.candidate == member.candidate);
-        if !is_function(&member) && (!is_done || candidates.entries[member.candidate].repeats) {
+        let entry = &candidates.entries[member.candidate];
+        if !entry.is_function() && (!is_done || entry.repeats) {
             sets.push((set.to_vec(), member));
         }
     };
@@ -118,9 +119,10 @@ fn to_refine(candidates: &Candidates, field: &Field, posterior: &Posterior) -> V
         if *probability < INSTEAD_OF_FUNCTIONS_FROM {
             continue;
         }
-        for function in set.members.iter().filter(|member| is_function(member)) {
+        for function in set.members.iter().filter(|member| tells_no_cause(member)) {
             let others: Vec<Member> = set.members.iter().copied().filter(|other| other != function).collect();
-            let instead = field.extended(&others).into_iter().filter(|set| set.last().is_some_and(|m| !is_function(m)));
+            let instead =
+                field.extended(&others).into_iter().filter(|set| set.last().is_some_and(|m| !tells_no_cause(m)));
             instead.take(INSTEAD_OF_FUNCTIONS).for_each(|set| set.last().into_iter().for_each(|m| add(&set, *m)));
         }
     }

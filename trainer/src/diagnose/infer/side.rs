@@ -29,21 +29,15 @@ impl<'a> Side<'a> {
         if matches!(base.delay, Delay::OfSampling(_)) {
             columns.pop();
         }
-        Self::of_open_rows(prepared, base, columns)
+        let (runs, features) = (prepared.open_runs(), noise_features(prepared));
+        Self { runs, features, columns, target: base.target.clone(), prepared }
     }
 
     /// The open rows of a recording whose torque is in step with the motion but for a part of a sample.
     pub fn new(prepared: &'a Prepared, base: &Base) -> Self {
-        let mut columns = base.columns.clone();
-        // A part of a sample between torque and motion, as it shows in the recorded torque itself: where friction turns over at another
-        // instant than the base has it, the rate of the predicted torque is that of another.
-        columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.torque)));
-        Self::of_open_rows(prepared, base, columns)
-    }
-
-    fn of_open_rows(prepared: &'a Prepared, base: &Base, columns: Vec<Vec<f64>>) -> Self {
-        let (runs, features) = (prepared.open_runs(), noise_features(prepared));
-        Self { runs, features, columns, target: base.target.clone(), prepared }
+        let mut side = Self::without_delay(prepared, base);
+        side.columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.predicted)));
+        side
     }
 
     /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.

@@ -119,61 +119,6 @@ impl Weighing {
         left
     }
 
-    /// Products with another whitened target at the recording's rows.
-    pub fn with_target(&self, target: &[f64]) -> Reduced {
-        let (moments, energy) = self.change_of_target(target);
-        self.with_change(&moments, energy)
-    }
-
-    fn with_change(&self, moments: &DMatrix<f64>, energy: f64) -> Reduced {
-        let mut reduced = self.reduced.clone();
-        match &self.both {
-            Some((_, random)) => {
-                reduced.energy += energy - random.energy_change(moments);
-                reduced.moments += random.beside(moments).row(0).transpose();
-            }
-            None => {
-                reduced.energy += energy;
-                reduced.moments += moments.row(0).transpose();
-            }
-        }
-        reduced
-    }
-
-    /// Takes another whitened target at the recording's rows.
-    pub fn set_target(&mut self, target: Vec<f64>) {
-        let (moments, energy) = self.change_of_target(&target);
-        self.reduced = self.with_change(&moments, energy);
-        let change = |reduced: &mut Reduced| {
-            reduced.energy += energy;
-            reduced.moments += moments.row(0).transpose();
-        };
-        change(&mut self.real);
-        if let Some((all, random)) = &mut self.both {
-            change(all);
-            random.change_moments(&moments);
-        }
-        if let Some(last) = self.white.last_mut() {
-            *last = target;
-        }
-    }
-
-    /// By how much the products of candidates (one row) and target change with another whitened target.
-    fn change_of_target(&self, target: &[f64]) -> (DMatrix<f64>, f64) {
-        let all = std::iter::once(0..target.len()).collect::<Vec<_>>();
-        let basis = orthonormal(self.base(), &all);
-        let beside = |target: &[f64]| {
-            let mut left = target.to_vec();
-            project_out(&mut left, &basis, &all);
-            left
-        };
-        let (left, before) = (beside(target), beside(self.white.last().map_or(&[][..], |target| target)));
-        let change: Vec<f64> = left.iter().zip(&before).map(|(a, b)| a - b).collect();
-        let columns = self.columns();
-        let moments = DMatrix::from_fn(1, columns.len(), |_, j| dot(&columns[j], &change, &all));
-        (moments, dot(&left, &left, &all) - dot(&before, &before, &all))
-    }
-
     /// What noise like that which a model of some members leaves brings to every candidate.
     pub fn null(&self, weighed: &[Candidate], members: &[Member], seed: u64) -> NullEvidence {
         let left = self.left_white(weighed, members);
