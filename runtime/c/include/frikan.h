@@ -205,9 +205,9 @@ typedef struct {
   float trusted_torque;
 } FrikanAdaptation;
 
-// Settings of the supervision, from frikan_supervision. Inertia and count are from 0 to 1e9, the others from 1e-9 to 1e9.
+// Settings of the supervision, from frikan_supervision. Inertia, count and turn are from 0 to 1e9, the others from 1e-9 to 1e9.
 typedef struct {
-  // Inertia of the joint, kg m^2.
+  // Inertia of the joint, kg m^2; the largest where frikan_set_inertia tells another.
   float inertia;
   // Angle of a count of the encoder, rad; 0 where the position is not made of counts.
   float count;
@@ -227,6 +227,10 @@ typedef struct {
   float least_friction;
   // How long velocity and position may contradict each other, s.
   float implausible_time;
+  // How long the torque of a joint at rest is held, s; it falls to 0 within the same time again.
+  float hold_time;
+  // Angle after which the position begins anew, rad; 0 where it never does.
+  float turn;
   // Whether and how far the compensation follows a friction that changes.
   FrikanAdaptation adaptation;
 } FrikanSupervision;
@@ -260,7 +264,7 @@ typedef struct {
 
 // One sample.
 typedef struct {
-  // The joint, velocity as measured; the position has to be filled, and without jumps.
+  // The joint, velocity as measured; the position has to be filled, and without jumps but that of a turn.
   FrikanMeasurement measurement;
   // Velocity of the reference, rad/s; NaN while no position or velocity loop is closed, as in hand guiding.
   float reference_velocity;
@@ -407,6 +411,14 @@ FrikanSupervised frikan_supervised_step(FrikanSupervisor *supervisor,
                                         FrikanCompensator *compensator,
                                         const FrikanSample *sample,
                                         float dt);
+
+// Another inertia of the joint from now on, kg m^2: of the pose or the payload, in each sample if need be. The torque of an inertia that changes,
+// dJ/dt v / 2, belongs to the loop torque. BadSupervision, where it is not from 0 to 1e9, leaves the one before in force.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_set_inertia(FrikanSupervisor *supervisor,
+                                float inertia);
 
 // Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease. What was learnt before a compensator was
 // started again is forgotten anyway.
