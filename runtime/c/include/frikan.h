@@ -10,8 +10,28 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Cells of tables for which a compensator has room; an image with more is refused.
+/*
+ * Interrupts. The library has no state of its own, masks nothing and waits for nothing: what it touches is what it is handed. A step may be
+ * called from an interrupt, which has to save the registers of the floating-point unit where there is one; frikan_step then takes the same time
+ * for every sample, frikan_supervised_step within a bound. A compensator, a supervisor and flash are each for one caller at a time: a function that is handed one must
+ * not be interrupted by another that is handed the same. Where the step runs in an interrupt, call frikan_set_limits, frikan_set_inertia,
+ * frikan_replace, frikan_reset and what else changes its compensator or its supervisor with that interrupt masked, or from it. What reads an image
+ * (frikan_start, frikan_replace and their likes) takes as long as the image has bytes: frikan_start into a second compensator and a pointer that
+ * changes in the interrupt need no mask. frikan_write_image takes as long as the flash does, and no step that reads a table from the bank which is
+ * being erased can run meanwhile.
+ */
+
+#ifdef FRIKAN_MODELS
+/* Cells of tables for which a compensator has room: as the environment variable of the same name at the build of the library. */
+#ifndef FRIKAN_CELLS
 #define FRIKAN_CELLS 128
+#endif
+/* Words of a compensator's memory. */
+#define FRIKAN_STORAGE_WORDS (384 + 2 * FRIKAN_CELLS)
+#else
+/* Words of a compensator's memory. */
+#define FRIKAN_STORAGE_WORDS 12
+#endif
 
 // Bytes of a key.
 #define FRIKAN_KEY_BYTES 32
@@ -19,21 +39,16 @@
 // Bytes of the header of a slot.
 #define FRIKAN_SLOT_HEADER_BYTES 16
 
-#if defined(FRIKAN_MODELS)
-// Words of a compensator's memory.
-#define FRIKAN_STORAGE_WORDS 640
-#endif
-
-#if !defined(FRIKAN_MODELS)
-// Words of a compensator's memory.
-#define FRIKAN_STORAGE_WORDS 12
-#endif
-
 // Channels without a standard quantity.
 #define FRIKAN_OTHER_CHANNELS 4
 
 // Words of a supervisor's memory.
 #define FRIKAN_SUPERVISOR_WORDS 40
+
+#if defined(FRIKAN_MODELS)
+// Effects of a model.
+#define FRIKAN_EFFECTS 8
+#endif
 
 // Whether a torque is a compensation, and why not.
 enum FrikanStatus
@@ -272,6 +287,20 @@ typedef struct {
   float loop_torque;
 } FrikanSample;
 
+#if defined(FRIKAN_MODELS)
+// How warm a joint is that has no temperature sensor: numbers to be kept anywhere, with the checksum of the image that they belong to.
+typedef struct {
+  // Filtered dissipated power by the place of the effect, W.
+  float power[FRIKAN_EFFECTS];
+} FrikanWarmth;
+#endif
+
+// What the adaptation of a supervisor has learnt: numbers to be kept anywhere, with the checksum of the image that they belong to.
+typedef struct {
+  // Mean products, (N m)^2.
+  float means[9];
+} FrikanLearnt;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -290,6 +319,18 @@ FrikanStatus frikan_start(FrikanCompensator *compensator,
                           size_t bytes,
                           const uint8_t *key,
                           const FrikanLimits *limits);
+
+// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
+// What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
+//
+// @param key  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_replace(FrikanCompensator *compensator,
+                            const uint8_t *flash,
+                            size_t bytes,
+                            const uint8_t *key);
 
 // Starts a compensator with a law of the firmware in place of an image, within the same limits.
 //
@@ -379,8 +420,16 @@ FrikanStatus frikan_start_from_flash(FrikanCompensator *compensator,
                                      const uint8_t *key,
                                      const FrikanLimits *limits);
 
+// Goes on with the newest usable image of two slots without a stop, as frikan_replace.
+//
+// # Safety
+// As frikan_start_from_flash.
+FrikanStatus frikan_replace_from_flash(FrikanCompensator *compensator,
+                                       const FrikanFlash *flash,
+                                       const uint8_t *key);
+
 // Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
-// use. Active once it is there; start the compensator again to go on with it.
+// use. Active once it is there; frikan_replace_from_flash goes on with it.
 //
 // @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
 //
@@ -432,6 +481,38 @@ void frikan_forget(FrikanSupervisor *supervisor);
 // # Safety
 // The pointer is null or good.
 void frikan_clear_fault(FrikanSupervisor *supervisor);
+
+#if defined(FRIKAN_MODELS)
+// The warmth of a joint; cold where there is no model.
+//
+// # Safety
+// The pointer is null or good.
+FrikanWarmth frikan_warmth(FrikanCompensator *compensator);
+#endif
+
+#if defined(FRIKAN_MODELS)
+// As frikan_reset, and as warm as `warmth` is after a rest of so many seconds; of a rest that nobody measured, 0 is the safe guess. Damaged numbers do
+// no harm.
+//
+// # Safety
+// Pointers are null or good.
+void frikan_restore(FrikanCompensator *compensator,
+                    const FrikanWarmth *warmth,
+                    float rest);
+#endif
+
+// What a supervisor has learnt.
+//
+// # Safety
+// The pointer is null or good.
+FrikanLearnt frikan_learnt(FrikanSupervisor *supervisor);
+
+// Goes on with what was learnt on the same image, after frikan_supervise and before the first step. Damaged numbers do no harm.
+//
+// # Safety
+// Pointers are null or good.
+void frikan_restore_learnt(FrikanSupervisor *supervisor,
+                           const FrikanLearnt *learnt);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -10,7 +10,7 @@ use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::shared::input::MAX_INPUTS;
 
 use crate::memory::{self, Memory, content};
-use crate::model::{Law, Model, read};
+use crate::model::{ImageModel, Law, Model, read};
 use crate::types::{
     FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_STORAGE_WORDS, FrikanCompensation, FrikanLaw, FrikanLimits,
     FrikanMeasurement, FrikanStatus,
@@ -57,12 +57,44 @@ pub(crate) unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -
     if !unsafe { memory::start(memory, compensator) } {
         return FrikanStatus::NotStarted;
     }
-    // SAFETY: the pointer is not null, and any number is one.
+    // SAFETY: the pointer is not null.
+    unsafe { count_start(memory) };
+    status
+}
+
+/// Counts another model.
+///
+/// # Safety
+/// `memory` may be read and written to.
+unsafe fn count_start(memory: *mut FrikanCompensator) {
+    // SAFETY: the caller's word, and any number is one.
     unsafe {
         let starts = &raw mut (*memory).starts;
         starts.write(starts.read().wrapping_add(1));
     }
-    status
+}
+
+/// Puts a model in place of the one in force, where there is one to put.
+///
+/// # Safety
+/// As [`content`].
+pub(crate) unsafe fn replace(memory: *mut FrikanCompensator, model: Result<ImageModel, ImageError>) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let Some(compensator) = (unsafe { content(memory) }) else { return FrikanStatus::NotStarted };
+    match model {
+        Err(error) => error.into(),
+        Ok(model) => {
+            compensator.replace(Ok(Model::Image(model)));
+            // SAFETY: the pointer is not null.
+            unsafe { count_start(memory) };
+            FrikanStatus::Active
+        }
+    }
+}
+
+/// The model of the image at the start of a region of flash.
+fn image_in(flash: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
+    trust.stored(flash).and_then(|image| read(image, trust))
 }
 
 /// Bytes of C; none for a null pointer.
@@ -123,12 +155,29 @@ pub unsafe extern "C" fn frikan_start(
     // SAFETY: the caller's word.
     let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
     let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let model = key.and_then(|key| {
-        let trust = trust_of(key.as_ref());
-        trust.stored(flash).and_then(|image| read(image, trust)).map(Model::Image)
-    });
+    let model = key.and_then(|key| image_in(flash, trust_of(key.as_ref())));
     // SAFETY: the caller's word.
-    unsafe { start(compensator, Inner::by(model, limits)) }
+    unsafe { start(compensator, Inner::by(model.map(Model::Image), limits)) }
+}
+
+/// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
+/// What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
+///
+/// @param key  as for frikan_start
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_replace(
+    compensator: *mut FrikanCompensator,
+    flash: *const u8,
+    bytes: usize,
+    key: *const u8,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let (flash, key) = unsafe { (readable(flash, bytes), key_at(key)) };
+    // SAFETY: the caller's word.
+    unsafe { replace(compensator, key.and_then(|key| image_in(flash, trust_of(key.as_ref())))) }
 }
 
 /// Starts a compensator with a law of the firmware in place of an image, within the same limits.

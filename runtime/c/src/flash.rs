@@ -2,9 +2,10 @@
 
 use core::ffi::c_void;
 
+use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::slots::flash::{Flash, Layout, Stored, WriteError, newest_usable, write};
 
-use crate::ffi::{FrikanCompensator, Inner, key_at, limits_at, readable, start, trust_of};
+use crate::ffi::{FrikanCompensator, Inner, key_at, limits_at, readable, replace, start, trust_of};
 use crate::model::{ImageModel, Model, read};
 use crate::types::{FrikanLimits, FrikanStatus};
 
@@ -107,22 +108,51 @@ pub unsafe extern "C" fn frikan_start_from_flash(
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, key, limits) = unsafe { (flash.as_ref(), key_at(key), limits_at(limits)) };
-    let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let Some((flash, layout)) = flash.and_then(|flash| Some((*flash, flash.layout()?))) else {
-        return FrikanStatus::BadFlash;
-    };
-    let model = key.and_then(|key| {
+    let Some(limits) = (unsafe { limits_at(limits) }) else { return FrikanStatus::BadLimits };
+    // SAFETY: the caller's word.
+    match unsafe { newest(flash, key) } {
+        None => FrikanStatus::BadFlash,
+        // SAFETY: the caller's word.
+        Some(model) => unsafe { start(compensator, Inner::by(model.map(Model::Image), limits)) },
+    }
+}
+
+/// Goes on with the newest usable image of two slots without a stop, as frikan_replace.
+///
+/// # Safety
+/// As frikan_start_from_flash.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_replace_from_flash(
+    compensator: *mut FrikanCompensator,
+    flash: *const FrikanFlash,
+    key: *const u8,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    match unsafe { newest(flash, key) } {
+        None => FrikanStatus::BadFlash,
+        // SAFETY: the caller's word.
+        Some(model) => unsafe { replace(compensator, model) },
+    }
+}
+
+/// The newest usable image; none where the flash is no such flash.
+///
+/// # Safety
+/// As frikan_start_from_flash.
+unsafe fn newest(flash: *const FrikanFlash, key: *const u8) -> Option<Result<ImageModel, ImageError>> {
+    // SAFETY: the caller's word.
+    let (flash, key) = unsafe { (*flash.as_ref()?, key_at(key)) };
+    let layout = flash.layout()?;
+    Some(key.and_then(|key| {
         let trust = trust_of(key.as_ref());
         // SAFETY: the caller's word.
         newest_usable(&mut Driver(flash), &layout, |_, stored| read(unsafe { flash.image(stored) }, trust))
-    });
-    // SAFETY: the caller's word.
-    unsafe { start(compensator, Inner::by(model.map(|(_, model)| Model::Image(model)), limits)) }
+            .map(|(_, model)| model)
+    }))
 }
 
 /// Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
-/// use. Active once it is there; start the compensator again to go on with it.
+/// use. Active once it is there; frikan_replace_from_flash goes on with it.
 ///
 /// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
 ///

@@ -4,6 +4,8 @@
 use core::ffi::c_void;
 
 use frikan_runtime::compensator::{Exported, FrictionModel};
+#[cfg(feature = "models")]
+use frikan_runtime::friction::Warmth;
 use frikan_runtime::measurement::{Friction, Measurement};
 use frikan_runtime::shared::authentication::Trust;
 use frikan_runtime::shared::image::ImageError;
@@ -43,6 +45,21 @@ pub(crate) enum Model {
 pub(crate) struct Law {
     pub(crate) function: unsafe extern "C" fn(*mut c_void, *const FrikanMeasurement, f32) -> f32,
     pub(crate) context: *mut c_void,
+}
+
+#[cfg(feature = "models")]
+impl Model {
+    /// How warm the joint is, where the model is an image.
+    pub(crate) fn warmth(&self) -> Option<Warmth> {
+        if let Self::Image(model) = self { Some(model.warmth()) } else { None }
+    }
+
+    /// At rest, and as warm as `warmth` is after a rest of so many seconds.
+    pub(crate) fn restore(&mut self, warmth: &Warmth, rest: f32) {
+        if let Self::Image(model) = self {
+            model.restore(warmth, rest);
+        }
+    }
 }
 
 impl FrictionModel for Model {

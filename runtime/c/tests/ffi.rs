@@ -6,13 +6,14 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use frikan::ffi::{
-    FrikanCompensator, frikan_compensator_bytes, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_start,
-    frikan_start_with_law, frikan_step,
+    FrikanCompensator, frikan_compensator_bytes, frikan_no_measurement, frikan_replace, frikan_reset,
+    frikan_set_limits, frikan_start, frikan_start_with_law, frikan_step,
 };
+use frikan::keep::{FrikanLearnt, frikan_learnt, frikan_restore_learnt};
 use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_start_from_slots};
 use frikan::supervised::{
     FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_clear_fault, frikan_forget,
-    frikan_supervise, frikan_supervised_step, frikan_supervision,
+    frikan_set_inertia, frikan_supervise, frikan_supervised_step, frikan_supervision,
 };
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
 
@@ -107,6 +108,109 @@ fn a_supervisor_watches_over_a_compensator() {
         frikan_forget(null_mut());
         assert_eq!(frikan_supervised_step(&mut *watch, &mut *elbow, null(), 1.0e-3).status, FrikanStatus::NotStarted);
         assert_eq!(frikan_supervised_step(&mut *watch, null_mut(), &sample, 1.0e-3).status, FrikanStatus::NotStarted);
+    }
+}
+
+#[test]
+fn an_image_is_replaced_without_a_stop() {
+    let mut elbow = zeroed();
+    let limits = FrikanLimits { slew: 2000.0, ..LIMITS };
+    let mut calls = 0u32;
+    // SAFETY: references, slices and their lengths, and null where it is said.
+    unsafe {
+        let replace =
+            |memory: *mut FrikanCompensator, image: &[u8]| frikan_replace(memory, image.as_ptr(), image.len(), null());
+        assert_eq!(replace(&mut *elbow, IMAGE), FrikanStatus::NotStarted);
+        assert_eq!(replace(null_mut(), IMAGE), FrikanStatus::NotStarted);
+        frikan_start_with_law(&mut *elbow, Some(coulomb), (&raw mut calls).cast(), &limits);
+        let mut torque = 0.0;
+        for _ in 0..20 {
+            torque = step(&mut elbow).0;
+        }
+        assert_eq!(torque, 8.0);
+        // One that is refused leaves the one before in force.
+        assert_eq!(replace(&mut *elbow, &IMAGE[..20]), FrikanStatus::Truncated);
+        assert_eq!(step(&mut elbow), (8.0, FrikanStatus::Active));
+        assert_eq!(replace(&mut *elbow, &[IMAGE, &[0xFF; 9]].concat()), FrikanStatus::Active);
+        assert_eq!(step(&mut elbow), (10.0, FrikanStatus::Active));
+    }
+}
+
+/// What a supervisor has learnt on the image is forgotten with it, and kept by the firmware where it wants.
+#[test]
+fn what_was_learnt_is_kept_by_the_firmware_and_forgotten_with_the_image() {
+    let (mut elbow, mut watch) = (zeroed(), zeroed_supervisor());
+    assert_eq!(start(&mut elbow, IMAGE, None), FrikanStatus::Active);
+    let mut settings = frikan_supervision(0.5, 20.0, 0.0);
+    settings.adaptation = FrikanAdaptation {
+        lowest_level: 0.5,
+        highest_level: 2.0,
+        viscous: 0.0,
+        offset: 0.0,
+        memory: 0.5,
+        trusted_torque: 0.1,
+    };
+    // SAFETY: references, a slice and its length, and null where it is said.
+    unsafe {
+        assert_eq!(frikan_supervise(&mut *watch, &settings), FrikanStatus::Active);
+        assert_eq!(frikan_set_inertia(&mut *watch, 0.7), FrikanStatus::Active);
+        assert_eq!(frikan_set_inertia(&mut *watch, f32::NAN), FrikanStatus::BadSupervision);
+        assert_eq!(frikan_set_inertia(null_mut(), 0.7), FrikanStatus::NotStarted);
+        let mut position = 0.0;
+        let mut step = |watch: &mut FrikanSupervisor, elbow: &mut FrikanCompensator| {
+            position += 0.5e-3;
+            let sample = FrikanSample {
+                measurement: FrikanMeasurement { position, ..MOVING },
+                reference_velocity: 0.5,
+                loop_torque: 15.0,
+            };
+            frikan_supervised_step(watch, elbow, &sample, 1.0e-3).level
+        };
+        let level = (0..2000).map(|_| step(&mut watch, &mut elbow)).last().unwrap();
+        assert!(level > 1.5, "{level}");
+        let learnt = frikan_learnt(&mut *watch);
+        assert_eq!(frikan_learnt(null_mut()), FrikanLearnt::default());
+        // Another start of the drive.
+        assert_eq!(frikan_supervise(&mut *watch, &settings), FrikanStatus::Active);
+        frikan_restore_learnt(&mut *watch, &learnt);
+        frikan_restore_learnt(null_mut(), null());
+        assert_eq!(step(&mut watch, &mut elbow), level);
+        assert_eq!(frikan_replace(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null()), FrikanStatus::Active);
+        assert_eq!(step(&mut watch, &mut elbow), 1.0);
+    }
+}
+
+#[cfg(feature = "effects")]
+#[test]
+fn warmth_is_kept_by_the_firmware() {
+    use frikan::keep::{FrikanWarmth, frikan_restore, frikan_warmth};
+    use frikan_runtime::shared::effect::Effect;
+    use frikan_runtime::shared::image::{decode, encode};
+    let mut image = decode::<128>(IMAGE).unwrap();
+    let warm_up = Effect::WarmUp {
+        time_constant: 100.0,
+        coulomb: -0.1,
+        viscous: 0.0,
+        power_limit: 20.0,
+        smoothing_velocity: 0.02,
+    };
+    assert!(image.model.effects.push(warm_up).is_ok());
+    let mut buffer = [0; 4096];
+    let image = encode(&image, &mut buffer).unwrap();
+    let mut elbow = zeroed();
+    assert_eq!(start(&mut elbow, image, None), FrikanStatus::Active);
+    let cold = step(&mut elbow).0;
+    // SAFETY: references, and null where it is said.
+    unsafe {
+        (0..5000).for_each(|_| _ = step(&mut elbow));
+        let warmth = frikan_warmth(&mut *elbow);
+        let warm = step(&mut elbow).0;
+        assert!(warmth.power[0] > 0.0 && warm < cold, "{warmth:?}");
+        assert_eq!(start(&mut elbow, image, None), FrikanStatus::Active);
+        frikan_restore(&mut *elbow, &warmth, 0.0);
+        assert!((step(&mut elbow).0 - warm).abs() < 1.0e-3);
+        assert_eq!(frikan_warmth(null_mut()), FrikanWarmth::default());
+        frikan_restore(null_mut(), null(), 0.0);
     }
 }
 

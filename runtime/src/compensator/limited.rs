@@ -74,10 +74,21 @@ impl<M: FrictionModel> Limited<M> {
         self.model.as_ref().map_or_else(|error| Status::NoModel(*error), |_| Status::Active)
     }
 
+    /// What gives the friction, where there is something.
+    #[must_use]
+    pub fn source(&self) -> Option<&M> {
+        self.model.as_ref().ok()
+    }
+
     /// Starts from zero torque, at rest and with nothing wound up; the warmth of the joint stays.
     pub fn reset(&mut self) {
+        self.reset_by(M::rest);
+    }
+
+    /// Starts from zero torque with a model that `at_rest` puts to rest.
+    pub fn reset_by(&mut self, at_rest: impl FnOnce(&mut M)) {
         if let Ok(model) = &mut self.model {
-            model.rest();
+            at_rest(model);
         }
         self.output.release();
     }

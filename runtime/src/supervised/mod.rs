@@ -19,7 +19,7 @@ pub mod rest;
 mod settings;
 pub mod velocity;
 
-use adaptation::{Adaptation, Correction, Torques};
+use adaptation::{Adaptation, Correction, Learnt, Torques};
 use blend::{blended, share_without_reference};
 use monitor::Monitor;
 use observer::{Observation, Observer};
@@ -88,8 +88,8 @@ pub struct Supervisor {
     inertia: f32,
     rest: Rest,
     torque: f32,
-    /// Which of the compensator's models the adaptation has learnt on.
-    changes: u32,
+    /// Which of the compensator's models the adaptation learns on; none before the first sample.
+    changes: Option<u32>,
 }
 
 impl Supervisor {
@@ -112,7 +112,7 @@ impl Supervisor {
             inertia: settings.inertia,
             rest: Rest::default(),
             torque: 0.0,
-            changes: 0,
+            changes: None,
         })
     }
 
@@ -141,6 +141,18 @@ impl Supervisor {
         self.adaptation = Adaptation::new();
     }
 
+    /// What was learnt, for the firmware to keep while the power is off.
+    #[must_use]
+    pub fn learnt(&self) -> Learnt {
+        self.adaptation.learnt()
+    }
+
+    /// Goes on with what was learnt on the model of the compensator before the power was off; without an adaptation, with nothing.
+    pub fn restore(&mut self, learnt: &Learnt) {
+        let settings = self.settings.adaptation.as_ref();
+        self.adaptation = settings.map_or(Adaptation::new(), |settings| Adaptation::again(learnt, settings));
+    }
+
     /// Compensates again after [`Supervised::Implausible`]: for whoever has found out why velocity and position contradicted each other.
     pub fn clear_fault(&mut self) {
         (self.plausibility, self.is_implausible) = (Plausibility::default(), false);
@@ -149,8 +161,8 @@ impl Supervisor {
     /// The compensation by `compensator`, within its limits, after a sample period of `dt` seconds.
     #[must_use]
     pub fn step(&mut self, compensator: &mut impl Compensate, sample: &Sample, dt: f32) -> SupervisedCompensation {
-        if compensator.changes() != self.changes {
-            self.changes = compensator.changes();
+        let changes = compensator.changes();
+        if self.changes.replace(changes).is_some_and(|before| before != changes) {
             self.forget();
         }
         let limits = *compensator.limits();
