@@ -13,7 +13,8 @@ mod table;
 #[cfg(feature = "models")]
 pub use decoded::{Image, decode, encode};
 pub use header::{
-    Checksum, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum, image_bytes, image_crc32,
+    Checksum, EARLIEST_VERSION, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum,
+    image_bytes, image_crc32, image_version,
 };
 pub use table::{Cells, TableImage};
 

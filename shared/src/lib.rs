@@ -8,6 +8,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod admission;
 pub mod authentication;
 #[cfg(feature = "models")]
 pub mod effect;

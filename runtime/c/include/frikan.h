@@ -42,6 +42,39 @@
 // Channels without a standard quantity.
 #define FRIKAN_OTHER_CHANNELS 4
 
+// Longest name of a joint, bytes.
+#define FRIKAN_JOINT_BYTES 32
+
+// Units of the torque of an image: any, in demands.
+#define FRIKAN_UNIT_ANY 0
+
+// Newton metre.
+#define FRIKAN_UNIT_NEWTON_METRE 8
+
+// Newton.
+#define FRIKAN_UNIT_NEWTON 9
+
+// Ampere.
+#define FRIKAN_UNIT_AMPERE 10
+
+// Channels: velocity of the joint.
+#define FRIKAN_CHANNEL_VELOCITY 1
+
+// Position of the joint.
+#define FRIKAN_CHANNEL_POSITION 2
+
+// Torque or force transmitted by the gear.
+#define FRIKAN_CHANNEL_LOAD 4
+
+// Temperature.
+#define FRIKAN_CHANNEL_TEMPERATURE 8
+
+// Acceleration of the joint.
+#define FRIKAN_CHANNEL_ACCELERATION 16
+
+// Any channel without a standard quantity.
+#define FRIKAN_CHANNEL_OTHER 32
+
 // Words of a supervisor's memory.
 #define FRIKAN_SUPERVISOR_WORDS 40
 
@@ -70,7 +103,7 @@ enum FrikanStatus
   FRIKAN_STATUS_TRUNCATED = 5,
   // The bytes are no image.
   FRIKAN_STATUS_BAD_MAGIC = 6,
-  // The image is of a later format.
+  // The image is of a later format, or of one that is no longer read.
   FRIKAN_STATUS_UNSUPPORTED_VERSION = 7,
   // The image has more cells than FRIKAN_CELLS.
   FRIKAN_STATUS_TOO_LARGE = 8,
@@ -97,6 +130,14 @@ enum FrikanStatus
   FRIKAN_STATUS_BAD_FLASH = 18,
   // The flash did not take the image: what was in use before still is.
   FRIKAN_STATUS_NOT_WRITTEN = 19,
+  // The image is of another joint than the drive asks for.
+  FRIKAN_STATUS_OTHER_JOINT = 20,
+  // The torque of the image is in another unit.
+  FRIKAN_STATUS_OTHER_UNIT = 21,
+  // The image reads a channel that the drive does not measure.
+  FRIKAN_STATUS_MISSING_CHANNEL = 22,
+  // The image is older than the drive allows.
+  FRIKAN_STATUS_OUTDATED = 23,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -105,6 +146,9 @@ typedef enum FrikanStatus FrikanStatus;
 typedef uint32_t FrikanStatus;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
+
+// What an image says of itself.
+typedef struct FrikanFacts FrikanFacts;
 
 // Friction compensation of one joint. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory is
 // off until it is started.
@@ -116,6 +160,21 @@ typedef struct {
   // Its memory.
   uint64_t storage[FRIKAN_STORAGE_WORDS];
 } FrikanCompensator;
+
+// What image a drive takes: all that is 0 takes any.
+typedef struct {
+  // FRIKAN_KEY_BYTES, of whoever may make images: one without its tag is refused; null for a drive that takes anyone's.
+  const uint8_t *key;
+  // Name of the joint, ended by a 0; null for any.
+  const char *joint;
+  // Unit of the torque, FRIKAN_UNIT_...
+  uint32_t unit;
+  // Channels that the drive measures, the sum of FRIKAN_CHANNEL_...: an image that reads another is refused.
+  uint32_t channels;
+  // Least release, of which the tag has the number: an older image is refused. The firmware raises it, in memory that no image reaches, when it has
+  // taken a later one.
+  uint32_t least_release;
+} FrikanTrust;
 
 // Limits of the firmware; no image changes them. All are finite, none is negative, and the slew is above 0.
 typedef struct {
@@ -167,6 +226,20 @@ typedef struct {
   // Number for the slot's header.
   uint32_t sequence;
 } FrikanSlotWrite;
+
+// The slot that the drive would take.
+typedef struct {
+  // Active, or why there is none.
+  FrikanStatus status;
+  // 0 for the first slot, 1 for the second.
+  uint32_t slot;
+  // Number of the slot.
+  uint32_t sequence;
+  // Address of its image, for frikan_facts.
+  const uint8_t *image;
+  // Bytes of the image and its tag.
+  size_t bytes;
+} FrikanSlotInUse;
 
 // Reads bytes from an address; false where that cannot be done: an uncorrectable word is no fault of the program.
 typedef bool (*FrikanFlashRead)(void *context, uint32_t address, uint8_t *bytes, size_t length);
@@ -310,27 +383,27 @@ extern "C" {
 //
 // @param flash  where the image begins
 // @param bytes  bytes that may be read there; what follows image and tag is not looked at
-// @param key    FRIKAN_KEY_BYTES: an image without its tag is refused; null for a drive that takes anyone's images
+// @param trust  what image is taken; null for any
 //
 // # Safety
 // Pointers are null or good for what their names say.
 FrikanStatus frikan_start(FrikanCompensator *compensator,
                           const uint8_t *flash,
                           size_t bytes,
-                          const uint8_t *key,
+                          const FrikanTrust *trust,
                           const FrikanLimits *limits);
 
 // Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
 // What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
 //
-// @param key  as for frikan_start
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say.
 FrikanStatus frikan_replace(FrikanCompensator *compensator,
                             const uint8_t *flash,
                             size_t bytes,
-                            const uint8_t *key);
+                            const FrikanTrust *trust);
 
 // Starts a compensator with a law of the firmware in place of an image, within the same limits.
 //
@@ -372,9 +445,33 @@ FrikanMeasurement frikan_no_measurement(void);
 // The pointer is null or good.
 void frikan_reset(FrikanCompensator *compensator);
 
+// What a step would say of the model: active, or why there is none.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_status(FrikanCompensator *compensator);
+
+// CRC-32 of the model as it is now in memory or flash: one that differs from that after the start is damaged. 0 where there is no model or it is a law
+// of the firmware. Not for the control loop: it takes as long as the model is large.
+//
+// # Safety
+// The pointer is null or good.
+uint32_t frikan_model_crc(FrikanCompensator *compensator);
+
+// What the image at an address says of itself, once it is found whole and what the drive takes.
+//
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_facts(const uint8_t *flash,
+                          size_t bytes,
+                          const FrikanTrust *trust,
+                          FrikanFacts *facts);
+
 // Starts a compensator with the newest usable image of two slots of flash, which has to stay there.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say.
@@ -383,12 +480,12 @@ FrikanStatus frikan_start_from_slots(FrikanCompensator *compensator,
                                      size_t first_bytes,
                                      const uint8_t *second,
                                      size_t second_bytes,
-                                     const uint8_t *key,
+                                     const FrikanTrust *trust,
                                      const FrikanLimits *limits);
 
 // The slot to write next, never the one in use. Erase it, program the image, and the header of frikan_slot_header last.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say.
@@ -396,7 +493,7 @@ FrikanSlotWrite frikan_next_write(const uint8_t *first,
                                   size_t first_bytes,
                                   const uint8_t *second,
                                   size_t second_bytes,
-                                  const uint8_t *key);
+                                  const FrikanTrust *trust);
 
 // Writes the header of a slot, FRIKAN_SLOT_HEADER_BYTES, for an image (and its tag). False where there is none.
 //
@@ -407,17 +504,29 @@ bool frikan_slot_header(uint32_t sequence,
                         size_t bytes,
                         uint8_t *header);
 
+// The slot that frikan_start_from_slots takes.
+//
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanSlotInUse frikan_slot_in_use(const uint8_t *first,
+                                   size_t first_bytes,
+                                   const uint8_t *second,
+                                   size_t second_bytes,
+                                   const FrikanTrust *trust);
+
 // Starts a compensator with the newest usable image of two slots: each is read once through the functions, so that a torn word is a bad slot
 // and no bus fault, and the one that is taken is read where it lies from then on.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say, the functions may be called, and the slots may be read where they are mapped as long as
 // the compensator steps.
 FrikanStatus frikan_start_from_flash(FrikanCompensator *compensator,
                                      const FrikanFlash *flash,
-                                     const uint8_t *key,
+                                     const FrikanTrust *trust,
                                      const FrikanLimits *limits);
 
 // Goes on with the newest usable image of two slots without a stop, as frikan_replace.
@@ -426,19 +535,19 @@ FrikanStatus frikan_start_from_flash(FrikanCompensator *compensator,
 // As frikan_start_from_flash.
 FrikanStatus frikan_replace_from_flash(FrikanCompensator *compensator,
                                        const FrikanFlash *flash,
-                                       const uint8_t *key);
+                                       const FrikanTrust *trust);
 
 // Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
 // use. Active once it is there; frikan_replace_from_flash goes on with it.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
+// @param trust  as for frikan_start: an image that the drive would not take is not written
 //
 // # Safety
 // As frikan_start_from_flash, and `image` is null or good for so many bytes.
 FrikanStatus frikan_write_image(const FrikanFlash *flash,
                                 const uint8_t *image,
                                 size_t bytes,
-                                const uint8_t *key);
+                                const FrikanTrust *trust);
 
 // Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad (2 pi over
 // the counts of a turn, 0 where the position is not made of counts), without adaptation.

@@ -5,12 +5,13 @@ use core::slice;
 
 use frikan_runtime::compensator::{Limited, Limits};
 use frikan_runtime::measurement::Measurement;
-use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
+use frikan_runtime::shared::authentication::KEY_BYTES;
 use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::shared::input::MAX_INPUTS;
 
+use crate::admission::{self, FrikanTrust};
 use crate::memory::{self, Memory, content};
-use crate::model::{ImageModel, Law, Model, read};
+use crate::model::{ImageModel, Law, Model};
 use crate::types::{
     FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_STORAGE_WORDS, FrikanCompensation, FrikanLaw, FrikanLimits,
     FrikanMeasurement, FrikanStatus,
@@ -92,11 +93,6 @@ pub(crate) unsafe fn replace(memory: *mut FrikanCompensator, model: Result<Image
     }
 }
 
-/// The model of the image at the start of a region of flash.
-fn image_in(flash: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
-    trust.stored(flash).and_then(|image| read(image, trust))
-}
-
 /// Bytes of C; none for a null pointer.
 ///
 /// # Safety
@@ -104,25 +100,6 @@ fn image_in(flash: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageE
 pub(crate) unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
     // SAFETY: the caller's word; no object is larger than `isize::MAX`.
     if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
-}
-
-/// The key of C, where there is one. A library without authentication does not start with one.
-///
-/// # Safety
-/// `key` is null or KEY_BYTES may be read from it.
-pub(crate) unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
-    // SAFETY: the caller's word; an array of bytes has no alignment.
-    match unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() } {
-        None => Ok(None),
-        #[cfg(feature = "auth")]
-        Some(bytes) => Ok(Some(Key::new(*bytes))),
-        #[cfg(not(feature = "auth"))]
-        Some(_) => Err(ImageError::NotBuiltIn),
-    }
-}
-
-pub(crate) fn trust_of(key: Option<&Key>) -> Trust<'_> {
-    key.map_or(Trust::Anyone, Trust::Key)
 }
 
 /// Limits of C; none for a null pointer and for limits that cannot be kept.
@@ -140,7 +117,7 @@ pub(crate) unsafe fn limits_at(limits: *const FrikanLimits) -> Option<Limits> {
 ///
 /// @param flash  where the image begins
 /// @param bytes  bytes that may be read there; what follows image and tag is not looked at
-/// @param key    FRIKAN_KEY_BYTES: an image without its tag is refused; null for a drive that takes anyone's images
+/// @param trust  what image is taken; null for any
 ///
 /// # Safety
 /// Pointers are null or good for what their names say.
@@ -149,13 +126,14 @@ pub unsafe extern "C" fn frikan_start(
     compensator: *mut FrikanCompensator,
     flash: *const u8,
     bytes: usize,
-    key: *const u8,
+    trust: *const FrikanTrust,
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
+    let (flash, limits) = unsafe { (readable(flash, bytes), limits_at(limits)) };
     let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let model = key.and_then(|key| image_in(flash, trust_of(key.as_ref())));
+    // SAFETY: the caller's word.
+    let model = unsafe { admission::at(trust) }.and_then(|admission| admission.image_in(flash));
     // SAFETY: the caller's word.
     unsafe { start(compensator, Inner::by(model.map(Model::Image), limits)) }
 }
@@ -163,7 +141,7 @@ pub unsafe extern "C" fn frikan_start(
 /// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
 /// What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
 ///
-/// @param key  as for frikan_start
+/// @param trust  as for frikan_start
 ///
 /// # Safety
 /// Pointers are null or good for what their names say.
@@ -172,12 +150,12 @@ pub unsafe extern "C" fn frikan_replace(
     compensator: *mut FrikanCompensator,
     flash: *const u8,
     bytes: usize,
-    key: *const u8,
+    trust: *const FrikanTrust,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, key) = unsafe { (readable(flash, bytes), key_at(key)) };
+    let (flash, admission) = unsafe { (readable(flash, bytes), admission::at(trust)) };
     // SAFETY: the caller's word.
-    unsafe { replace(compensator, key.and_then(|key| image_in(flash, trust_of(key.as_ref())))) }
+    unsafe { replace(compensator, admission.and_then(|admission| admission.image_in(flash))) }
 }
 
 /// Starts a compensator with a law of the firmware in place of an image, within the same limits.
@@ -263,4 +241,25 @@ pub unsafe extern "C" fn frikan_reset(compensator: *mut FrikanCompensator) {
     if let Some(compensator) = unsafe { content(compensator) } {
         compensator.reset();
     }
+}
+
+/// What a step would say of the model: active, or why there is none.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_status(compensator: *mut FrikanCompensator) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    unsafe { content(compensator) }.map_or(FrikanStatus::NotStarted, |compensator| compensator.status().into())
+}
+
+/// CRC-32 of the model as it is now in memory or flash: one that differs from that after the start is damaged. 0 where there is no model or it is a law
+/// of the firmware. Not for the control loop: it takes as long as the model is large.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_model_crc(compensator: *mut FrikanCompensator) -> u32 {
+    // SAFETY: the caller's word.
+    unsafe { content(compensator) }.and_then(|compensator| compensator.checksum()).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `slots.rs`, `flash.rs`, `supervised.rs` and
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `admission.rs`, `slots.rs`, `flash.rs`, `supervised.rs` and
 //! `keep.rs`; these but the first, `memory.rs` and `model.rs` are the only files with `unsafe`.
 //!
 //! The static library for a target:
@@ -13,6 +13,8 @@
 #[cfg(not(target_os = "none"))]
 extern crate std;
 
+#[allow(unsafe_code)]
+pub mod admission;
 #[allow(unsafe_code)]
 pub mod ffi;
 #[cfg(feature = "slots")]

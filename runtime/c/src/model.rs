@@ -7,7 +7,7 @@ use frikan_runtime::compensator::{Exported, FrictionModel};
 #[cfg(feature = "models")]
 use frikan_runtime::friction::Warmth;
 use frikan_runtime::measurement::{Friction, Measurement};
-use frikan_runtime::shared::authentication::Trust;
+use frikan_runtime::shared::admission::{Admission, Facts};
 use frikan_runtime::shared::image::ImageError;
 
 use crate::types::FrikanMeasurement;
@@ -20,16 +20,30 @@ pub(crate) type ImageModel = frikan_runtime::compensator::Decoded<{ crate::types
 #[cfg(not(feature = "models"))]
 pub(crate) type ImageModel = frikan_runtime::in_place::TableInPlace<'static>;
 
-/// The model of exactly one image, with its tag where one is asked for.
+/// The model of exactly one image that is admitted.
 #[cfg(feature = "models")]
-pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
-    trust.decode(image).and_then(|image| ImageModel::new(image.model))
+pub(crate) fn read(image: &'static [u8], admission: &Admission<'_>) -> Result<ImageModel, ImageError> {
+    admission.decode(image).and_then(|image| ImageModel::new(image.model))
 }
 
-/// The model of exactly one image, with its tag where one is asked for.
+/// The model of exactly one image that is admitted.
 #[cfg(not(feature = "models"))]
-pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
-    trust.authentic(image).and_then(ImageModel::new)
+pub(crate) fn read(image: &'static [u8], admission: &Admission<'_>) -> Result<ImageModel, ImageError> {
+    admission.table(image).map(ImageModel::from)
+}
+
+/// What is made of what exactly one image says of itself, where it is admitted.
+pub(crate) fn with_facts<T>(
+    bytes: &[u8],
+    admission: &Admission<'_>,
+    told: impl FnOnce(&Facts<'_>) -> T,
+) -> Result<T, ImageError> {
+    let (_, release) = admission.trust.released(bytes)?;
+    #[cfg(feature = "models")]
+    let image = admission.decode::<{ crate::types::FRIKAN_CELLS }>(bytes)?;
+    #[cfg(not(feature = "models"))]
+    let image = admission.table(bytes)?;
+    Ok(told(&image.facts(release)))
 }
 
 /// What gives the friction.
@@ -81,5 +95,9 @@ impl FrictionModel for Model {
         if let Self::Image(model) = self {
             model.rest();
         }
+    }
+
+    fn checksum(&self) -> Option<u32> {
+        if let Self::Image(model) = self { model.checksum() } else { None }
     }
 }

@@ -60,7 +60,7 @@ pub enum FrikanStatus {
     Truncated = 5,
     /// The bytes are no image.
     BadMagic = 6,
-    /// The image is of a later format.
+    /// The image is of a later format, or of one that is no longer read.
     UnsupportedVersion = 7,
     /// The image has more cells than FRIKAN_CELLS.
     TooLarge = 8,
@@ -87,6 +87,14 @@ pub enum FrikanStatus {
     BadFlash = 18,
     /// The flash did not take the image: what was in use before still is.
     NotWritten = 19,
+    /// The image is of another joint than the drive asks for.
+    OtherJoint = 20,
+    /// The torque of the image is in another unit.
+    OtherUnit = 21,
+    /// The image reads a channel that the drive does not measure.
+    MissingChannel = 22,
+    /// The image is older than the drive allows.
+    Outdated = 23,
 }
 
 impl From<ImageError> for FrikanStatus {
@@ -102,6 +110,10 @@ impl From<ImageError> for FrikanStatus {
             ImageError::CrcMismatch => Self::CrcMismatch,
             ImageError::InvalidModel(_) => Self::InvalidModel,
             ImageError::NotBuiltIn => Self::NotBuiltIn,
+            ImageError::OtherJoint => Self::OtherJoint,
+            ImageError::OtherUnit => Self::OtherUnit,
+            ImageError::MissingChannel => Self::MissingChannel,
+            ImageError::Outdated => Self::Outdated,
             _ => Self::Malformed,
         }
     }

@@ -5,12 +5,16 @@ use std::ffi::c_void;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
+use frikan::admission::{
+    FRIKAN_CHANNEL_POSITION, FRIKAN_CHANNEL_VELOCITY, FRIKAN_UNIT_AMPERE, FRIKAN_UNIT_NEWTON_METRE, FrikanFacts,
+    FrikanTrust, frikan_facts,
+};
 use frikan::ffi::{
-    FrikanCompensator, frikan_compensator_bytes, frikan_no_measurement, frikan_replace, frikan_reset,
-    frikan_set_limits, frikan_start, frikan_start_with_law, frikan_step,
+    FrikanCompensator, frikan_compensator_bytes, frikan_model_crc, frikan_no_measurement, frikan_replace, frikan_reset,
+    frikan_set_limits, frikan_start, frikan_start_with_law, frikan_status, frikan_step,
 };
 use frikan::keep::{FrikanLearnt, frikan_learnt, frikan_restore_learnt};
-use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_start_from_slots};
+use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_slot_in_use, frikan_start_from_slots};
 use frikan::supervised::{
     FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_clear_fault, frikan_forget,
     frikan_set_inertia, frikan_supervise, frikan_supervised_step, frikan_supervision,
@@ -21,6 +25,8 @@ const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
 const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9, position: 0.0 };
 const MOVING: FrikanMeasurement =
     FrikanMeasurement { velocity: 0.5, position: 0.0, acceleration: 0.0, load: 0.0, temperature: 0.0, other: [0.0; 4] };
+
+const ANY: FrikanTrust = FrikanTrust { key: null(), joint: null(), unit: 0, channels: 0, least_release: 0 };
 
 /// As the static data of a firmware.
 fn zeroed() -> Box<FrikanCompensator> {
@@ -40,9 +46,9 @@ fn step(compensator: &mut FrikanCompensator) -> (f32, FrikanStatus) {
 }
 
 fn start(compensator: &mut FrikanCompensator, flash: &[u8], key: Option<&[u8; 32]>) -> FrikanStatus {
-    let key = key.map_or(null(), |key| key.as_ptr());
+    let trust = FrikanTrust { key: key.map_or(null(), |key| key.as_ptr()), ..ANY };
     // SAFETY: a slice and its length, an array of a key's length.
-    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), key, &LIMITS) }
+    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), &trust, &LIMITS) }
 }
 
 #[test]
@@ -234,14 +240,67 @@ fn null_pointers_leave_everything_off() {
     }
 }
 
+#[test]
+fn an_image_says_what_it_is_and_has_to_be_what_is_asked_for() {
+    let mut elbow = zeroed();
+    let mut facts: MaybeUninit<FrikanFacts> = MaybeUninit::zeroed();
+    let start = |elbow: &mut FrikanCompensator, trust: FrikanTrust| {
+        // SAFETY: a slice and its length, references.
+        unsafe { frikan_start(elbow, IMAGE.as_ptr(), IMAGE.len(), &trust, &LIMITS) }
+    };
+    let fitting =
+        FrikanTrust { joint: c"".as_ptr(), unit: FRIKAN_UNIT_NEWTON_METRE, channels: FRIKAN_CHANNEL_VELOCITY, ..ANY };
+    assert_eq!(start(&mut elbow, fitting), FrikanStatus::Active);
+    // SAFETY: slices and their lengths, references, and null where it is said.
+    unsafe {
+        assert_eq!(frikan_status(&mut *elbow), FrikanStatus::Active);
+        assert_eq!((frikan_status(null_mut()), frikan_model_crc(null_mut())), (FrikanStatus::NotStarted, 0));
+        let sum = frikan_model_crc(&mut *elbow);
+        (0..10).for_each(|_| _ = step(&mut elbow));
+        assert!(sum != 0 && frikan_model_crc(&mut *elbow) == sum);
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), IMAGE.len(), &fitting, facts.as_mut_ptr()), FrikanStatus::Active);
+        let facts = facts.assume_init();
+        let crc32 = u32::from_le_bytes(IMAGE[12..16].try_into().unwrap());
+        assert_eq!(
+            (facts.joint[0], facts.unit, facts.channels),
+            (0, FRIKAN_UNIT_NEWTON_METRE, FRIKAN_CHANNEL_VELOCITY)
+        );
+        assert_eq!((facts.release, facts.crc32), (0, crc32));
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), IMAGE.len(), null(), null_mut()), FrikanStatus::NotStarted);
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), 20, null(), null_mut()), FrikanStatus::Truncated);
+    }
+    for (trust, status) in [
+        (FrikanTrust { joint: c"wrist".as_ptr(), ..fitting }, FrikanStatus::OtherJoint),
+        (FrikanTrust { unit: FRIKAN_UNIT_AMPERE, ..fitting }, FrikanStatus::OtherUnit),
+        (FrikanTrust { unit: 99, ..fitting }, FrikanStatus::OtherUnit),
+        (FrikanTrust { channels: FRIKAN_CHANNEL_POSITION, ..fitting }, FrikanStatus::MissingChannel),
+        (FrikanTrust { least_release: 1, ..fitting }, FrikanStatus::Outdated),
+    ] {
+        assert_eq!(start(&mut elbow, trust), status);
+        assert_eq!(step(&mut elbow), (0.0, status));
+    }
+}
+
 #[cfg(feature = "auth")]
 #[test]
 fn a_key_asks_for_its_tag() {
-    use frikan_runtime::shared::authentication::Key;
+    use frikan_runtime::shared::authentication::{Key, release_block};
     let key = [9; 32];
     let tagged = [IMAGE, &Key::new(key).tag(IMAGE), &[0xFF; 8]].concat();
+    let release = [IMAGE, &release_block(7)].concat();
+    let release = [&release[..], &Key::new(key).tag(&release), &[0xFF; 8]].concat();
     let mut elbow = zeroed();
     assert_eq!(start(&mut elbow, &tagged, Some(&key)), FrikanStatus::Active);
+    for (bytes, least_release, status) in [
+        (&release, 7, FrikanStatus::Active),
+        (&release, 8, FrikanStatus::Outdated),
+        (&tagged, 0, FrikanStatus::Active),
+        (&tagged, 1, FrikanStatus::Outdated),
+    ] {
+        let trust = FrikanTrust { key: key.as_ptr(), least_release, ..ANY };
+        // SAFETY: a slice and its length, references.
+        assert_eq!(unsafe { frikan_start(&mut *elbow, bytes.as_ptr(), bytes.len(), &trust, &LIMITS) }, status);
+    }
     assert_eq!(start(&mut elbow, &tagged, Some(&[8; 32])), FrikanStatus::NotAuthentic);
     assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotAuthentic));
     assert_eq!(start(&mut elbow, &[IMAGE, &[0xFF; 64]].concat(), Some(&key)), FrikanStatus::NotAuthentic);
@@ -323,5 +382,9 @@ fn an_update_goes_to_the_slot_that_is_not_in_use() {
         };
         assert_eq!(status, FrikanStatus::Active);
         assert!(step(&mut elbow).0 > 10.0);
+        // SAFETY: slices and their lengths, any image.
+        let used = unsafe { frikan_slot_in_use(first.as_ptr(), first.len(), second.as_ptr(), second.len(), null()) };
+        assert_eq!((used.status, used.slot, used.sequence), (FrikanStatus::Active, write.slot, round));
+        assert_eq!((used.image, used.bytes), (flash[write.slot as usize][16..].as_ptr(), IMAGE.len()));
     }
 }

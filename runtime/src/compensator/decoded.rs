@@ -1,5 +1,6 @@
 //! Compensation by an image that is decoded to a model in memory.
 
+use frikan_shared::admission::Admission;
 use frikan_shared::authentication::Trust;
 use frikan_shared::image::ImageError;
 use frikan_shared::model::Model;
@@ -66,6 +67,10 @@ impl<const CELLS: usize> FrictionModel for Decoded<CELLS> {
     fn rest(&mut self) {
         self.restore(&self.warmth(), 0.0);
     }
+
+    fn checksum(&self) -> Option<u32> {
+        Some(self.model.checksum())
+    }
 }
 
 impl<const CELLS: usize> Compensator<CELLS> {
@@ -73,6 +78,12 @@ impl<const CELLS: usize> Compensator<CELLS> {
     #[must_use]
     pub fn new(image: &[u8], limits: Limits) -> Self {
         Self::trusting(image, Trust::Anyone, limits)
+    }
+
+    /// Compensation by an image that is admitted.
+    #[must_use]
+    pub fn admitting(image: &[u8], admission: &Admission<'_>, limits: Limits) -> Self {
+        Self::with_model(admission.decode(image).map(|image| image.model), limits)
     }
 
     /// Compensation by an image of whom `trust` names.

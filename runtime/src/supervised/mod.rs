@@ -100,8 +100,8 @@ impl Supervisor {
     pub fn new(settings: Supervision) -> Result<Self, SupervisionError> {
         settings.validate()?;
         Ok(Self {
+            pace: Pace::of(&settings),
             settings,
-            pace: Pace::default(),
             observer: Observer::default(),
             monitor: Monitor::new(),
             adaptation: Adaptation::new(),
@@ -177,7 +177,7 @@ impl Supervisor {
             return self.off(Status::NotFinite, &limits, dt);
         }
         if dt != self.pace.dt {
-            self.pace = Pace::at(&self.settings, dt);
+            self.pace.set(&self.settings, dt);
         }
         // What no joint does must not overflow what the filters remember.
         let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));

@@ -2,7 +2,7 @@
 //!
 //! `loop torque - J dv/dt`, where the loop torque is all that acts on the joint but friction, compensation and outside forces, both sides
 //! of the difference behind the same low-pass (Hsu, Bodson, Sastry & Paden 1987). It is friction less compensation. The low-pass has two
-//! stages, so that a count of the encoder is a bounded torque ([`Pace::at`]).
+//! stages, so that a count of the encoder is a bounded torque ([`Pace::of`]).
 
 use super::pace::Pace;
 use super::settings::Supervision;

@@ -11,6 +11,8 @@ pub struct Pace {
     pub dt: f32,
     /// 1/s.
     pub rate: f32,
+    /// Time constant of either stage of the observer's low-pass, s.
+    pub observer_time: f32,
     /// Share by which either stage of the observer's low-pass moves in a sample.
     pub observer: f32,
     /// Hold times in a sample.
@@ -19,6 +21,8 @@ pub struct Pace {
     pub standstill: f32,
     /// Whether the encoder has too few counts within a contact to tell whether the joint sticks.
     pub is_coarse: bool,
+    /// Rate of the low-pass of the velocity that is believed, 1/s.
+    pub velocity_rate: f32,
     /// Share of a sample in the velocity that is believed.
     pub velocity: f32,
     /// Share of the gain that the monitor takes back in a sample where all friction is over-compensated once more.
@@ -36,37 +40,40 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// The settings for a period of `dt` seconds, above 0.
+    /// What does not depend on the period, before the first sample.
     ///
     /// A step of one count, twice behind a low-pass of time constant `T`, looks like a torque of `inertia count / T^2`, and behind one of
     /// `T` like a velocity of `count / T`. `T` is as long as it takes for the first to be within the least friction, and for the second to be
     /// within half the rest velocity.
     #[must_use]
-    #[inline(never)]
-    pub fn at(supervision: &Supervision, dt: f32) -> Self {
+    pub fn of(supervision: &Supervision) -> Self {
         let of_count = root(supervision.inertia * supervision.count / supervision.least_friction);
         let time = larger(0.5 * supervision.observer_time, of_count);
-        let observer = lag_share(dt / time);
         Self {
-            dt,
-            rate: 1.0 / dt,
-            observer,
-            hold: dt / supervision.hold_time,
+            observer_time: time,
             // One count is no motion: behind both stages it looks like a speed of 1 / e of this at most.
             standstill: larger(supervision.standstill, 0.5 * supervision.count / time),
             is_coarse: COUNTS_OF_A_CONTACT * supervision.count > supervision.presliding,
-            velocity: if supervision.count > 0.0 {
-                lag_share(0.5 * dt * supervision.rest_velocity / supervision.count)
-            } else {
-                1.0
-            },
-            fall: dt / supervision.fall_time,
-            rise: dt / supervision.rise_time,
+            // At once, where there are no counts.
+            velocity_rate: 0.5 * supervision.rest_velocity / supervision.count,
             elastic_energy: FRICTION_OF_A_CONTACT * supervision.least_friction * supervision.presliding,
-            plausibility: lag_share(PLAUSIBILITY_SHARE * dt / supervision.implausible_time),
             count_velocity: PLAUSIBILITY_SHARE * supervision.count / supervision.implausible_time,
-            memory: supervision.adaptation.map_or(0.0, |adaptation| lag_share(dt / adaptation.memory())),
+            ..Self::default()
         }
+    }
+
+    /// The settings for a period of `dt` seconds, above 0 and finite.
+    #[inline(never)]
+    pub fn set(&mut self, supervision: &Supervision, dt: f32) {
+        self.dt = dt;
+        self.rate = 1.0 / dt;
+        self.observer = lag_share(dt / self.observer_time);
+        self.hold = dt / supervision.hold_time;
+        self.velocity = lag_share(dt * self.velocity_rate);
+        self.fall = dt / supervision.fall_time;
+        self.rise = dt / supervision.rise_time;
+        self.plausibility = lag_share(PLAUSIBILITY_SHARE * dt / supervision.implausible_time);
+        self.memory = supervision.adaptation.map_or(0.0, |adaptation| lag_share(dt / adaptation.memory()));
     }
 }
 

@@ -41,7 +41,7 @@ pub struct Supervision {
     pub standstill: f32,
     /// Way after a reversal in which the contact is elastic, rad.
     pub presliding: f32,
-    /// Delay of the observer's low-pass, s; that of a coarse encoder is longer, see [`super::pace::Pace::at`].
+    /// Delay of the observer's low-pass, s; that of a coarse encoder is longer, see [`super::pace::Pace::of`].
     pub observer_time: f32,
     /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
     pub fall_time: f32,

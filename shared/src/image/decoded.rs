@@ -1,7 +1,8 @@
 //! Images as models in memory.
 
 use super::header::{
-    COVERED_HEADER_BYTES, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum, verified,
+    COVERED_HEADER_BYTES, EFFECTS_SINCE, FORMAT_VERSION, HEADER_BYTES, ImageError, LAW_ERROR_SINCE, MAGIC,
+    MAX_PAYLOAD_BYTES, RIGID_BODY_ERROR_SINCE, checksum, verified,
 };
 use crate::model::{LawError, Model, Provenance};
 
@@ -23,18 +24,35 @@ pub fn decode<const CELLS: usize>(bytes: &[u8]) -> Result<Image<CELLS>, ImageErr
     if usize::from(header.cells) > CELLS {
         return Err(ImageError::TooLarge);
     }
-    let (provenance, rest) = postcard::take_from_bytes::<Provenance>(payload).map_err(|_| ImageError::Malformed)?;
+    let (provenance, rest) = provenance(header.version, payload).map_err(|_| ImageError::Malformed)?;
     let LawError { slow, sliding } = provenance.law_error;
     let is_bounded = [slow, sliding].iter().all(|error| error.is_finite() && *error >= 0.0);
     if !is_bounded || !provenance.rigid_body_error.factor.iter().all(|error| error.is_finite()) {
         return Err(ImageError::Malformed);
     }
-    let (model, rest) = postcard::take_from_bytes::<Model<CELLS>>(rest).map_err(|_| ImageError::Malformed)?;
+    let decoded = postcard::take_from_bytes::<Model<CELLS>>(rest);
+    if header.version < EFFECTS_SINCE && !decoded.as_ref().is_ok_and(|(model, _)| model.effects.is_empty()) {
+        return Err(ImageError::UnsupportedVersion(header.version));
+    }
+    let (model, rest) = decoded.map_err(|_| ImageError::Malformed)?;
     if !rest.is_empty() || model.cells.len() != usize::from(header.cells) {
         return Err(ImageError::Malformed);
     }
     model.validate()?;
     Ok(Image { provenance, model })
+}
+
+/// The provenance at the start of a payload: earlier versions say less, and what they do not say was not determined.
+fn provenance(version: u16, payload: &[u8]) -> postcard::Result<(Provenance, &[u8])> {
+    let ((joint, trainer_version, recordings_hash, seed), mut rest) = postcard::take_from_bytes(payload)?;
+    let (mut law_error, mut rigid_body_error) = Default::default();
+    if version >= LAW_ERROR_SINCE {
+        (law_error, rest) = postcard::take_from_bytes(rest)?;
+    }
+    if version >= RIGID_BODY_ERROR_SINCE {
+        (rigid_body_error, rest) = postcard::take_from_bytes(rest)?;
+    }
+    Ok((Provenance { joint, trainer_version, recordings_hash, seed, law_error, rigid_body_error }, rest))
 }
 
 /// Encodes an image into `buffer` and returns the bytes that it takes.
