@@ -4,6 +4,8 @@
 //! The tag is HMAC-SHA-256 (RFC 2104, FIPS 180-4) over every byte before it, which makes `openssl dgst -sha256 -mac HMAC` a second
 //! opinion. It says who made the image; the number of a release, between image and tag, says which of two is the later one.
 
+pub mod admission;
+
 #[cfg(feature = "auth")]
 use hmac::{Hmac, KeyInit, Mac};
 #[cfg(feature = "auth")]

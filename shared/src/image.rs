@@ -11,7 +11,7 @@ mod header;
 mod table;
 
 #[cfg(feature = "models")]
-pub use decoded::{Image, decode, encode};
+pub use decoded::{Image, decode, encode, model_checksum};
 pub use header::{
     Checksum, EARLIEST_VERSION, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum,
     image_bytes, image_crc32, image_version,

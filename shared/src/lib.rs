@@ -8,7 +8,6 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod admission;
 pub mod authentication;
 #[cfg(feature = "models")]
 pub mod effect;

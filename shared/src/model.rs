@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::effect::{Effect, MAX_EFFECTS};
 use crate::expression::Program;
-use crate::image::Checksum;
 pub use crate::input::{Input, MAX_INPUTS};
 use crate::integer_table::IntegerTable;
 use crate::network::Network;
@@ -132,22 +131,6 @@ impl RigidBodyError {
     }
 }
 
-/// Takes bytes for their checksum alone.
-struct Summed(Checksum);
-
-impl postcard::ser_flavors::Flavor for Summed {
-    type Output = u32;
-
-    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.0 = self.0.over(&[byte]);
-        Ok(())
-    }
-
-    fn finalize(self) -> postcard::Result<u32> {
-        Ok(self.0.value())
-    }
-}
-
 /// Share of the top speed up to which friction may be that of break-away.
 pub const SLOW_SHARE: f64 = 0.1;
 
@@ -175,13 +158,6 @@ pub struct Model<const CELLS: usize> {
 }
 
 impl<const CELLS: usize> Model<CELLS> {
-    /// CRC-32 of the model as it is in memory: another number than before means that memory has changed. Takes as long as the encoding of an image.
-    #[must_use]
-    pub fn checksum(&self) -> u32 {
-        // Neither writes to anything that could be too small.
-        postcard::serialize_with_flavor(self, Summed(Checksum::new())).unwrap_or(0)
-    }
-
     /// Largest speed within the range of the velocity, in its unit; `None` where the model does not read it.
     #[must_use]
     pub fn top_speed(&self) -> Option<f32> {

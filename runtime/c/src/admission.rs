@@ -3,12 +3,12 @@
 use core::ffi::c_char;
 use core::hint::black_box;
 
-use frikan_runtime::shared::admission::{Admission, Channels, Demands, Facts};
+use frikan_runtime::shared::authentication::admission::{Admission, Channels, Demands, Facts};
 use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
 use frikan_runtime::shared::image::{ImageError, image_crc32};
 use frikan_runtime::shared::units::Unit;
 
-use crate::ffi::readable;
+use crate::memory::readable;
 use crate::model::{ImageModel, read, with_facts};
 use crate::types::FrikanStatus;
 

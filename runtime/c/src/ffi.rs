@@ -1,7 +1,6 @@
 //! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call.
 
 use core::ffi::c_void;
-use core::slice;
 
 use frikan_runtime::compensator::{Limited, Limits};
 use frikan_runtime::measurement::Measurement;
@@ -10,7 +9,7 @@ use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::shared::input::MAX_INPUTS;
 
 use crate::admission::{self, FrikanTrust};
-use crate::memory::{self, Memory, content};
+use crate::memory::{self, Memory, content, readable};
 use crate::model::{ImageModel, Law, Model};
 use crate::types::{
     FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_STORAGE_WORDS, FrikanCompensation, FrikanLaw, FrikanLimits,
@@ -91,15 +90,6 @@ pub(crate) unsafe fn replace(memory: *mut FrikanCompensator, model: Result<Image
             FrikanStatus::Active
         }
     }
-}
-
-/// Bytes of C; none for a null pointer.
-///
-/// # Safety
-/// `bytes` is null or `length` bytes may be read from it during the call.
-pub(crate) unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
-    // SAFETY: the caller's word; no object is larger than `isize::MAX`.
-    if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
 }
 
 /// Limits of C; none for a null pointer and for limits that cannot be kept.

@@ -6,7 +6,8 @@ use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::slots::flash::{Flash, Layout, Stored, WriteError, newest_usable, write};
 
 use crate::admission::{self, FrikanTrust};
-use crate::ffi::{FrikanCompensator, Inner, limits_at, readable, replace, start};
+use crate::ffi::{FrikanCompensator, Inner, limits_at, replace, start};
+use crate::memory::readable;
 use crate::model::{ImageModel, Model};
 use crate::types::{FrikanLimits, FrikanStatus};
 

@@ -7,7 +7,7 @@ use frikan_runtime::compensator::{Exported, FrictionModel};
 #[cfg(feature = "models")]
 use frikan_runtime::friction::Warmth;
 use frikan_runtime::measurement::{Friction, Measurement};
-use frikan_runtime::shared::admission::{Admission, Facts};
+use frikan_runtime::shared::authentication::admission::{Admission, Facts};
 use frikan_runtime::shared::image::ImageError;
 
 use crate::types::FrikanMeasurement;

@@ -5,7 +5,8 @@ use core::mem::MaybeUninit;
 use frikan_runtime::slots::{SLOT_HEADER_BYTES, Which, newest_usable, next_write_beside, slot_header};
 
 use crate::admission::{self, FrikanTrust};
-use crate::ffi::{FrikanCompensator, Inner, limits_at, readable, start};
+use crate::ffi::{FrikanCompensator, Inner, limits_at, start};
+use crate::memory::readable;
 use crate::model::Model;
 use crate::types::{FRIKAN_SLOT_HEADER_BYTES, FrikanLimits, FrikanSlotWrite, FrikanStatus};
 

@@ -1,8 +1,8 @@
 //! Compensation by an image that is decoded to a model in memory.
 
-use frikan_shared::admission::Admission;
 use frikan_shared::authentication::Trust;
-use frikan_shared::image::ImageError;
+use frikan_shared::authentication::admission::Admission;
+use frikan_shared::image::{ImageError, model_checksum};
 use frikan_shared::model::Model;
 
 use super::limited::{FrictionModel, Limited};
@@ -69,7 +69,7 @@ impl<const CELLS: usize> FrictionModel for Decoded<CELLS> {
     }
 
     fn checksum(&self) -> Option<u32> {
-        Some(self.model.checksum())
+        Some(model_checksum(&self.model))
     }
 }
 

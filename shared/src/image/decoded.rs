@@ -1,7 +1,7 @@
 //! Images as models in memory.
 
 use super::header::{
-    COVERED_HEADER_BYTES, EFFECTS_SINCE, FORMAT_VERSION, HEADER_BYTES, ImageError, LAW_ERROR_SINCE, MAGIC,
+    COVERED_HEADER_BYTES, Checksum, EFFECTS_SINCE, FORMAT_VERSION, HEADER_BYTES, ImageError, LAW_ERROR_SINCE, MAGIC,
     MAX_PAYLOAD_BYTES, RIGID_BODY_ERROR_SINCE, checksum, verified,
 };
 use crate::model::{LawError, Model, Provenance};
@@ -81,4 +81,27 @@ pub fn encode<'a, const CELLS: usize>(image: &Image<CELLS>, buffer: &'a mut [u8]
     let (covered, crc32) = head.split_at_mut(COVERED_HEADER_BYTES);
     crc32.copy_from_slice(&checksum(&[covered, payload]).to_le_bytes());
     buffer.get(..HEADER_BYTES + payload_bytes).ok_or(ImageError::BufferTooSmall)
+}
+
+/// CRC-32 of a model as it is in memory: another number than before means that memory has changed. Takes as long as the encoding of an image.
+#[must_use]
+pub fn model_checksum<const CELLS: usize>(model: &Model<CELLS>) -> u32 {
+    // Nothing is written that could be too small.
+    postcard::serialize_with_flavor(model, Summed(Checksum::new())).unwrap_or(0)
+}
+
+/// Takes bytes for their checksum alone.
+struct Summed(Checksum);
+
+impl postcard::ser_flavors::Flavor for Summed {
+    type Output = u32;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.0 = self.0.over(&[byte]);
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<u32> {
+        Ok(self.0.value())
+    }
 }

@@ -3,8 +3,8 @@ use crate::authentication::{Key, release_block};
 use crate::image::encode;
 use std::vec::Vec;
 
-const TABLE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
-const FORMULA: &[u8] = include_bytes!("../../../fixtures/elbow.frk");
+const TABLE: &[u8] = include_bytes!("../../../../fixtures/stribeck.frk");
+const FORMULA: &[u8] = include_bytes!("../../../../fixtures/elbow.frk");
 const KEY: Key = Key::new([5; 32]);
 
 fn tagged(image: &[u8], release: Option<u32>) -> Vec<u8> {
