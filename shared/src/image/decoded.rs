@@ -1,10 +1,13 @@
 //! Images as models in memory.
 
 use super::header::{
-    COVERED_HEADER_BYTES, Checksum, EFFECTS_SINCE, FORMAT_VERSION, HEADER_BYTES, ImageError, LAW_ERROR_SINCE, MAGIC,
+    COVERED_HEADER_BYTES, Checksum, FORMAT_VERSION, HEADER_BYTES, ImageError, LAW_ERROR_SINCE, MAGIC,
     MAX_PAYLOAD_BYTES, RIGID_BODY_ERROR_SINCE, checksum, verified,
 };
 use crate::model::{LawError, Model, Provenance};
+
+/// Since when effects are written as they are today.
+const EFFECTS_SINCE: u16 = 4;
 
 /// A model with its provenance.
 #[derive(Clone, Debug, PartialEq)]

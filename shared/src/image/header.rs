@@ -17,9 +17,6 @@ pub const EARLIEST_VERSION: u16 = 3;
 pub(super) const LAW_ERROR_SINCE: u16 = 5;
 pub(super) const RIGID_BODY_ERROR_SINCE: u16 = 6;
 
-/// Since when effects are written as they are today.
-pub(super) const EFFECTS_SINCE: u16 = 4;
-
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 16;
 
