@@ -49,7 +49,8 @@ fn expected(model: &TestModel, samples: &[[f32; ROW]]) -> Vec<[f32; 2]> {
         let [velocity, position, load, temperature] = [*velocity, *position, *load, *temperature];
         let measurement = Measurement { velocity, position, load, temperature, ..Measurement::MISSING };
         let friction = state.friction(&measurement, *dt, above_0_to(1.0, *dt), f32::MAX);
-        [friction.torque, friction.position]
+        // What is not usable means nothing.
+        if friction.usable.is_usable() { [friction.torque, friction.position] } else { [0.0; 2] }
     };
     samples.iter().map(&mut step).collect()
 }
