@@ -5,6 +5,8 @@ cd "$(dirname "$0")/.."
 
 tests/setup.sh
 cargo nextest run --workspace "$@"
+# The C library as it is by default is among them; here with all that it can have.
+cargo nextest run -p frikan-c --features auth,expression,network,effects "$@"
 cargo test --workspace --doc
 # Says which measured pages are older than what they measure; that is no failure.
 tests/pages.sh

@@ -54,6 +54,7 @@ c_compiler() {
     command -v arm-none-eabi-gcc >/dev/null && [ -e "$(arm-none-eabi-gcc -print-file-name=libm.a)" ] ||
         install_packages gcc-arm-none-eabi libnewlib-arm-none-eabi || fail "arm-none-eabi-gcc cannot be installed"
     say "$(arm-none-eabi-gcc --version | head -n 1)"
+    command -v cmake >/dev/null || install_packages cmake || fail "cmake cannot be installed"
 }
 
 has_target() {

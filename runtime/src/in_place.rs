@@ -13,7 +13,7 @@
 //! assert_eq!(answer.torque, 0.0); // there is no image
 //! ```
 
-use frikan_shared::image::{Cells, ImageError, TableImage};
+use frikan_shared::image::{Cells, Checksum, ImageError, TableImage};
 use frikan_shared::table::Cell;
 
 use crate::compensator::FrictionModel;
@@ -49,7 +49,7 @@ impl<'a> TableInPlace<'a> {
     /// Those of [`TableImage::read`].
     #[inline(never)]
     pub fn new(image: &'a [u8]) -> Result<Self, ImageError> {
-        TableImage::read(image).map(Self::of)
+        TableImage::read(image).map(Self::from)
     }
 
     /// The table of the image at the start of a region of flash; what follows is not looked at.
@@ -58,19 +58,7 @@ impl<'a> TableInPlace<'a> {
     /// Those of [`TableImage::at_start`].
     #[inline(never)]
     pub fn at_start(flash: &'a [u8]) -> Result<Self, ImageError> {
-        TableImage::at_start(flash).map(Self::of)
-    }
-
-    #[inline(always)]
-    fn of(TableImage { layout, cells, .. }: TableImage<'a>) -> Self {
-        let [positive, negative] = layout.sides;
-        Self {
-            sides: layout.sides.map(|side| Side { origin: side.origin, last_position: side.last_position }),
-            offset: layout.offset,
-            cells_per_turn: positive.cells_per_turn,
-            negative_sign: negative.sign,
-            cells,
-        }
+        TableImage::at_start(flash).map(Self::from)
     }
 
     /// The value of the table at a velocity; that at an end for NaN.
@@ -89,6 +77,20 @@ impl<'a> TableInPlace<'a> {
     }
 }
 
+impl<'a> From<TableImage<'a>> for TableInPlace<'a> {
+    #[inline(always)]
+    fn from(TableImage { layout, cells, .. }: TableImage<'a>) -> Self {
+        let [positive, negative] = layout.sides;
+        Self {
+            sides: layout.sides.map(|side| Side { origin: side.origin, last_position: side.last_position }),
+            offset: layout.offset,
+            cells_per_turn: positive.cells_per_turn,
+            negative_sign: negative.sign,
+            cells,
+        }
+    }
+}
+
 impl FrictionModel for TableInPlace<'_> {
     #[inline(always)]
     fn friction(&mut self, measurement: &Measurement, _: f32, is_step: i32, _: f32) -> Friction {
@@ -100,6 +102,21 @@ impl FrictionModel for TableInPlace<'_> {
     }
 
     fn rest(&mut self) {}
+
+    fn checksum(&self) -> Option<u32> {
+        let [positive, negative] = self.sides;
+        let words = [
+            positive.origin,
+            positive.last_position,
+            negative.origin,
+            negative.last_position,
+            self.offset.to_bits(),
+            self.cells_per_turn,
+            self.negative_sign,
+        ];
+        let sum = words.into_iter().fold(Checksum::new(), |sum, word| sum.over(&word.to_le_bytes()));
+        Some(sum.over(self.cells.as_flattened()).value())
+    }
 }
 
 #[cfg(all(test, feature = "models"))]

@@ -21,6 +21,11 @@
 #[cfg(test)]
 extern crate std;
 
+/// The example of the README is one that runs.
+#[cfg(all(doctest, feature = "table"))]
+#[doc = include_str!("../README.md")]
+mod readme {}
+
 pub mod bounds;
 pub mod compensator;
 #[cfg(feature = "supervised")]

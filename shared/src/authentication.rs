@@ -1,8 +1,10 @@
 //! Who made an image: an optional tag behind it, by a key that trainer and drive share. A table is torque; a CRC finds damage, not
 //! forgery.
 //!
-//! The tag is HMAC-SHA-256 (RFC 2104, FIPS 180-4) over every byte of the image, which makes `openssl dgst -sha256 -mac HMAC` a second
-//! opinion. It says who made the image, not that no later one exists.
+//! The tag is HMAC-SHA-256 (RFC 2104, FIPS 180-4) over every byte before it, which makes `openssl dgst -sha256 -mac HMAC` a second
+//! opinion. It says who made the image; the number of a release, between image and tag, says which of two is the later one.
+
+pub mod admission;
 
 #[cfg(feature = "auth")]
 use hmac::{Hmac, KeyInit, Mac};
@@ -18,6 +20,31 @@ pub const KEY_BYTES: usize = 32;
 
 /// Bytes of a tag.
 pub const TAG_BYTES: usize = 32;
+
+/// First bytes of the number of a release, which stands between image and tag, and under the tag.
+pub const RELEASE_MAGIC: [u8; 4] = *b"FRLS";
+
+/// Bytes of it: [`RELEASE_MAGIC`] and the number, little-endian.
+pub const RELEASE_BYTES: usize = 8;
+
+/// What stands behind the image of a release, before the tag.
+#[must_use]
+pub fn release_block(release: u32) -> [u8; RELEASE_BYTES] {
+    let ([a, b, c, d], [e, f, g, h]) = (RELEASE_MAGIC, release.to_le_bytes());
+    [a, b, c, d, e, f, g, h]
+}
+
+/// An image before the number of its release, and the number, 0 where there is none.
+fn without_release(bytes: &[u8]) -> (&[u8], u32) {
+    let block = bytes.split_last_chunk::<RELEASE_BYTES>();
+    match block.map(|(image, block)| (image, block.as_chunks().0)) {
+        // The tag has said that whoever made the image has put it there, as far as the header goes.
+        Some((image, [RELEASE_MAGIC, number])) if image_bytes(image) == Ok(image.len()) => {
+            (image, u32::from_le_bytes(*number))
+        }
+        _ => (bytes, 0),
+    }
+}
 
 /// A secret that trainer and drive share.
 #[cfg(feature = "auth")]
@@ -91,13 +118,16 @@ impl Trust<'_> {
         }
     }
 
-    /// The image at the start of a region of flash, with its tag where one is asked for; what follows is not looked at.
+    /// The image at the start of a region of flash, with the number of its release and its tag where one is asked for; what follows is not looked at.
     ///
     /// # Errors
     /// As [`image_bytes`].
     pub fn stored(self, flash: &[u8]) -> Result<&[u8], ImageError> {
-        let length = image_bytes(flash)?.saturating_add(self.tag_bytes());
-        flash.get(..length).ok_or(ImageError::Truncated)
+        let image = image_bytes(flash)?;
+        let has_release =
+            self.tag_bytes() > 0 && flash.get(image..).is_some_and(|behind| behind.starts_with(&RELEASE_MAGIC));
+        let release = if has_release { RELEASE_BYTES } else { 0 };
+        flash.get(..image.saturating_add(release + self.tag_bytes())).ok_or(ImageError::Truncated)
     }
 
     /// The image of exactly one image and its tag where one is asked for. Tags are compared in constant time, before anything of
@@ -106,11 +136,19 @@ impl Trust<'_> {
     /// # Errors
     /// [`ImageError::NotAuthentic`] where the tag is not right or not there.
     pub fn authentic(self, bytes: &[u8]) -> Result<&[u8], ImageError> {
+        self.released(bytes).map(|(image, _)| image)
+    }
+
+    /// As [`Trust::authentic`], with the number of the release, which the tag covers as well; 0 where there is none.
+    ///
+    /// # Errors
+    /// [`ImageError::NotAuthentic`] where the tag is not right or not there.
+    pub fn released(self, bytes: &[u8]) -> Result<(&[u8], u32), ImageError> {
         match self {
-            Self::Anyone => Ok(bytes),
+            Self::Anyone => Ok((bytes, 0)),
             Self::Key(key) => {
-                let (image, tag) = bytes.split_last_chunk::<TAG_BYTES>().ok_or(ImageError::NotAuthentic)?;
-                if key.has_made(image, tag) { Ok(image) } else { Err(ImageError::NotAuthentic) }
+                let (tagged, tag) = bytes.split_last_chunk::<TAG_BYTES>().ok_or(ImageError::NotAuthentic)?;
+                if key.has_made(tagged, tag) { Ok(without_release(tagged)) } else { Err(ImageError::NotAuthentic) }
             }
         }
     }

@@ -11,9 +11,10 @@ mod header;
 mod table;
 
 #[cfg(feature = "models")]
-pub use decoded::{Image, decode, encode};
+pub use decoded::{Image, decode, encode, model_checksum};
 pub use header::{
-    Checksum, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum, image_bytes, image_crc32,
+    Checksum, EARLIEST_VERSION, FORMAT_VERSION, HEADER_BYTES, ImageError, MAGIC, MAX_PAYLOAD_BYTES, checksum,
+    image_bytes, image_crc32, image_version,
 };
 pub use table::{Cells, TableImage};
 

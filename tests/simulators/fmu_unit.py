@@ -66,7 +66,7 @@ if __name__ == "__main__":
         unit.terminate()
         unit.freeInstance()
         sources = sorted(str(source) for source in (Path(folder) / "sources").glob("*.c"))
-        flags = "-std=c99 -pedantic -Wall -Wextra -Werror -DFMI3_FUNCTION_PREFIX=joint_friction_ -c".split()
+        flags = "-std=c99 -pedantic -Wall -Wextra -Werror -c".split() + [f"-DFMI3_FUNCTION_PREFIX={description.coSimulation.modelIdentifier}_"]
         subprocess.run(["cc", *flags, *sources], cwd=folder, check=True)
     # What a tool does with a unit: inputs over time, outputs over time.
     over_time = np.zeros(11, dtype=[("time", float)] + [(name, float) for name in inputs.dtype.names])

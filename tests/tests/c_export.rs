@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use frikan_runtime::evaluate::evaluate;
+use frikan_runtime::friction::{FrictionState, Measurement};
 use frikan_runtime::shared::expression::{Operation, Program};
-use frikan_runtime::shared::model::{Input, Law};
+use frikan_runtime::shared::model::{Input, Law, MAX_INPUTS};
 use frikan_runtime::shared::units::{Quantity, Unit};
 use frikan_tests::c::{cortex_m4f_assembly, firmware, floats_through, host_program};
 use frikan_tests::models::{self, TestModel};
@@ -78,8 +79,12 @@ fn rows(model: &TestModel, count: usize) -> Vec<f32> {
 }
 
 fn expected(model: &TestModel, values: &[f32]) -> Vec<f32> {
-    let point = |row: &[f32]| std::array::from_fn(|index| row.get(index).copied().unwrap_or(0.0));
-    values.chunks_exact(model.inputs.len()).map(|row| evaluate(model, &point(row))).collect()
+    // Velocity, and the load where there are two.
+    let step = |row: &[f32]| {
+        let measurement = Measurement { velocity: row[0], load: row[row.len() - 1], ..Measurement::MISSING };
+        FrictionState::new().step(model, &measurement, 1.0e-3).torque
+    };
+    values.chunks_exact(model.inputs.len()).map(step).collect()
 }
 
 /// Writes `law.c` and `law.h`, and returns the path of the source.
@@ -175,6 +180,29 @@ fn nothing_is_contracted_on_a_processor_that_could() {
             assert_eq!(contracted.collect::<Vec<_>>(), Vec::<&str>::new(), "{level}");
         }
     }
+}
+
+/// An exported law does at rest and for what is no number what the drive does.
+#[test]
+fn rest_and_what_is_not_finite_are_none_of_the_law() {
+    let model = expression(&[Operation::Input(0), Operation::Offset(-1.5)]);
+    let specials = [0.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MIN_POSITIVE];
+    let expected = expected(&model, specials.map(|velocity| [velocity, 1.0]).as_flattened());
+    assert_eq!(expected, [0.0, 0.0, 0.0, 0.0, 0.0, -1.5]);
+    assert_eq!(evaluate(&model, &[0.0; MAX_INPUTS]), -1.5, "the test is idle");
+}
+
+/// Processors with half precision compute floats as floats.
+#[test]
+fn half_precision_is_no_reason_to_refuse() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = write(folder.path(), &models::symmetric_table());
+    let method = folder.path().join("method.c");
+    std::fs::write(&method, "#include <float.h>\n#if FLT_EVAL_METHOD != 16\n#error \"not that\"\n#endif\n").unwrap();
+    let cortex_m55 = ["-O2", "-mcpu=cortex-m55", "-mfpu=auto"];
+    cortex_m4f_assembly(&method, &cortex_m55).unwrap();
+    let assembly = cortex_m4f_assembly(&source, &cortex_m55).unwrap();
+    assert!(!assembly.contains("vfma.f32") && !assembly.contains("vfms.f32"));
 }
 
 /// Options under which the source would compute something else are refused by it.

@@ -1,6 +1,7 @@
 //! The C library in the example firmware on the emulated Cortex-M4F, against the compensator of the host.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use frikan_runtime::compensator::{Compensator, Limits, Status};
 use frikan_runtime::friction::Measurement;
@@ -9,7 +10,7 @@ use frikan_runtime::shared::effect::{Effect, Element, Harmonic, Kind};
 use frikan_runtime::shared::model::Input;
 use frikan_runtime::shared::units::{Quantity, Unit};
 use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
-use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS as INPUTS, example, example_of_nothing};
+use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS as INPUTS, example, example_of_nothing, library_folder};
 use frikan_tests::models::{CELLS, TestModel, image, sided_table, stribeck_expression, symmetric_table};
 use frikan_trainer::emulator::{Answer, Emulator, Firmware, Mode, Request, footprint};
 use frikan_trainer::error::Result;
@@ -136,6 +137,22 @@ fn the_library_is_small_by_default() {
     let answer = torques(&emulator(elf), &image(&symmetric_table()), &[0.0; INPUTS]).unwrap();
     let stack = answer.decode_stack_bytes.max(answer.evaluate_stack_bytes);
     assert!(stack <= STACK_BYTES && answer.decode_stack_bytes > 100, "{answer:?}");
+}
+
+/// By `find_package(Frikan)`, with features and a number of cells that the header has to be told of.
+#[test]
+fn cmake_builds_the_example() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = library_folder().join("example").display().to_string();
+    let cmake = |arguments: &[&str]| {
+        let output = Command::new("cmake").current_dir(folder.path()).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    cmake(&["-S", &source, "-B", "build", "-DFRIKAN_FEATURES=supervised,slots,expression", "-DFRIKAN_CELLS=64"]);
+    cmake(&["--build", "build"]);
+    let emulator = emulator(folder.path().join("build/drive.elf"));
+    let torque = torques(&emulator, &image(&symmetric_table()), &[0.3; INPUTS]).unwrap().outputs[0];
+    assert!(torque > 0.0, "{torque}");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn every_form_holds_the_very_bytes() {
 
     assert_eq!(export(at, "c-header", "m.h", &[]).status, 0);
     let main = at.join("main.c");
-    std::fs::write(&main, "#include \"m.h\"\n#include <stdio.h>\nint main(void) { return fwrite(frikan_image, sizeof frikan_image, 1, stdout) != 1; }\n").unwrap();
+    std::fs::write(&main, "#include \"m.h\"\n#include <stdio.h>\nint main(void) { return fwrite(m_image, M_IMAGE_BYTES, 1, stdout) != 1; }\n").unwrap();
     host_program(&[main], &at.join("array"));
     assert!(Command::new(at.join("array")).output().unwrap().stdout == image);
 
@@ -94,14 +94,15 @@ fn the_object_file_links() {
     let at = bench.path();
     let image = std::fs::read(at.join("stribeck.frk")).unwrap();
     assert_eq!(export(at, "elf", "m.o", &[]).status, 0);
+    assert_eq!(run(at, &["export", "elbow.frk", "--to", "elf", "-o", "n.o"]).status, 0);
     std::fs::write(
         at.join("m.c"),
-        "extern const unsigned char frikan_image[];\nconst void *entry(void) { return frikan_image; }\n",
+        "extern const unsigned char m_image[], n_image[];\nconst void *entry(int n) { return n ? n_image : m_image; }\n",
     )
     .unwrap();
     std::fs::write(
         at.join("m.ld"),
-        "ENTRY(entry)\nSECTIONS { .text 0x100 : { *(.text*) } .frikan 0x08060000 : { KEEP(*(.frikan)) } }\n",
+        "ENTRY(entry)\nSECTIONS { .text 0x100 : { *(.text*) } .frikan 0x08060000 : { KEEP(m.o(.frikan)) } .other : { KEEP(n.o(.frikan)) } }\n",
     )
     .unwrap();
     let processor = ["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"];
@@ -112,11 +113,43 @@ fn the_object_file_links() {
     };
     tool(
         "arm-none-eabi-gcc",
-        &[&processor[..], &["-nostdlib", "-Wl,--gc-sections", "m.c", "m.o", "-T", "m.ld", "-o", "m.elf"]].concat(),
+        &[&processor[..], &["-nostdlib", "-Wl,--gc-sections", "m.c", "m.o", "n.o", "-T", "m.ld", "-o", "m.elf"]]
+            .concat(),
     );
     tool("arm-none-eabi-objcopy", &["-O", "binary", "--only-section=.frikan", "m.elf", "m.section"]);
     assert!(std::fs::read(at.join("m.section")).unwrap() == image);
-    assert!(tool("arm-none-eabi-nm", &["m.elf"]).contains("08060000 R frikan_image"));
+    assert!(tool("arm-none-eabi-nm", &["m.elf"]).contains("08060000 R m_image"));
+}
+
+/// Header and image in flash words of their own, the last one filled with erased bytes.
+#[test]
+fn a_slot_is_laid_out_as_its_flash_is_written() {
+    let bench = bench();
+    let at = bench.path();
+    let image = std::fs::read(at.join("stribeck.frk")).unwrap();
+    let flash = ["--slot", "9", "--program-unit", "32", "--erase-size", "0x20000", "--erased", "0x00"];
+    let done = export(at, "bin", "m.bin", &[&flash[..], &["--address", "0x08060000"]].concat());
+    assert_eq!(done.status, 0, "{}", done.messages);
+    let slot = std::fs::read(at.join("m.bin")).unwrap();
+    let (header, rest) = slot.split_at(32);
+    assert!(slot.len().is_multiple_of(32) && header[..4] == *b"FSLT" && header[16..].iter().all(|byte| *byte == 0));
+    assert!(rest[..image.len()] == image && rest[image.len()..].iter().all(|byte| *byte == 0));
+    let shown = run(at, &["show", "m.bin", "--compare", "stribeck.frk"]);
+    assert!(shown.status == 0 && shown.output.contains("sequence 9"), "{}", shown.output);
+    for options in [
+        &["--slot", "9", "--program-unit", "3"][..],
+        &["--slot", "9", "--program-unit", "64"],
+        &["--slot", "9", "--program-unit", "32", "--erase-size", "48"],
+        &["--slot", "9", "--erase-size", "0"],
+        &["--slot", "9", "--erased", "0x55"],
+        &["--slot", "9", "--erased", "256"],
+        &["--slot", "9", "--erase-size", "2048", "--address", "0x08060400"],
+        &["--program-unit", "8"],
+    ] {
+        let refused = export(at, "bin", "n.bin", options);
+        assert!(refused.status == 2 && refused.messages.contains("FRK-U001"), "{options:?}: {}", refused.messages);
+    }
+    assert!(!at.join("n.bin").exists());
 }
 
 #[test]
@@ -124,7 +157,8 @@ fn a_dump_is_told_from_another() {
     let bench = bench();
     let at = bench.path();
     for (slot, file) in [("7", "7.bin"), ("8", "8.bin")] {
-        assert_eq!(export(at, "bin", file, &["--slot", slot, "--key-file", "drive.key"]).status, 0);
+        let options = ["--slot", slot, "--key-file", "drive.key", "--release", slot];
+        assert_eq!(export(at, "bin", file, &options).status, 0);
     }
     let elbow = run(at, &["export", "elbow.frk", "--to", "bin", "--slot", "6", "-o", "6.bin"]);
     assert_eq!(elbow.status, 0, "{}", elbow.messages);
@@ -140,7 +174,9 @@ fn a_dump_is_told_from_another() {
     let same = show(&["dump.bin", "--compare", "stribeck.frk", "--key-file", "drive.key"]);
     assert_eq!(same.status, 0, "{}", same.messages);
     assert!(
-        same.output.contains("sequence 7") && same.output.contains("this is the image of stribeck.frk"),
+        same.output.contains("sequence 7")
+            && same.output.contains("release 7")
+            && same.output.contains("this is the image of stribeck.frk"),
         "{}",
         same.output
     );
@@ -171,6 +207,7 @@ fn what_does_not_fit_is_refused() {
         ("bin", &["--key-file", "bad.key"][..], 3, "FRK-D022"),
         ("bin", &["--key-file", "absent.key"], 5, "FRK-I002"),
         ("json", &["--slot", "1"], 2, "FRK-U001"),
+        ("bin", &["--release", "1"], 2, "--key-file"),
         ("c", &["--key-file", "drive.key"], 2, "FRK-U001"),
         ("c", &[], 2, "FRK-U001"),
     ] {

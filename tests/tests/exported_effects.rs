@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use frikan_runtime::friction::{FrictionState, Measurement};
+use frikan_runtime::compensator::{Decoded, FrictionModel};
+use frikan_runtime::friction::Measurement;
+use frikan_runtime::usable::above_0_to;
 use frikan_shared::model::MAX_INPUTS;
 use frikan_tests::c::{floats_through, host_program};
 use frikan_tests::models::{TestModel, by_velocity, image, with_every_effect};
@@ -32,7 +34,7 @@ fn samples(count: usize) -> Vec<[f32; ROW]> {
         let dt = 1.0e-3 * (1.0 + 0.2 * noise[0]);
         let mut row = [dt, velocity, position, 30.0 * noise[1] * stroke, 20.0 + 60.0 * noise[2]];
         if index % 97 == 96 {
-            let values = [f32::NAN, f32::INFINITY, -1.0, -0.0, f32::NEG_INFINITY, f32::MIN_POSITIVE, 0.0];
+            let values = [f32::NAN, f32::INFINITY, -1.0, -0.0, f32::NEG_INFINITY, f32::MIN_POSITIVE, 0.0, 1.5];
             row[index / 97 % ROW] = values[index / 97 % values.len()];
         }
         row
@@ -42,12 +44,13 @@ fn samples(count: usize) -> Vec<[f32; ROW]> {
 
 /// Torque and position of each sample by the runtime.
 fn expected(model: &TestModel, samples: &[[f32; ROW]]) -> Vec<[f32; 2]> {
-    let mut state = FrictionState::new();
+    let mut state = Decoded::new(model.clone()).unwrap();
     let mut step = |[dt, velocity, position, load, temperature]: &[f32; ROW]| {
         let [velocity, position, load, temperature] = [*velocity, *position, *load, *temperature];
         let measurement = Measurement { velocity, position, load, temperature, ..Measurement::MISSING };
-        let friction = state.step(model, &measurement, *dt);
-        [friction.torque, friction.position]
+        let friction = state.friction(&measurement, *dt, above_0_to(1.0, *dt), f32::MAX);
+        // What is not usable means nothing.
+        if friction.usable.is_usable() { [friction.torque, friction.position] } else { [0.0; 2] }
     };
     samples.iter().map(&mut step).collect()
 }

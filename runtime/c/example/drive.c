@@ -16,6 +16,13 @@ static const uint8_t secret[FRIKAN_KEY_BYTES] = {DRIVE_KEY};
 #define KEY ((const uint8_t *)0)
 #endif
 
+/* Torques in N m, from what this drive measures. A drive that keeps a number of its own asks for the joint and the least release as well. */
+static const FrikanTrust trust = {
+    .key = KEY,
+    .unit = FRIKAN_UNIT_NEWTON_METRE,
+    .channels = FRIKAN_CHANNEL_VELOCITY | FRIKAN_CHANNEL_POSITION | FRIKAN_CHANNEL_LOAD | FRIKAN_CHANNEL_TEMPERATURE,
+};
+
 /* Inertia and friction of the joint, roughly: what the supervisor compares with; and what a count of its encoder of 20 bits is. */
 #define INERTIA_KGM2 0.5f
 #define FRICTION_NM 20.0f
@@ -30,7 +37,7 @@ FrikanStatus drive_start(void) {
     const FrikanSupervision settings = frikan_supervision(INERTIA_KGM2, FRICTION_NM, COUNT_RAD);
     FrikanStatus status = frikan_supervise(&watch, &settings);
     if (status != FRIKAN_STATUS_ACTIVE) return status;
-    return frikan_start(&elbow, _image_start, (size_t)(_image_end - _image_start), KEY, &limits);
+    return frikan_start(&elbow, _image_start, (size_t)(_image_end - _image_start), &trust, &limits);
 }
 
 float drive_step(const FrikanSample *sample) {

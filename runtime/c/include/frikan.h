@@ -10,8 +10,28 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Cells of tables for which a compensator has room; an image with more is refused.
+/*
+ * Interrupts. The library has no state of its own, masks nothing and waits for nothing: what it touches is what it is handed. A step may be
+ * called from an interrupt, which has to save the registers of the floating-point unit where there is one; frikan_step then takes the same time
+ * for every sample, frikan_supervised_step within a bound. A compensator, a supervisor and flash are each for one caller at a time: a function that is handed one must
+ * not be interrupted by another that is handed the same. Where the step runs in an interrupt, call frikan_set_limits, frikan_set_inertia,
+ * frikan_replace, frikan_reset and what else changes its compensator or its supervisor with that interrupt masked, or from it. What reads an image
+ * (frikan_start, frikan_replace and their likes) takes as long as the image has bytes: frikan_start into a second compensator and a pointer that
+ * changes in the interrupt need no mask. frikan_write_image takes as long as the flash does, and no step that reads a table from the bank which is
+ * being erased can run meanwhile.
+ */
+
+#ifdef FRIKAN_MODELS
+/* Cells of tables for which a compensator has room: as the environment variable of the same name at the build of the library. */
+#ifndef FRIKAN_CELLS
 #define FRIKAN_CELLS 128
+#endif
+/* Words of a compensator's memory. */
+#define FRIKAN_STORAGE_WORDS (384 + 2 * FRIKAN_CELLS)
+#else
+/* Words of a compensator's memory. */
+#define FRIKAN_STORAGE_WORDS 12
+#endif
 
 // Bytes of a key.
 #define FRIKAN_KEY_BYTES 32
@@ -19,21 +39,49 @@
 // Bytes of the header of a slot.
 #define FRIKAN_SLOT_HEADER_BYTES 16
 
-#if defined(FRIKAN_MODELS)
-// Words of a compensator's memory.
-#define FRIKAN_STORAGE_WORDS 640
-#endif
-
-#if !defined(FRIKAN_MODELS)
-// Words of a compensator's memory.
-#define FRIKAN_STORAGE_WORDS 12
-#endif
-
 // Channels without a standard quantity.
 #define FRIKAN_OTHER_CHANNELS 4
 
+// Longest name of a joint, bytes.
+#define FRIKAN_JOINT_BYTES 32
+
+// Units of the torque of an image: any, in demands.
+#define FRIKAN_UNIT_ANY 0
+
+// Newton metre.
+#define FRIKAN_UNIT_NEWTON_METRE 8
+
+// Newton.
+#define FRIKAN_UNIT_NEWTON 9
+
+// Ampere.
+#define FRIKAN_UNIT_AMPERE 10
+
+// Channels: velocity of the joint.
+#define FRIKAN_CHANNEL_VELOCITY 1
+
+// Position of the joint.
+#define FRIKAN_CHANNEL_POSITION 2
+
+// Torque or force transmitted by the gear.
+#define FRIKAN_CHANNEL_LOAD 4
+
+// Temperature.
+#define FRIKAN_CHANNEL_TEMPERATURE 8
+
+// Acceleration of the joint.
+#define FRIKAN_CHANNEL_ACCELERATION 16
+
+// Any channel without a standard quantity.
+#define FRIKAN_CHANNEL_OTHER 32
+
 // Words of a supervisor's memory.
 #define FRIKAN_SUPERVISOR_WORDS 40
+
+#if defined(FRIKAN_MODELS)
+// Effects of a model.
+#define FRIKAN_EFFECTS 8
+#endif
 
 // Whether a torque is a compensation, and why not.
 enum FrikanStatus
@@ -55,7 +103,7 @@ enum FrikanStatus
   FRIKAN_STATUS_TRUNCATED = 5,
   // The bytes are no image.
   FRIKAN_STATUS_BAD_MAGIC = 6,
-  // The image is of a later format.
+  // The image is of a later format, or of one that is no longer read.
   FRIKAN_STATUS_UNSUPPORTED_VERSION = 7,
   // The image has more cells than FRIKAN_CELLS.
   FRIKAN_STATUS_TOO_LARGE = 8,
@@ -82,6 +130,14 @@ enum FrikanStatus
   FRIKAN_STATUS_BAD_FLASH = 18,
   // The flash did not take the image: what was in use before still is.
   FRIKAN_STATUS_NOT_WRITTEN = 19,
+  // The image is of another joint than the drive asks for.
+  FRIKAN_STATUS_OTHER_JOINT = 20,
+  // The torque of the image is in another unit.
+  FRIKAN_STATUS_OTHER_UNIT = 21,
+  // The image reads a channel that the drive does not measure.
+  FRIKAN_STATUS_MISSING_CHANNEL = 22,
+  // The image is older than the drive allows.
+  FRIKAN_STATUS_OUTDATED = 23,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -90,6 +146,9 @@ typedef enum FrikanStatus FrikanStatus;
 typedef uint32_t FrikanStatus;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
+
+// What an image says of itself.
+typedef struct FrikanFacts FrikanFacts;
 
 // Friction compensation of one joint. Its memory is the firmware's; its content is the library's. One that lies in zeroed memory is
 // off until it is started.
@@ -101,6 +160,21 @@ typedef struct {
   // Its memory.
   uint64_t storage[FRIKAN_STORAGE_WORDS];
 } FrikanCompensator;
+
+// What image a drive takes: all that is 0 takes any.
+typedef struct {
+  // FRIKAN_KEY_BYTES, of whoever may make images: one without its tag is refused; null for a drive that takes anyone's.
+  const uint8_t *key;
+  // Name of the joint, ended by a 0; null for any.
+  const char *joint;
+  // Unit of the torque, FRIKAN_UNIT_...
+  uint32_t unit;
+  // Channels that the drive measures, the sum of FRIKAN_CHANNEL_...: an image that reads another is refused.
+  uint32_t channels;
+  // Least release, of which the tag has the number: an older image is refused. The firmware raises it, in memory that no image reaches, when it has
+  // taken a later one.
+  uint32_t least_release;
+} FrikanTrust;
 
 // Limits of the firmware; no image changes them. All are finite, none is negative, and the slew is above 0.
 typedef struct {
@@ -152,6 +226,20 @@ typedef struct {
   // Number for the slot's header.
   uint32_t sequence;
 } FrikanSlotWrite;
+
+// The slot that the drive would take.
+typedef struct {
+  // Active, or why there is none.
+  FrikanStatus status;
+  // 0 for the first slot, 1 for the second.
+  uint32_t slot;
+  // Number of the slot.
+  uint32_t sequence;
+  // Address of its image, for frikan_facts.
+  const uint8_t *image;
+  // Bytes of the image and its tag.
+  size_t bytes;
+} FrikanSlotInUse;
 
 // Reads bytes from an address; false where that cannot be done: an uncorrectable word is no fault of the program.
 typedef bool (*FrikanFlashRead)(void *context, uint32_t address, uint8_t *bytes, size_t length);
@@ -205,9 +293,9 @@ typedef struct {
   float trusted_torque;
 } FrikanAdaptation;
 
-// Settings of the supervision, from frikan_supervision. Inertia and count are from 0 to 1e9, the others from 1e-9 to 1e9.
+// Settings of the supervision, from frikan_supervision. Inertia, count and turn are from 0 to 1e9, the others from 1e-9 to 1e9.
 typedef struct {
-  // Inertia of the joint, kg m^2.
+  // Inertia of the joint, kg m^2; the largest where frikan_set_inertia tells another.
   float inertia;
   // Angle of a count of the encoder, rad; 0 where the position is not made of counts.
   float count;
@@ -227,6 +315,10 @@ typedef struct {
   float least_friction;
   // How long velocity and position may contradict each other, s.
   float implausible_time;
+  // How long the torque of a joint at rest is held, s; it falls to 0 within the same time again.
+  float hold_time;
+  // Angle after which the position begins anew, rad; 0 where it never does.
+  float turn;
   // Whether and how far the compensation follows a friction that changes.
   FrikanAdaptation adaptation;
 } FrikanSupervision;
@@ -260,13 +352,27 @@ typedef struct {
 
 // One sample.
 typedef struct {
-  // The joint, velocity as measured; the position has to be filled, and without jumps.
+  // The joint, velocity as measured; the position has to be filled, and without jumps but that of a turn.
   FrikanMeasurement measurement;
   // Velocity of the reference, rad/s; NaN while no position or velocity loop is closed, as in hand guiding.
   float reference_velocity;
   // Torque that acted on the joint since the sample before, N m, without compensation and without the torque for gravity.
   float loop_torque;
 } FrikanSample;
+
+#if defined(FRIKAN_MODELS)
+// How warm a joint is that has no temperature sensor: numbers to be kept anywhere, with the checksum of the image that they belong to.
+typedef struct {
+  // Filtered dissipated power by the place of the effect, W.
+  float power[FRIKAN_EFFECTS];
+} FrikanWarmth;
+#endif
+
+// What the adaptation of a supervisor has learnt: numbers to be kept anywhere, with the checksum of the image that they belong to.
+typedef struct {
+  // Mean products, (N m)^2.
+  float means[9];
+} FrikanLearnt;
 
 #ifdef __cplusplus
 extern "C" {
@@ -277,15 +383,27 @@ extern "C" {
 //
 // @param flash  where the image begins
 // @param bytes  bytes that may be read there; what follows image and tag is not looked at
-// @param key    FRIKAN_KEY_BYTES: an image without its tag is refused; null for a drive that takes anyone's images
+// @param trust  what image is taken; null for any
 //
 // # Safety
 // Pointers are null or good for what their names say.
 FrikanStatus frikan_start(FrikanCompensator *compensator,
                           const uint8_t *flash,
                           size_t bytes,
-                          const uint8_t *key,
+                          const FrikanTrust *trust,
                           const FrikanLimits *limits);
+
+// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
+// What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
+//
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_replace(FrikanCompensator *compensator,
+                            const uint8_t *flash,
+                            size_t bytes,
+                            const FrikanTrust *trust);
 
 // Starts a compensator with a law of the firmware in place of an image, within the same limits.
 //
@@ -327,9 +445,33 @@ FrikanMeasurement frikan_no_measurement(void);
 // The pointer is null or good.
 void frikan_reset(FrikanCompensator *compensator);
 
+// What a step would say of the model: active, or why there is none.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_status(FrikanCompensator *compensator);
+
+// CRC-32 of the model as it is now in memory or flash: one that differs from that after the start is damaged. 0 where there is no model or it is a law
+// of the firmware. Not for the control loop: it takes as long as the model is large.
+//
+// # Safety
+// The pointer is null or good.
+uint32_t frikan_model_crc(FrikanCompensator *compensator);
+
+// What the image at an address says of itself, once it is found whole and what the drive takes.
+//
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_facts(const uint8_t *flash,
+                          size_t bytes,
+                          const FrikanTrust *trust,
+                          FrikanFacts *facts);
+
 // Starts a compensator with the newest usable image of two slots of flash, which has to stay there.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say.
@@ -338,12 +480,12 @@ FrikanStatus frikan_start_from_slots(FrikanCompensator *compensator,
                                      size_t first_bytes,
                                      const uint8_t *second,
                                      size_t second_bytes,
-                                     const uint8_t *key,
+                                     const FrikanTrust *trust,
                                      const FrikanLimits *limits);
 
 // The slot to write next, never the one in use. Erase it, program the image, and the header of frikan_slot_header last.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say.
@@ -351,7 +493,7 @@ FrikanSlotWrite frikan_next_write(const uint8_t *first,
                                   size_t first_bytes,
                                   const uint8_t *second,
                                   size_t second_bytes,
-                                  const uint8_t *key);
+                                  const FrikanTrust *trust);
 
 // Writes the header of a slot, FRIKAN_SLOT_HEADER_BYTES, for an image (and its tag). False where there is none.
 //
@@ -362,30 +504,50 @@ bool frikan_slot_header(uint32_t sequence,
                         size_t bytes,
                         uint8_t *header);
 
+// The slot that frikan_start_from_slots takes.
+//
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanSlotInUse frikan_slot_in_use(const uint8_t *first,
+                                   size_t first_bytes,
+                                   const uint8_t *second,
+                                   size_t second_bytes,
+                                   const FrikanTrust *trust);
+
 // Starts a compensator with the newest usable image of two slots: each is read once through the functions, so that a torn word is a bad slot
 // and no bus fault, and the one that is taken is read where it lies from then on.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+// @param trust  as for frikan_start
 //
 // # Safety
 // Pointers are null or good for what their names say, the functions may be called, and the slots may be read where they are mapped as long as
 // the compensator steps.
 FrikanStatus frikan_start_from_flash(FrikanCompensator *compensator,
                                      const FrikanFlash *flash,
-                                     const uint8_t *key,
+                                     const FrikanTrust *trust,
                                      const FrikanLimits *limits);
 
-// Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
-// use. Active once it is there; start the compensator again to go on with it.
+// Goes on with the newest usable image of two slots without a stop, as frikan_replace.
 //
-// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
+// # Safety
+// As frikan_start_from_flash.
+FrikanStatus frikan_replace_from_flash(FrikanCompensator *compensator,
+                                       const FrikanFlash *flash,
+                                       const FrikanTrust *trust);
+
+// Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
+// use. Active once it is there; frikan_replace_from_flash goes on with it.
+//
+// @param trust  as for frikan_start: an image that the drive would not take is not written
 //
 // # Safety
 // As frikan_start_from_flash, and `image` is null or good for so many bytes.
 FrikanStatus frikan_write_image(const FrikanFlash *flash,
                                 const uint8_t *image,
                                 size_t bytes,
-                                const uint8_t *key);
+                                const FrikanTrust *trust);
 
 // Settings for a revolute joint of `inertia` kg m^2 with a friction of about `friction` N m, whose encoder has counts of `count` rad (2 pi over
 // the counts of a turn, 0 where the position is not made of counts), without adaptation.
@@ -408,6 +570,14 @@ FrikanSupervised frikan_supervised_step(FrikanSupervisor *supervisor,
                                         const FrikanSample *sample,
                                         float dt);
 
+// Another inertia of the joint from now on, kg m^2: of the pose or the payload, in each sample if need be. The torque of an inertia that changes,
+// dJ/dt v / 2, belongs to the loop torque. BadSupervision, where it is not from 0 to 1e9, leaves the one before in force.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_set_inertia(FrikanSupervisor *supervisor,
+                                float inertia);
+
 // Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease. What was learnt before a compensator was
 // started again is forgotten anyway.
 //
@@ -420,6 +590,38 @@ void frikan_forget(FrikanSupervisor *supervisor);
 // # Safety
 // The pointer is null or good.
 void frikan_clear_fault(FrikanSupervisor *supervisor);
+
+#if defined(FRIKAN_MODELS)
+// The warmth of a joint; cold where there is no model.
+//
+// # Safety
+// The pointer is null or good.
+FrikanWarmth frikan_warmth(FrikanCompensator *compensator);
+#endif
+
+#if defined(FRIKAN_MODELS)
+// As frikan_reset, and as warm as `warmth` is after a rest of so many seconds; of a rest that nobody measured, 0 is the safe guess. Damaged numbers do
+// no harm.
+//
+// # Safety
+// Pointers are null or good.
+void frikan_restore(FrikanCompensator *compensator,
+                    const FrikanWarmth *warmth,
+                    float rest);
+#endif
+
+// What a supervisor has learnt.
+//
+// # Safety
+// The pointer is null or good.
+FrikanLearnt frikan_learnt(FrikanSupervisor *supervisor);
+
+// Goes on with what was learnt on the same image, after frikan_supervise and before the first step. Damaged numbers do no harm.
+//
+// # Safety
+// Pointers are null or good.
+void frikan_restore_learnt(FrikanSupervisor *supervisor,
+                           const FrikanLearnt *learnt);
 
 #ifdef __cplusplus
 }  // extern "C"

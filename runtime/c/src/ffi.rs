@@ -1,16 +1,16 @@
 //! What C calls. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call.
 
 use core::ffi::c_void;
-use core::slice;
 
 use frikan_runtime::compensator::{Limited, Limits};
 use frikan_runtime::measurement::Measurement;
-use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
+use frikan_runtime::shared::authentication::KEY_BYTES;
 use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::shared::input::MAX_INPUTS;
 
-use crate::memory::{self, Memory, content};
-use crate::model::{Law, Model, read};
+use crate::admission::{self, FrikanTrust};
+use crate::memory::{self, Memory, content, readable};
+use crate::model::{ImageModel, Law, Model};
 use crate::types::{
     FRIKAN_KEY_BYTES, FRIKAN_OTHER_CHANNELS, FRIKAN_STORAGE_WORDS, FrikanCompensation, FrikanLaw, FrikanLimits,
     FrikanMeasurement, FrikanStatus,
@@ -57,40 +57,39 @@ pub(crate) unsafe fn start(memory: *mut FrikanCompensator, compensator: Inner) -
     if !unsafe { memory::start(memory, compensator) } {
         return FrikanStatus::NotStarted;
     }
-    // SAFETY: the pointer is not null, and any number is one.
+    // SAFETY: the pointer is not null.
+    unsafe { count_start(memory) };
+    status
+}
+
+/// Counts another model.
+///
+/// # Safety
+/// `memory` may be read and written to.
+unsafe fn count_start(memory: *mut FrikanCompensator) {
+    // SAFETY: the caller's word, and any number is one.
     unsafe {
         let starts = &raw mut (*memory).starts;
         starts.write(starts.read().wrapping_add(1));
     }
-    status
 }
 
-/// Bytes of C; none for a null pointer.
+/// Puts a model in place of the one in force, where there is one to put.
 ///
 /// # Safety
-/// `bytes` is null or `length` bytes may be read from it during the call.
-pub(crate) unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
-    // SAFETY: the caller's word; no object is larger than `isize::MAX`.
-    if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
-}
-
-/// The key of C, where there is one. A library without authentication does not start with one.
-///
-/// # Safety
-/// `key` is null or KEY_BYTES may be read from it.
-pub(crate) unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
-    // SAFETY: the caller's word; an array of bytes has no alignment.
-    match unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() } {
-        None => Ok(None),
-        #[cfg(feature = "auth")]
-        Some(bytes) => Ok(Some(Key::new(*bytes))),
-        #[cfg(not(feature = "auth"))]
-        Some(_) => Err(ImageError::NotBuiltIn),
+/// As [`content`].
+pub(crate) unsafe fn replace(memory: *mut FrikanCompensator, model: Result<ImageModel, ImageError>) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let Some(compensator) = (unsafe { content(memory) }) else { return FrikanStatus::NotStarted };
+    match model {
+        Err(error) => error.into(),
+        Ok(model) => {
+            compensator.replace(Ok(Model::Image(model)));
+            // SAFETY: the pointer is not null.
+            unsafe { count_start(memory) };
+            FrikanStatus::Active
+        }
     }
-}
-
-pub(crate) fn trust_of(key: Option<&Key>) -> Trust<'_> {
-    key.map_or(Trust::Anyone, Trust::Key)
 }
 
 /// Limits of C; none for a null pointer and for limits that cannot be kept.
@@ -108,7 +107,7 @@ pub(crate) unsafe fn limits_at(limits: *const FrikanLimits) -> Option<Limits> {
 ///
 /// @param flash  where the image begins
 /// @param bytes  bytes that may be read there; what follows image and tag is not looked at
-/// @param key    FRIKAN_KEY_BYTES: an image without its tag is refused; null for a drive that takes anyone's images
+/// @param trust  what image is taken; null for any
 ///
 /// # Safety
 /// Pointers are null or good for what their names say.
@@ -117,18 +116,36 @@ pub unsafe extern "C" fn frikan_start(
     compensator: *mut FrikanCompensator,
     flash: *const u8,
     bytes: usize,
-    key: *const u8,
+    trust: *const FrikanTrust,
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, key, limits) = unsafe { (readable(flash, bytes), key_at(key), limits_at(limits)) };
+    let (flash, limits) = unsafe { (readable(flash, bytes), limits_at(limits)) };
     let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let model = key.and_then(|key| {
-        let trust = trust_of(key.as_ref());
-        trust.stored(flash).and_then(|image| read(image, trust)).map(Model::Image)
-    });
     // SAFETY: the caller's word.
-    unsafe { start(compensator, Inner::by(model, limits)) }
+    let model = unsafe { admission::at(trust) }.and_then(|admission| admission.image_in(flash));
+    // SAFETY: the caller's word.
+    unsafe { start(compensator, Inner::by(model.map(Model::Image), limits)) }
+}
+
+/// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads.
+/// What effects remember and a supervisor has learnt is gone. An image that is refused leaves the one before in force.
+///
+/// @param trust  as for frikan_start
+///
+/// # Safety
+/// Pointers are null or good for what their names say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_replace(
+    compensator: *mut FrikanCompensator,
+    flash: *const u8,
+    bytes: usize,
+    trust: *const FrikanTrust,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    let (flash, admission) = unsafe { (readable(flash, bytes), admission::at(trust)) };
+    // SAFETY: the caller's word.
+    unsafe { replace(compensator, admission.and_then(|admission| admission.image_in(flash))) }
 }
 
 /// Starts a compensator with a law of the firmware in place of an image, within the same limits.
@@ -214,4 +231,25 @@ pub unsafe extern "C" fn frikan_reset(compensator: *mut FrikanCompensator) {
     if let Some(compensator) = unsafe { content(compensator) } {
         compensator.reset();
     }
+}
+
+/// What a step would say of the model: active, or why there is none.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_status(compensator: *mut FrikanCompensator) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    unsafe { content(compensator) }.map_or(FrikanStatus::NotStarted, |compensator| compensator.status().into())
+}
+
+/// CRC-32 of the model as it is now in memory or flash: one that differs from that after the start is damaged. 0 where there is no model or it is a law
+/// of the firmware. Not for the control loop: it takes as long as the model is large.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_model_crc(compensator: *mut FrikanCompensator) -> u32 {
+    // SAFETY: the caller's word.
+    unsafe { content(compensator) }.and_then(|compensator| compensator.checksum()).unwrap_or(0)
 }

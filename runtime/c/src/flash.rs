@@ -2,10 +2,13 @@
 
 use core::ffi::c_void;
 
+use frikan_runtime::shared::image::ImageError;
 use frikan_runtime::slots::flash::{Flash, Layout, Stored, WriteError, newest_usable, write};
 
-use crate::ffi::{FrikanCompensator, Inner, key_at, limits_at, readable, start, trust_of};
-use crate::model::{ImageModel, Model, read};
+use crate::admission::{self, FrikanTrust};
+use crate::ffi::{FrikanCompensator, Inner, limits_at, replace, start};
+use crate::memory::readable;
+use crate::model::{ImageModel, Model};
 use crate::types::{FrikanLimits, FrikanStatus};
 
 /// Reads bytes from an address; false where that cannot be done: an uncorrectable word is no fault of the program.
@@ -94,7 +97,7 @@ impl Flash for Driver {
 /// Starts a compensator with the newest usable image of two slots: each is read once through the functions, so that a torn word is a bad slot
 /// and no bus fault, and the one that is taken is read where it lies from then on.
 ///
-/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images
+/// @param trust  as for frikan_start
 ///
 /// # Safety
 /// Pointers are null or good for what their names say, the functions may be called, and the slots may be read where they are mapped as long as
@@ -103,28 +106,56 @@ impl Flash for Driver {
 pub unsafe extern "C" fn frikan_start_from_flash(
     compensator: *mut FrikanCompensator,
     flash: *const FrikanFlash,
-    key: *const u8,
+    trust: *const FrikanTrust,
     limits: *const FrikanLimits,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, key, limits) = unsafe { (flash.as_ref(), key_at(key), limits_at(limits)) };
-    let Some(limits) = limits else { return FrikanStatus::BadLimits };
-    let Some((flash, layout)) = flash.and_then(|flash| Some((*flash, flash.layout()?))) else {
-        return FrikanStatus::BadFlash;
-    };
-    let model = key.and_then(|key| {
-        let trust = trust_of(key.as_ref());
-        // SAFETY: the caller's word.
-        newest_usable(&mut Driver(flash), &layout, |_, stored| read(unsafe { flash.image(stored) }, trust))
-    });
+    let Some(limits) = (unsafe { limits_at(limits) }) else { return FrikanStatus::BadLimits };
     // SAFETY: the caller's word.
-    unsafe { start(compensator, Inner::by(model.map(|(_, model)| Model::Image(model)), limits)) }
+    match unsafe { newest(flash, trust) } {
+        None => FrikanStatus::BadFlash,
+        // SAFETY: the caller's word.
+        Some(model) => unsafe { start(compensator, Inner::by(model.map(Model::Image), limits)) },
+    }
+}
+
+/// Goes on with the newest usable image of two slots without a stop, as frikan_replace.
+///
+/// # Safety
+/// As frikan_start_from_flash.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_replace_from_flash(
+    compensator: *mut FrikanCompensator,
+    flash: *const FrikanFlash,
+    trust: *const FrikanTrust,
+) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    match unsafe { newest(flash, trust) } {
+        None => FrikanStatus::BadFlash,
+        // SAFETY: the caller's word.
+        Some(model) => unsafe { replace(compensator, model) },
+    }
+}
+
+/// The newest usable image; none where the flash is no such flash.
+///
+/// # Safety
+/// As frikan_start_from_flash.
+unsafe fn newest(flash: *const FrikanFlash, trust: *const FrikanTrust) -> Option<Result<ImageModel, ImageError>> {
+    // SAFETY: the caller's word.
+    let (flash, trusted) = unsafe { (*flash.as_ref()?, admission::at(trust)) };
+    let layout = flash.layout()?;
+    Some(trusted.and_then(|trusted| {
+        // SAFETY: the caller's word.
+        newest_usable(&mut Driver(flash), &layout, |_, stored| trusted.read(unsafe { flash.image(stored) }))
+            .map(|(_, model)| model)
+    }))
 }
 
 /// Writes an image, with its tag where the drive asks for one, to the slot that is not in use; a loss of power at any moment leaves the one in
-/// use. Active once it is there; start the compensator again to go on with it.
+/// use. Active once it is there; frikan_replace_from_flash goes on with it.
 ///
-/// @param key  FRIKAN_KEY_BYTES, or null for a drive that takes anyone's images; with it an image that the drive would not take is not written
+/// @param trust  as for frikan_start: an image that the drive would not take is not written
 ///
 /// # Safety
 /// As frikan_start_from_flash, and `image` is null or good for so many bytes.
@@ -133,19 +164,18 @@ pub unsafe extern "C" fn frikan_write_image(
     flash: *const FrikanFlash,
     image: *const u8,
     bytes: usize,
-    key: *const u8,
+    trust: *const FrikanTrust,
 ) -> FrikanStatus {
     // SAFETY: the caller's word.
-    let (flash, image, key) = unsafe { (flash.as_ref(), readable(image, bytes), key_at(key)) };
+    let (flash, image, trusted) = unsafe { (flash.as_ref(), readable(image, bytes), admission::at(trust)) };
     let Some((flash, layout)) = flash.and_then(|flash| Some((*flash, flash.layout()?))) else {
         return FrikanStatus::BadFlash;
     };
-    let key = match key {
-        Ok(key) => key,
+    let trusted = match trusted {
+        Ok(trusted) => trusted,
         Err(error) => return error.into(),
     };
-    let trust = trust_of(key.as_ref());
-    let usable = |image| -> Result<ImageModel, _> { read(image, trust) };
+    let usable = |image| trusted.read(image);
     if let Err(error) = usable(image) {
         return error.into();
     }

@@ -1,5 +1,5 @@
-//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `slots.rs` and `supervised.rs`; these
-//! three, `memory.rs` and `model.rs` are the only files with `unsafe`.
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `admission.rs`, `slots.rs`, `flash.rs`, `supervised.rs` and
+//! `keep.rs`; these but the first, `memory.rs` and `model.rs` are the only files with `unsafe`.
 //!
 //! The static library for a target:
 //!
@@ -14,10 +14,15 @@
 extern crate std;
 
 #[allow(unsafe_code)]
+pub mod admission;
+#[allow(unsafe_code)]
 pub mod ffi;
 #[cfg(feature = "slots")]
 #[allow(unsafe_code)]
 pub mod flash;
+#[cfg(any(feature = "models", feature = "supervised"))]
+#[allow(unsafe_code)]
+pub mod keep;
 #[allow(unsafe_code)]
 mod memory;
 #[allow(unsafe_code)]

@@ -1,7 +1,8 @@
-//! Memory of the firmware whose content is the library's. Audit: the content is read only behind the mark that [`start`] leaves, and no
-//! reference outlives the call for which the caller gives its word.
+//! Memory of the firmware: that whose content is the library's, and that which is only read. Audit: a content is read only behind the mark that
+//! [`start`] leaves, a length is the caller's word, and no reference outlives the call for which the caller gives it.
 
 use core::mem::MaybeUninit;
+use core::slice;
 
 /// Memory that lies with the firmware: a mark, and words for the content. Zeroed memory holds nothing.
 ///
@@ -44,4 +45,13 @@ pub(crate) unsafe fn content<'a, M: Memory>(memory: *mut M) -> Option<&'a mut M:
     let (mark, place) = M::parts(memory);
     // SAFETY: the caller's word; only `start` leaves this mark, and after it nobody but the content writes to its place.
     unsafe { (mark.read() == M::MARK).then(|| &mut *place) }
+}
+
+/// Bytes of C; none for a null pointer.
+///
+/// # Safety
+/// `bytes` is null or `length` bytes may be read from it during the call.
+pub(crate) unsafe fn readable<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
+    // SAFETY: the caller's word; no object is larger than `isize::MAX`.
+    if bytes.is_null() || length > isize::MAX as usize { &[] } else { unsafe { slice::from_raw_parts(bytes, length) } }
 }

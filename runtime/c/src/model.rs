@@ -4,8 +4,10 @@
 use core::ffi::c_void;
 
 use frikan_runtime::compensator::{Exported, FrictionModel};
+#[cfg(feature = "models")]
+use frikan_runtime::friction::Warmth;
 use frikan_runtime::measurement::{Friction, Measurement};
-use frikan_runtime::shared::authentication::Trust;
+use frikan_runtime::shared::authentication::admission::{Admission, Facts};
 use frikan_runtime::shared::image::ImageError;
 
 use crate::types::FrikanMeasurement;
@@ -18,16 +20,30 @@ pub(crate) type ImageModel = frikan_runtime::compensator::Decoded<{ crate::types
 #[cfg(not(feature = "models"))]
 pub(crate) type ImageModel = frikan_runtime::in_place::TableInPlace<'static>;
 
-/// The model of exactly one image, with its tag where one is asked for.
+/// The model of exactly one image that is admitted.
 #[cfg(feature = "models")]
-pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
-    trust.decode(image).and_then(|image| ImageModel::new(image.model))
+pub(crate) fn read(image: &'static [u8], admission: &Admission<'_>) -> Result<ImageModel, ImageError> {
+    admission.decode(image).and_then(|image| ImageModel::new(image.model))
 }
 
-/// The model of exactly one image, with its tag where one is asked for.
+/// The model of exactly one image that is admitted.
 #[cfg(not(feature = "models"))]
-pub(crate) fn read(image: &'static [u8], trust: Trust<'_>) -> Result<ImageModel, ImageError> {
-    trust.authentic(image).and_then(ImageModel::new)
+pub(crate) fn read(image: &'static [u8], admission: &Admission<'_>) -> Result<ImageModel, ImageError> {
+    admission.table(image).map(ImageModel::from)
+}
+
+/// What is made of what exactly one image says of itself, where it is admitted.
+pub(crate) fn with_facts<T>(
+    bytes: &[u8],
+    admission: &Admission<'_>,
+    told: impl FnOnce(&Facts<'_>) -> T,
+) -> Result<T, ImageError> {
+    let (_, release) = admission.trust.released(bytes)?;
+    #[cfg(feature = "models")]
+    let image = admission.decode::<{ crate::types::FRIKAN_CELLS }>(bytes)?;
+    #[cfg(not(feature = "models"))]
+    let image = admission.table(bytes)?;
+    Ok(told(&image.facts(release)))
 }
 
 /// What gives the friction.
@@ -43,6 +59,21 @@ pub(crate) enum Model {
 pub(crate) struct Law {
     pub(crate) function: unsafe extern "C" fn(*mut c_void, *const FrikanMeasurement, f32) -> f32,
     pub(crate) context: *mut c_void,
+}
+
+#[cfg(feature = "models")]
+impl Model {
+    /// How warm the joint is, where the model is an image.
+    pub(crate) fn warmth(&self) -> Option<Warmth> {
+        if let Self::Image(model) = self { Some(model.warmth()) } else { None }
+    }
+
+    /// At rest, and as warm as `warmth` is after a rest of so many seconds.
+    pub(crate) fn restore(&mut self, warmth: &Warmth, rest: f32) {
+        if let Self::Image(model) = self {
+            model.restore(warmth, rest);
+        }
+    }
 }
 
 impl FrictionModel for Model {
@@ -64,5 +95,9 @@ impl FrictionModel for Model {
         if let Self::Image(model) = self {
             model.rest();
         }
+    }
+
+    fn checksum(&self) -> Option<u32> {
+        if let Self::Image(model) = self { model.checksum() } else { None }
     }
 }

@@ -87,11 +87,11 @@ pub struct FrikanAdaptation {
     pub trusted_torque: f32,
 }
 
-/// Settings of the supervision, from frikan_supervision. Inertia and count are from 0 to 1e9, the others from 1e-9 to 1e9.
+/// Settings of the supervision, from frikan_supervision. Inertia, count and turn are from 0 to 1e9, the others from 1e-9 to 1e9.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrikanSupervision {
-    /// Inertia of the joint, kg m^2.
+    /// Inertia of the joint, kg m^2; the largest where frikan_set_inertia tells another.
     pub inertia: f32,
     /// Angle of a count of the encoder, rad; 0 where the position is not made of counts.
     pub count: f32,
@@ -111,6 +111,10 @@ pub struct FrikanSupervision {
     pub least_friction: f32,
     /// How long velocity and position may contradict each other, s.
     pub implausible_time: f32,
+    /// How long the torque of a joint at rest is held, s; it falls to 0 within the same time again.
+    pub hold_time: f32,
+    /// Angle after which the position begins anew, rad; 0 where it never does.
+    pub turn: f32,
     /// Whether and how far the compensation follows a friction that changes.
     pub adaptation: FrikanAdaptation,
 }
@@ -119,7 +123,7 @@ pub struct FrikanSupervision {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrikanSample {
-    /// The joint, velocity as measured; the position has to be filled, and without jumps.
+    /// The joint, velocity as measured; the position has to be filled, and without jumps but that of a turn.
     pub measurement: FrikanMeasurement,
     /// Velocity of the reference, rad/s; NaN while no position or velocity loop is closed, as in hand guiding.
     pub reference_velocity: f32,
@@ -176,6 +180,8 @@ fn supervision(settings: &FrikanSupervision) -> Option<Supervision> {
         rise_time: settings.rise_time,
         least_friction: settings.least_friction,
         implausible_time: settings.implausible_time,
+        hold_time: settings.hold_time,
+        turn: settings.turn,
         adaptation,
         ..Supervision::new(settings.inertia, settings.least_friction, settings.count)
     })
@@ -197,6 +203,8 @@ pub extern "C" fn frikan_supervision(inertia: f32, friction: f32, count: f32) ->
         rise_time: defaults.rise_time,
         least_friction: defaults.least_friction,
         implausible_time: defaults.implausible_time,
+        hold_time: defaults.hold_time,
+        turn: defaults.turn,
         adaptation: FrikanAdaptation::default(),
     }
 }
@@ -251,6 +259,21 @@ pub unsafe extern "C" fn frikan_supervised_step(
     };
     let (torque, position, gain_share) = (answer.torque, answer.position, answer.gain_share);
     FrikanSupervised { torque, position, gain_share, level, viscous, offset, status }
+}
+
+/// Another inertia of the joint from now on, kg m^2: of the pose or the payload, in each sample if need be. The torque of an inertia that changes,
+/// dJ/dt v / 2, belongs to the loop torque. BadSupervision, where it is not from 0 to 1e9, leaves the one before in force.
+///
+/// # Safety
+/// The pointer is null or good.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn frikan_set_inertia(supervisor: *mut FrikanSupervisor, inertia: f32) -> FrikanStatus {
+    // SAFETY: the caller's word.
+    match unsafe { content(supervisor) }.map(|supervisor| supervisor.set_inertia(inertia)) {
+        None => FrikanStatus::NotStarted,
+        Some(Err(_)) => FrikanStatus::BadSupervision,
+        Some(Ok(())) => FrikanStatus::Active,
+    }
 }
 
 /// Forgets what the adaptation has learnt, for a joint that was idle for long or has another gear or grease. What was learnt before a compensator was

@@ -6,8 +6,27 @@ use frikan_runtime::compensator::Status;
 use frikan_runtime::measurement::Measurement;
 use frikan_runtime::shared::image::ImageError;
 
-/// Cells of tables for which a compensator has room; an image with more is refused.
-pub const FRIKAN_CELLS: usize = 128;
+/// Cells of tables for which a compensator has room; an image with more is refused. The environment variable of the same name, at the build of the
+/// library, sets another number.
+///
+/// cbindgen:ignore
+pub const FRIKAN_CELLS: usize = match option_env!("FRIKAN_CELLS") {
+    None => 128,
+    Some(digits) => number(digits.as_bytes()),
+};
+
+/// A decimal number from 1 to 9999, or no library at all.
+const fn number(digits: &[u8]) -> usize {
+    assert!(!digits.is_empty() && digits.len() < 5, "FRIKAN_CELLS is no number from 1 to 9999");
+    let (mut number, mut at) = (0, 0);
+    while at < digits.len() {
+        assert!(digits[at].is_ascii_digit(), "FRIKAN_CELLS is no number from 1 to 9999");
+        number = 10 * number + (digits[at] - b'0') as usize;
+        at += 1;
+    }
+    assert!(number > 0, "FRIKAN_CELLS is no number from 1 to 9999");
+    number
+}
 
 /// Bytes of a key.
 pub const FRIKAN_KEY_BYTES: usize = 32;
@@ -15,13 +34,10 @@ pub const FRIKAN_KEY_BYTES: usize = 32;
 /// Bytes of the header of a slot.
 pub const FRIKAN_SLOT_HEADER_BYTES: usize = 16;
 
-/// Words of a compensator's memory.
-#[cfg(feature = "models")]
-pub const FRIKAN_STORAGE_WORDS: usize = 640;
-
-/// Words of a compensator's memory.
-#[cfg(not(feature = "models"))]
-pub const FRIKAN_STORAGE_WORDS: usize = 12;
+/// Words of a compensator's memory; the header has the same.
+///
+/// cbindgen:ignore
+pub const FRIKAN_STORAGE_WORDS: usize = if cfg!(feature = "models") { 384 + 2 * FRIKAN_CELLS } else { 12 };
 
 /// Channels without a standard quantity.
 pub const FRIKAN_OTHER_CHANNELS: usize = 4;
@@ -44,7 +60,7 @@ pub enum FrikanStatus {
     Truncated = 5,
     /// The bytes are no image.
     BadMagic = 6,
-    /// The image is of a later format.
+    /// The image is of a later format, or of one that is no longer read.
     UnsupportedVersion = 7,
     /// The image has more cells than FRIKAN_CELLS.
     TooLarge = 8,
@@ -71,6 +87,14 @@ pub enum FrikanStatus {
     BadFlash = 18,
     /// The flash did not take the image: what was in use before still is.
     NotWritten = 19,
+    /// The image is of another joint than the drive asks for.
+    OtherJoint = 20,
+    /// The torque of the image is in another unit.
+    OtherUnit = 21,
+    /// The image reads a channel that the drive does not measure.
+    MissingChannel = 22,
+    /// The image is older than the drive allows.
+    Outdated = 23,
 }
 
 impl From<ImageError> for FrikanStatus {
@@ -86,6 +110,10 @@ impl From<ImageError> for FrikanStatus {
             ImageError::CrcMismatch => Self::CrcMismatch,
             ImageError::InvalidModel(_) => Self::InvalidModel,
             ImageError::NotBuiltIn => Self::NotBuiltIn,
+            ImageError::OtherJoint => Self::OtherJoint,
+            ImageError::OtherUnit => Self::OtherUnit,
+            ImageError::MissingChannel => Self::MissingChannel,
+            ImageError::Outdated => Self::Outdated,
             _ => Self::Malformed,
         }
     }

@@ -5,14 +5,19 @@ use std::ffi::c_void;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
-use frikan::ffi::{
-    FrikanCompensator, frikan_compensator_bytes, frikan_no_measurement, frikan_reset, frikan_set_limits, frikan_start,
-    frikan_start_with_law, frikan_step,
+use frikan::admission::{
+    FRIKAN_CHANNEL_POSITION, FRIKAN_CHANNEL_VELOCITY, FRIKAN_UNIT_AMPERE, FRIKAN_UNIT_NEWTON_METRE, FrikanFacts,
+    FrikanTrust, frikan_facts,
 };
-use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_start_from_slots};
+use frikan::ffi::{
+    FrikanCompensator, frikan_compensator_bytes, frikan_model_crc, frikan_no_measurement, frikan_replace, frikan_reset,
+    frikan_set_limits, frikan_start, frikan_start_with_law, frikan_status, frikan_step,
+};
+use frikan::keep::{FrikanLearnt, frikan_learnt, frikan_restore_learnt};
+use frikan::slots::{frikan_next_write, frikan_slot_header, frikan_slot_in_use, frikan_start_from_slots};
 use frikan::supervised::{
     FrikanAdaptation, FrikanSample, FrikanSupervision, FrikanSupervisor, frikan_clear_fault, frikan_forget,
-    frikan_supervise, frikan_supervised_step, frikan_supervision,
+    frikan_set_inertia, frikan_supervise, frikan_supervised_step, frikan_supervision,
 };
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanSlotWrite, FrikanStatus};
 
@@ -20,6 +25,8 @@ const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
 const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e9, position: 0.0 };
 const MOVING: FrikanMeasurement =
     FrikanMeasurement { velocity: 0.5, position: 0.0, acceleration: 0.0, load: 0.0, temperature: 0.0, other: [0.0; 4] };
+
+const ANY: FrikanTrust = FrikanTrust { key: null(), joint: null(), unit: 0, channels: 0, least_release: 0 };
 
 /// As the static data of a firmware.
 fn zeroed() -> Box<FrikanCompensator> {
@@ -39,9 +46,9 @@ fn step(compensator: &mut FrikanCompensator) -> (f32, FrikanStatus) {
 }
 
 fn start(compensator: &mut FrikanCompensator, flash: &[u8], key: Option<&[u8; 32]>) -> FrikanStatus {
-    let key = key.map_or(null(), |key| key.as_ptr());
+    let trust = FrikanTrust { key: key.map_or(null(), |key| key.as_ptr()), ..ANY };
     // SAFETY: a slice and its length, an array of a key's length.
-    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), key, &LIMITS) }
+    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), &trust, &LIMITS) }
 }
 
 #[test]
@@ -111,6 +118,109 @@ fn a_supervisor_watches_over_a_compensator() {
 }
 
 #[test]
+fn an_image_is_replaced_without_a_stop() {
+    let mut elbow = zeroed();
+    let limits = FrikanLimits { slew: 2000.0, ..LIMITS };
+    let mut calls = 0u32;
+    // SAFETY: references, slices and their lengths, and null where it is said.
+    unsafe {
+        let replace =
+            |memory: *mut FrikanCompensator, image: &[u8]| frikan_replace(memory, image.as_ptr(), image.len(), null());
+        assert_eq!(replace(&mut *elbow, IMAGE), FrikanStatus::NotStarted);
+        assert_eq!(replace(null_mut(), IMAGE), FrikanStatus::NotStarted);
+        frikan_start_with_law(&mut *elbow, Some(coulomb), (&raw mut calls).cast(), &limits);
+        let mut torque = 0.0;
+        for _ in 0..20 {
+            torque = step(&mut elbow).0;
+        }
+        assert_eq!(torque, 8.0);
+        // One that is refused leaves the one before in force.
+        assert_eq!(replace(&mut *elbow, &IMAGE[..20]), FrikanStatus::Truncated);
+        assert_eq!(step(&mut elbow), (8.0, FrikanStatus::Active));
+        assert_eq!(replace(&mut *elbow, &[IMAGE, &[0xFF; 9]].concat()), FrikanStatus::Active);
+        assert_eq!(step(&mut elbow), (10.0, FrikanStatus::Active));
+    }
+}
+
+/// What a supervisor has learnt on the image is forgotten with it, and kept by the firmware where it wants.
+#[test]
+fn what_was_learnt_is_kept_by_the_firmware_and_forgotten_with_the_image() {
+    let (mut elbow, mut watch) = (zeroed(), zeroed_supervisor());
+    assert_eq!(start(&mut elbow, IMAGE, None), FrikanStatus::Active);
+    let mut settings = frikan_supervision(0.5, 20.0, 0.0);
+    settings.adaptation = FrikanAdaptation {
+        lowest_level: 0.5,
+        highest_level: 2.0,
+        viscous: 0.0,
+        offset: 0.0,
+        memory: 0.5,
+        trusted_torque: 0.1,
+    };
+    // SAFETY: references, a slice and its length, and null where it is said.
+    unsafe {
+        assert_eq!(frikan_supervise(&mut *watch, &settings), FrikanStatus::Active);
+        assert_eq!(frikan_set_inertia(&mut *watch, 0.7), FrikanStatus::Active);
+        assert_eq!(frikan_set_inertia(&mut *watch, f32::NAN), FrikanStatus::BadSupervision);
+        assert_eq!(frikan_set_inertia(null_mut(), 0.7), FrikanStatus::NotStarted);
+        let mut position = 0.0;
+        let mut step = |watch: &mut FrikanSupervisor, elbow: &mut FrikanCompensator| {
+            position += 0.5e-3;
+            let sample = FrikanSample {
+                measurement: FrikanMeasurement { position, ..MOVING },
+                reference_velocity: 0.5,
+                loop_torque: 15.0,
+            };
+            frikan_supervised_step(watch, elbow, &sample, 1.0e-3).level
+        };
+        let level = (0..2000).map(|_| step(&mut watch, &mut elbow)).last().unwrap();
+        assert!(level > 1.5, "{level}");
+        let learnt = frikan_learnt(&mut *watch);
+        assert_eq!(frikan_learnt(null_mut()), FrikanLearnt::default());
+        // Another start of the drive.
+        assert_eq!(frikan_supervise(&mut *watch, &settings), FrikanStatus::Active);
+        frikan_restore_learnt(&mut *watch, &learnt);
+        frikan_restore_learnt(null_mut(), null());
+        assert_eq!(step(&mut watch, &mut elbow), level);
+        assert_eq!(frikan_replace(&mut *elbow, IMAGE.as_ptr(), IMAGE.len(), null()), FrikanStatus::Active);
+        assert_eq!(step(&mut watch, &mut elbow), 1.0);
+    }
+}
+
+#[cfg(feature = "effects")]
+#[test]
+fn warmth_is_kept_by_the_firmware() {
+    use frikan::keep::{FrikanWarmth, frikan_restore, frikan_warmth};
+    use frikan_runtime::shared::effect::Effect;
+    use frikan_runtime::shared::image::{decode, encode};
+    let mut image = decode::<128>(IMAGE).unwrap();
+    let warm_up = Effect::WarmUp {
+        time_constant: 100.0,
+        coulomb: -0.1,
+        viscous: 0.0,
+        power_limit: 20.0,
+        smoothing_velocity: 0.02,
+    };
+    assert!(image.model.effects.push(warm_up).is_ok());
+    let mut buffer = [0; 4096];
+    let image = encode(&image, &mut buffer).unwrap();
+    let mut elbow = zeroed();
+    assert_eq!(start(&mut elbow, image, None), FrikanStatus::Active);
+    let cold = step(&mut elbow).0;
+    // SAFETY: references, and null where it is said.
+    unsafe {
+        (0..5000).for_each(|_| _ = step(&mut elbow));
+        let warmth = frikan_warmth(&mut *elbow);
+        let warm = step(&mut elbow).0;
+        assert!(warmth.power[0] > 0.0 && warm < cold, "{warmth:?}");
+        assert_eq!(start(&mut elbow, image, None), FrikanStatus::Active);
+        frikan_restore(&mut *elbow, &warmth, 0.0);
+        assert!((step(&mut elbow).0 - warm).abs() < 1.0e-3);
+        assert_eq!(frikan_warmth(null_mut()), FrikanWarmth::default());
+        frikan_restore(null_mut(), null(), 0.0);
+    }
+}
+
+#[test]
 fn null_pointers_leave_everything_off() {
     let mut elbow = zeroed();
     // SAFETY: null is what every function is ready for.
@@ -130,14 +240,67 @@ fn null_pointers_leave_everything_off() {
     }
 }
 
+#[test]
+fn an_image_says_what_it_is_and_has_to_be_what_is_asked_for() {
+    let mut elbow = zeroed();
+    let mut facts: MaybeUninit<FrikanFacts> = MaybeUninit::zeroed();
+    let start = |elbow: &mut FrikanCompensator, trust: FrikanTrust| {
+        // SAFETY: a slice and its length, references.
+        unsafe { frikan_start(elbow, IMAGE.as_ptr(), IMAGE.len(), &trust, &LIMITS) }
+    };
+    let fitting =
+        FrikanTrust { joint: c"".as_ptr(), unit: FRIKAN_UNIT_NEWTON_METRE, channels: FRIKAN_CHANNEL_VELOCITY, ..ANY };
+    assert_eq!(start(&mut elbow, fitting), FrikanStatus::Active);
+    // SAFETY: slices and their lengths, references, and null where it is said.
+    unsafe {
+        assert_eq!(frikan_status(&mut *elbow), FrikanStatus::Active);
+        assert_eq!((frikan_status(null_mut()), frikan_model_crc(null_mut())), (FrikanStatus::NotStarted, 0));
+        let sum = frikan_model_crc(&mut *elbow);
+        (0..10).for_each(|_| _ = step(&mut elbow));
+        assert!(sum != 0 && frikan_model_crc(&mut *elbow) == sum);
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), IMAGE.len(), &fitting, facts.as_mut_ptr()), FrikanStatus::Active);
+        let facts = facts.assume_init();
+        let crc32 = u32::from_le_bytes(IMAGE[12..16].try_into().unwrap());
+        assert_eq!(
+            (facts.joint[0], facts.unit, facts.channels),
+            (0, FRIKAN_UNIT_NEWTON_METRE, FRIKAN_CHANNEL_VELOCITY)
+        );
+        assert_eq!((facts.release, facts.crc32), (0, crc32));
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), IMAGE.len(), null(), null_mut()), FrikanStatus::NotStarted);
+        assert_eq!(frikan_facts(IMAGE.as_ptr(), 20, null(), null_mut()), FrikanStatus::Truncated);
+    }
+    for (trust, status) in [
+        (FrikanTrust { joint: c"wrist".as_ptr(), ..fitting }, FrikanStatus::OtherJoint),
+        (FrikanTrust { unit: FRIKAN_UNIT_AMPERE, ..fitting }, FrikanStatus::OtherUnit),
+        (FrikanTrust { unit: 99, ..fitting }, FrikanStatus::OtherUnit),
+        (FrikanTrust { channels: FRIKAN_CHANNEL_POSITION, ..fitting }, FrikanStatus::MissingChannel),
+        (FrikanTrust { least_release: 1, ..fitting }, FrikanStatus::Outdated),
+    ] {
+        assert_eq!(start(&mut elbow, trust), status);
+        assert_eq!(step(&mut elbow), (0.0, status));
+    }
+}
+
 #[cfg(feature = "auth")]
 #[test]
 fn a_key_asks_for_its_tag() {
-    use frikan_runtime::shared::authentication::Key;
+    use frikan_runtime::shared::authentication::{Key, release_block};
     let key = [9; 32];
     let tagged = [IMAGE, &Key::new(key).tag(IMAGE), &[0xFF; 8]].concat();
+    let release = [IMAGE, &release_block(7)].concat();
+    let release = [&release[..], &Key::new(key).tag(&release), &[0xFF; 8]].concat();
     let mut elbow = zeroed();
     assert_eq!(start(&mut elbow, &tagged, Some(&key)), FrikanStatus::Active);
+    for (bytes, least_release, status) in [
+        (&release, 7, FrikanStatus::Active),
+        (&release, 8, FrikanStatus::Outdated),
+        (&tagged, 0, FrikanStatus::Active),
+        (&tagged, 1, FrikanStatus::Outdated),
+    ] {
+        let trust = FrikanTrust { key: key.as_ptr(), least_release, ..ANY };
+        // SAFETY: a slice and its length, references.
+        assert_eq!(unsafe { frikan_start(&mut *elbow, bytes.as_ptr(), bytes.len(), &trust, &LIMITS) }, status);
+    }
     assert_eq!(start(&mut elbow, &tagged, Some(&[8; 32])), FrikanStatus::NotAuthentic);
     assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotAuthentic));
     assert_eq!(start(&mut elbow, &[IMAGE, &[0xFF; 64]].concat(), Some(&key)), FrikanStatus::NotAuthentic);
@@ -219,5 +382,9 @@ fn an_update_goes_to_the_slot_that_is_not_in_use() {
         };
         assert_eq!(status, FrikanStatus::Active);
         assert!(step(&mut elbow).0 > 10.0);
+        // SAFETY: slices and their lengths, any image.
+        let used = unsafe { frikan_slot_in_use(first.as_ptr(), first.len(), second.as_ptr(), second.len(), null()) };
+        assert_eq!((used.status, used.slot, used.sequence), (FrikanStatus::Active, write.slot, round));
+        assert_eq!((used.image, used.bytes), (flash[write.slot as usize][16..].as_ptr(), IMAGE.len()));
     }
 }

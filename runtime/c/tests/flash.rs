@@ -7,7 +7,7 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use frikan::ffi::{FrikanCompensator, frikan_step};
-use frikan::flash::{FrikanFlash, frikan_start_from_flash, frikan_write_image};
+use frikan::flash::{FrikanFlash, frikan_replace_from_flash, frikan_start_from_flash, frikan_write_image};
 use frikan::types::{FrikanLimits, FrikanMeasurement, FrikanStatus};
 
 const IMAGE: &[u8] = include_bytes!("../../../fixtures/stribeck.frk");
@@ -80,6 +80,9 @@ fn an_image_is_written_found_and_survives_a_word_that_cannot_be_read() {
         assert_eq!(write(IMAGE), FrikanStatus::Active);
         assert_eq!(start(&mut elbow), FrikanStatus::Active);
         assert!(frikan_step(&mut *elbow, &moving, 1.0e-3).torque > 1.0);
+        assert_eq!(frikan_replace_from_flash(&mut *elbow, &flash, null()), FrikanStatus::Active);
+        assert_eq!(frikan_replace_from_flash(&mut *elbow, null(), null()), FrikanStatus::BadFlash);
+        assert_eq!(frikan_replace_from_flash(null_mut(), &flash, null()), FrikanStatus::NotStarted);
         for (first, second) in [(40, FrikanStatus::Active), (SLOT + 40, FrikanStatus::Active)] {
             (*flash.context.cast::<Chip>()).unreadable = Some(first);
             assert_eq!(start(&mut elbow), second);

@@ -6,9 +6,17 @@ fn generated() -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).unwrap();
     let builder = cbindgen::Builder::new().with_config(config);
-    let builder = ["src/types.rs", "src/ffi.rs", "src/slots.rs", "src/flash.rs", "src/supervised.rs"]
-        .into_iter()
-        .fold(builder, |builder, file| builder.with_src(folder.join(file)));
+    let builder = [
+        "src/types.rs",
+        "src/ffi.rs",
+        "src/admission.rs",
+        "src/slots.rs",
+        "src/flash.rs",
+        "src/supervised.rs",
+        "src/keep.rs",
+    ]
+    .into_iter()
+    .fold(builder, |builder, file| builder.with_src(folder.join(file)));
     let bindings = builder.generate().unwrap();
     let mut text = Vec::new();
     bindings.write(&mut text);

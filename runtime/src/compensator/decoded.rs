@@ -1,7 +1,8 @@
 //! Compensation by an image that is decoded to a model in memory.
 
 use frikan_shared::authentication::Trust;
-use frikan_shared::image::ImageError;
+use frikan_shared::authentication::admission::Admission;
+use frikan_shared::image::{ImageError, model_checksum};
 use frikan_shared::model::Model;
 
 use super::limited::{FrictionModel, Limited};
@@ -31,6 +32,17 @@ impl<const CELLS: usize> Decoded<CELLS> {
         if is_built_in(&model) { Ok(Self { model, state: FrictionState::new() }) } else { Err(ImageError::NotBuiltIn) }
     }
 
+    /// How warm the joint is.
+    #[must_use]
+    pub fn warmth(&self) -> Warmth {
+        self.state.warmth(&self.model.effects)
+    }
+
+    /// At rest, and as warm as `warmth` is after a rest of so many seconds.
+    pub fn restore(&mut self, warmth: &Warmth, rest: f32) {
+        self.state = FrictionState::with_warmth(warmth, &self.model.effects, rest);
+    }
+
     /// The friction of a model that is none of the commonest.
     #[inline(never)]
     fn friction_of_any(&mut self, measurement: &Measurement, dt: f32, is_step: i32, largest_position: f32) -> Friction {
@@ -53,7 +65,11 @@ impl<const CELLS: usize> FrictionModel for Decoded<CELLS> {
     }
 
     fn rest(&mut self) {
-        self.state = FrictionState::with_warmth(&self.state.warmth(&self.model.effects), &self.model.effects, 0.0);
+        self.restore(&self.warmth(), 0.0);
+    }
+
+    fn checksum(&self) -> Option<u32> {
+        Some(model_checksum(&self.model))
     }
 }
 
@@ -62,6 +78,12 @@ impl<const CELLS: usize> Compensator<CELLS> {
     #[must_use]
     pub fn new(image: &[u8], limits: Limits) -> Self {
         Self::trusting(image, Trust::Anyone, limits)
+    }
+
+    /// Compensation by an image that is admitted.
+    #[must_use]
+    pub fn admitting(image: &[u8], admission: &Admission<'_>, limits: Limits) -> Self {
+        Self::with_model(admission.decode(image).map(|image| image.model), limits)
     }
 
     /// Compensation by an image of whom `trust` names.
@@ -86,7 +108,7 @@ impl<const CELLS: usize> Compensator<CELLS> {
     /// The model, where there is one.
     #[must_use]
     pub fn model(&self) -> Option<&Model<CELLS>> {
-        self.model.as_ref().ok().map(|decoded| &decoded.model)
+        self.source().map(|decoded| &decoded.model)
     }
 
     /// Goes on with another model, at the torque put out last, from where the slew limit leads; what the effects of the one before
@@ -98,15 +120,12 @@ impl<const CELLS: usize> Compensator<CELLS> {
     /// The warmth of the joint, for the firmware to keep while the power is off.
     #[must_use]
     pub fn warmth(&self) -> Warmth {
-        self.model.as_ref().map_or(Warmth::COLD, |decoded| decoded.state.warmth(&decoded.model.effects))
+        self.source().map_or(Warmth::COLD, Decoded::warmth)
     }
 
     /// As [`Limited::reset`], and as warm as `warmth` is after a rest of so many seconds. Of a rest that nobody measured, 0 s is the
     /// safe guess: warm joints have the lower friction.
     pub fn restore(&mut self, warmth: &Warmth, rest: f32) {
-        if let Ok(decoded) = &mut self.model {
-            decoded.state = FrictionState::with_warmth(warmth, &decoded.model.effects, rest);
-        }
-        self.output.release();
+        self.reset_by(|decoded| decoded.restore(warmth, rest));
     }
 }

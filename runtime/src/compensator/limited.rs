@@ -19,6 +19,11 @@ pub trait FrictionModel {
 
     /// The joint rests, and nothing is wound up.
     fn rest(&mut self);
+
+    /// CRC-32 of what is evaluated, as it is now in memory or flash; none where that is code.
+    fn checksum(&self) -> Option<u32> {
+        None
+    }
 }
 
 /// What compensates the friction of a joint within limits, to be supervised.
@@ -74,10 +79,28 @@ impl<M: FrictionModel> Limited<M> {
         self.model.as_ref().map_or_else(|error| Status::NoModel(*error), |_| Status::Active)
     }
 
+    /// What gives the friction, where there is something.
+    #[must_use]
+    pub fn source(&self) -> Option<&M> {
+        self.model.as_ref().ok()
+    }
+
+    /// CRC-32 of the model as it is now in memory or flash: one that differs from that at the start is damaged. None where there is no model or it is
+    /// code. Not for the control loop: it takes as long as the model is large.
+    #[must_use]
+    pub fn checksum(&self) -> Option<u32> {
+        self.source()?.checksum()
+    }
+
     /// Starts from zero torque, at rest and with nothing wound up; the warmth of the joint stays.
     pub fn reset(&mut self) {
+        self.reset_by(M::rest);
+    }
+
+    /// Starts from zero torque with a model that `at_rest` puts to rest.
+    pub fn reset_by(&mut self, at_rest: impl FnOnce(&mut M)) {
         if let Ok(model) = &mut self.model {
-            model.rest();
+            at_rest(model);
         }
         self.output.release();
     }

@@ -13,7 +13,7 @@ pub const INPUT_WORDS: usize = 6;
 /// Words of a [`DriveOutput`].
 pub const OUTPUT_WORDS: usize = 8;
 /// Words of [`DriveSettings`].
-pub const SETTINGS_WORDS: usize = 29;
+pub const SETTINGS_WORDS: usize = 31;
 
 /// All that a drive is set to, but for its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +105,8 @@ impl DriveSettings {
             watch.rise_time,
             watch.least_friction,
             watch.implausible_time,
+            watch.hold_time,
+            watch.turn,
             self.dt,
         ];
         let mut words = [0; SETTINGS_WORDS];
@@ -139,6 +141,8 @@ impl DriveSettings {
             rise_time,
             least_friction,
             implausible_time,
+            hold_time,
+            turn,
             dt,
             adaptation @ ..,
         ] = numbers.map(f32::from_bits);
@@ -167,6 +171,8 @@ impl DriveSettings {
             rise_time,
             least_friction,
             implausible_time,
+            hold_time,
+            turn,
             adaptation,
         };
         let controller = Settings { stiffness, damping, inertia, count, velocity_corner, torque_limit };

@@ -53,6 +53,28 @@ fn images() -> Vec<Vec<u8>> {
     models.map(image).collect()
 }
 
+/// What earlier versions wrote is read where it lies, and says the same as when it is decoded.
+#[test]
+fn images_of_earlier_formats_are_read_in_place() {
+    let older: [&[u8]; 3] = [
+        include_bytes!("../../../fixtures/older/stribeck-3.frk"),
+        include_bytes!("../../../fixtures/older/stribeck-4.frk"),
+        include_bytes!("../../../fixtures/older/stribeck-5.frk"),
+    ];
+    let limits = Limits::new(1.0, 1.0e3, 1.0e9).unwrap();
+    for (image, version) in older.into_iter().zip(3..) {
+        assert_eq!(image[4], version);
+        let mut in_place = Limited::by(TableInPlace::new(image), limits);
+        let mut decoded = Compensator::<128>::new(image, limits);
+        for velocity in [-0.9, -1.0e-3, 0.02, 0.5] {
+            let sample = Measurement { velocity, ..Measurement::MISSING };
+            let answer = in_place.step(&sample, DT);
+            assert!(answer.status == Status::Active && answer.torque != 0.0);
+            assert_eq!(answer.torque.to_bits(), decoded.step(&sample, DT).torque.to_bits());
+        }
+    }
+}
+
 /// Samples of every kind: motion at every scale, special values, periods that are none.
 fn samples() -> impl Iterator<Item = (f32, f32)> {
     let special =

@@ -34,6 +34,14 @@ impl Correction {
     }
 }
 
+/// What an adaptation has learnt, to be kept while the power is off: plain numbers, to be written anywhere and read back. They belong to one model:
+/// the firmware keeps its checksum beside them. What no adaptation can have learnt, as damaged memory, is nothing learnt.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Learnt {
+    /// Mean products of the regressors (11, 12, 13, 22, 23, 33) and of these with what the model leaves, (N m)^2.
+    pub means: [f32; 9],
+}
+
 /// Torques of a sample, N m, finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Torques {
@@ -67,6 +75,26 @@ impl Adaptation {
             projections: [0.0; 3],
             correction: Correction::NONE,
         }
+    }
+
+    /// What has been learnt before.
+    pub(super) fn again(learnt: &Learnt, settings: &AdaptationSettings) -> Self {
+        let [a11, a12, a13, a22, a23, a33, b1, b2, b3] = learnt.means;
+        let is_sound = learnt.means.iter().all(|mean| mean.abs() <= LARGEST * LARGEST)
+            && [a11, a22, a33].iter().all(|square| *square >= 0.0);
+        if !is_sound {
+            return Self::new();
+        }
+        let mut adaptation =
+            Self { products: [a11, a12, a13, a22, a23, a33], projections: [b1, b2, b3], ..Self::new() };
+        adaptation.correct(settings);
+        adaptation
+    }
+
+    /// What has been learnt.
+    pub(super) fn learnt(&self) -> Learnt {
+        let ([a11, a12, a13, a22, a23, a33], [b1, b2, b3]) = (self.products, self.projections);
+        Learnt { means: [a11, a12, a13, a22, a23, a33, b1, b2, b3] }
     }
 
     /// The correction in force.
@@ -103,6 +131,11 @@ impl Adaptation {
         for (mean, regressor) in self.projections.iter_mut().zip(regressors) {
             *mean += share * (regressor * left - *mean);
         }
+        self.correct(settings);
+    }
+
+    /// The correction by what was learnt, within the bounds.
+    fn correct(&mut self, settings: &AdaptationSettings) {
         let prior = settings.trusted_torque * settings.trusted_torque;
         let [level, viscous, offset] = solved(self.products, self.projections, prior).map(|share| within(share, 1.0));
         let level = 1.0 + level * settings.reach();

@@ -4,16 +4,16 @@
 use super::settings::Supervision;
 
 /// The velocity of the reference up to `rest_velocity`, through zero and at rest; the measured one from twice that on; between them in
-/// proportion to the speed of the reference. A joint that does not go the way of its reference is compensated at the reference's velocity:
-/// the friction to overcome is that of the motion wanted.
+/// proportion to the speed of the reference. A joint that does not go the way of its reference, or hardly, is compensated as if it went at
+/// twice `rest_velocity`: the friction to overcome is that at which it breaks away, whatever the speed that is asked for.
 #[must_use]
 pub fn blended(supervision: &Supervision, measured: f32, reference: f32) -> f32 {
     let rest = supervision.rest_velocity;
     let share = share(rest, reference.abs());
-    let same_way = if measured * reference > 0.0 { measured } else { 0.0 };
-    // A joint that lags far behind its reference is about to stick: its own velocity would take the compensation away.
-    let slower = if same_way.abs() < 0.5 * reference.abs() { reference } else { same_way };
-    reference + share * (slower - reference)
+    let along = if reference < 0.0 { -measured } else { measured };
+    let along = if along > 2.0 * rest { along } else { 2.0 * rest };
+    let speed = reference.abs() + share * (along - reference.abs());
+    if reference < 0.0 { -speed } else { speed }
 }
 
 /// The share of compensation at a measured speed without a reference: none at rest, where nobody says which way the joint is to go and the

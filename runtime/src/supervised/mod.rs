@@ -6,6 +6,7 @@
 use crate::bounds::limited;
 use crate::compensator::{Compensate, Limits, Status};
 use crate::measurement::Measurement;
+use crate::usable::{above_0_to, finite};
 
 pub mod adaptation;
 pub mod adaptation_settings;
@@ -14,16 +15,18 @@ pub mod monitor;
 pub mod observer;
 pub mod pace;
 pub mod plausibility;
+pub mod rest;
 mod settings;
 pub mod velocity;
 
-use adaptation::{Adaptation, Correction, Torques};
+use adaptation::{Adaptation, Correction, Learnt, Torques};
 use blend::{blended, share_without_reference};
 use monitor::Monitor;
 use observer::{Observation, Observer};
 use pace::Pace;
 use plausibility::Plausibility;
-use settings::FASTEST;
+use rest::Rest;
+use settings::{FASTEST, is_within};
 use velocity::Velocity;
 
 pub use settings::{DEFAULT_GAIN, Supervision, SupervisionError, VelocitySource};
@@ -31,7 +34,7 @@ pub use settings::{DEFAULT_GAIN, Supervision, SupervisionError, VelocitySource};
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// The joint, `velocity` as measured; `position` has to be filled, and without jumps.
+    /// The joint, `velocity` as measured; `position` has to be filled, and without jumps but that of a turn.
     pub measurement: Measurement,
     /// Velocity of the reference, rad/s; none while no position or velocity loop is closed, as in hand guiding.
     pub reference_velocity: Option<f32>,
@@ -81,11 +84,12 @@ pub struct Supervisor {
     velocity: Velocity,
     /// Position of the last sample that was one, rad, and how long before the one before this it was, s.
     position: Option<(f32, f32)>,
-    /// What was put out last, before the share of the monitor.
-    held: f32,
+    /// Inertia in force, kg m^2.
+    inertia: f32,
+    rest: Rest,
     torque: f32,
-    /// Which of the compensator's models the adaptation has learnt on.
-    changes: u32,
+    /// Which of the compensator's models the adaptation learns on; none before the first sample.
+    changes: Option<u32>,
 }
 
 impl Supervisor {
@@ -96,8 +100,8 @@ impl Supervisor {
     pub fn new(settings: Supervision) -> Result<Self, SupervisionError> {
         settings.validate()?;
         Ok(Self {
+            pace: Pace::of(&settings),
             settings,
-            pace: Pace::NONE,
             observer: Observer::default(),
             monitor: Monitor::new(),
             adaptation: Adaptation::new(),
@@ -105,9 +109,10 @@ impl Supervisor {
             is_implausible: false,
             velocity: Velocity::default(),
             position: None,
-            held: 0.0,
+            inertia: settings.inertia,
+            rest: Rest::default(),
             torque: 0.0,
-            changes: 0,
+            changes: None,
         })
     }
 
@@ -117,10 +122,35 @@ impl Supervisor {
         self.adaptation.correction()
     }
 
+    /// Another inertia of the joint from now on, kg m^2: of the pose or the payload, in each sample if need be. The torque of an inertia that changes,
+    /// `dJ/dt v / 2`, belongs to the loop torque.
+    ///
+    /// # Errors
+    /// [`SupervisionError::Inertia`] where it is not from 0 to 1e9: the one before stays in force.
+    pub fn set_inertia(&mut self, inertia: f32) -> Result<(), SupervisionError> {
+        if !is_within(0.0, inertia) {
+            return Err(SupervisionError::Inertia);
+        }
+        self.inertia = inertia;
+        Ok(())
+    }
+
     /// Forgets what was learnt, for a joint that was idle for long or has another gear or grease. What was learnt on one model is forgotten
     /// with the next anyway.
     pub fn forget(&mut self) {
         self.adaptation = Adaptation::new();
+    }
+
+    /// What was learnt, for the firmware to keep while the power is off.
+    #[must_use]
+    pub fn learnt(&self) -> Learnt {
+        self.adaptation.learnt()
+    }
+
+    /// Goes on with what was learnt on the model of the compensator before the power was off; without an adaptation, with nothing.
+    pub fn restore(&mut self, learnt: &Learnt) {
+        let settings = self.settings.adaptation.as_ref();
+        self.adaptation = settings.map_or(Adaptation::new(), |settings| Adaptation::again(learnt, settings));
     }
 
     /// Compensates again after [`Supervised::Implausible`]: for whoever has found out why velocity and position contradicted each other.
@@ -131,23 +161,23 @@ impl Supervisor {
     /// The compensation by `compensator`, within its limits, after a sample period of `dt` seconds.
     #[must_use]
     pub fn step(&mut self, compensator: &mut impl Compensate, sample: &Sample, dt: f32) -> SupervisedCompensation {
-        if compensator.changes() != self.changes {
-            self.changes = compensator.changes();
+        let changes = compensator.changes();
+        if self.changes.replace(changes).is_some_and(|before| before != changes) {
             self.forget();
         }
         let limits = *compensator.limits();
         let Measurement { velocity, position, .. } = sample.measurement;
         let reference = sample.reference_velocity;
-        let is_finite = velocity.is_finite()
-            && position.is_finite()
-            && sample.loop_torque.is_finite()
-            && reference.is_none_or(f32::is_finite)
-            && dt > 0.0;
-        if !is_finite {
+        let is_usable = finite(velocity)
+            & finite(position)
+            & finite(sample.loop_torque)
+            & finite(reference.unwrap_or(0.0))
+            & above_0_to(f32::MAX, dt);
+        if is_usable >= 0 {
             return self.off(Status::NotFinite, &limits, dt);
         }
         if dt != self.pace.dt {
-            self.pace = Pace::at(&self.settings, dt);
+            self.pace.set(&self.settings, dt);
         }
         // What no joint does must not overflow what the filters remember.
         let (velocity, loop_torque) = (limited(velocity, FASTEST), limited(sample.loop_torque, STRONGEST_LOOP));
@@ -166,7 +196,7 @@ impl Supervisor {
         }
         let of_position = limited(self.velocity_of(position), FASTEST);
         self.position = Some((position, 0.0));
-        let observed = self.observer.observe(&self.settings, &self.pace, of_position, loop_torque);
+        let observed = self.observer.observe(&self.settings, &self.pace, of_position, (loop_torque, self.inertia));
         self.monitor.take(&self.settings, &self.pace, &observed, answer.torque);
         self.is_implausible |= !self.plausibility.observe(&self.settings, &self.pace, velocity, of_position);
         let is_plausible = !self.is_implausible;
@@ -177,12 +207,12 @@ impl Supervisor {
         let compensated = self.adapted(&observed, (answer.torque, limits.gain()), chosen, may_learn);
         let is_blended = self.settings.source == VelocitySource::Blended;
         let wanted = match reference {
-            // At rest the torque stays as it is: to switch it would move the joint.
-            Some(reference) if is_blended && reference.abs() < HOLD * rest && believed.abs() < rest => self.held,
-            None if is_blended => share_without_reference(&self.settings, believed) * compensated,
-            _ => compensated,
+            Some(reference) if is_blended && reference.abs() < HOLD * rest && believed.abs() < rest => {
+                self.rest.standing(&self.pace)
+            }
+            None if is_blended => self.rest.moving(share_without_reference(&self.settings, believed) * compensated),
+            _ => self.rest.moving(compensated),
         };
-        self.held = wanted;
         let share = if self.settings.monitored { self.monitor.share() } else { 1.0 };
         let allowed = if is_plausible { share * wanted } else { 0.0 };
         let reach = if is_plausible { limits.slew() * dt } else { self.ramp(limits.torque(), dt) };
@@ -207,11 +237,11 @@ impl Supervisor {
 
     /// Velocity on the way to a position since the last one, rad/s.
     fn velocity_of(&self, position: f32) -> f32 {
-        match self.position {
-            Some((before, 0.0)) => (position - before) * self.pace.rate,
-            Some((before, missed)) => (position - before) / (self.pace.dt + missed),
-            None => 0.0,
-        }
+        let Some((before, missed)) = self.position else { return 0.0 };
+        let (way, turn) = (position - before, self.settings.turn);
+        // The shorter way round; of a turn of 0 there is no other.
+        let way = if way.abs() > 0.5 * turn { way - turn.copysign(way) } else { way };
+        if missed == 0.0 { way * self.pace.rate } else { way / (self.pace.dt + missed) }
     }
 
     /// Largest change of an implausible torque in `dt`: all of its limit in the time in which the contradiction was found.

@@ -2,7 +2,7 @@
 //!
 //! `loop torque - J dv/dt`, where the loop torque is all that acts on the joint but friction, compensation and outside forces, both sides
 //! of the difference behind the same low-pass (Hsu, Bodson, Sastry & Paden 1987). It is friction less compensation. The low-pass has two
-//! stages, so that a count of the encoder is a bounded torque ([`Pace::at`]).
+//! stages, so that a count of the encoder is a bounded torque ([`Pace::of`]).
 
 use super::pace::Pace;
 use super::settings::Supervision;
@@ -30,8 +30,14 @@ pub struct Observation {
 }
 
 impl Observer {
-    /// Takes the velocity of the position since the sample before and the loop torque that acted meanwhile, both finite.
-    pub fn observe(&mut self, supervision: &Supervision, pace: &Pace, velocity: f32, loop_torque: f32) -> Observation {
+    /// Takes the velocity of the position since the sample before and the loop torque that acted meanwhile on an inertia in kg m^2, all finite.
+    pub fn observe(
+        &mut self,
+        supervision: &Supervision,
+        pace: &Pace,
+        velocity: f32,
+        (loop_torque, inertia): (f32, f32),
+    ) -> Observation {
         let share = pace.observer;
         follow(&mut self.torque, share, loop_torque);
         let above = follow(&mut self.velocity, share, velocity);
@@ -39,7 +45,8 @@ impl Observer {
         let goes_on = early * late > 0.0 && late.abs() > pace.standstill;
         self.way = if goes_on { self.way + early.abs() * pace.dt } else { 0.0 };
         Observation {
-            net_friction: self.torque[1] - pace.inertia * above,
+            // The low-pass of the differences of the velocity, whatever the sample period.
+            net_friction: self.torque[1] - inertia * (share * pace.rate) * above,
             velocity: late,
             slides: self.way > supervision.presliding,
         }

@@ -1,5 +1,7 @@
 //! Settings of the supervision.
 
+use core::f32::consts::TAU;
+
 use super::adaptation_settings::AdaptationSettings;
 
 /// Speed beyond any joint's, rad/s.
@@ -24,7 +26,8 @@ pub enum VelocitySource {
 /// Settings of the supervision; what a constructor does not ask for has a default that is documented with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supervision {
-    /// Inertia of the joint, kg m^2; an error of it of a tenth is seen as friction of a tenth of the inertial torque.
+    /// Inertia of the joint, kg m^2, the largest where it depends on the pose ([`super::Supervisor::set_inertia`]); an error of it of a tenth is
+    /// seen as friction of a tenth of the inertial torque.
     pub inertia: f32,
     /// Angle of a count of the encoder, rad: what is smaller is not seen as motion. 0 where the position is not made of counts.
     pub count: f32,
@@ -38,7 +41,7 @@ pub struct Supervision {
     pub standstill: f32,
     /// Way after a reversal in which the contact is elastic, rad.
     pub presliding: f32,
-    /// Delay of the observer's low-pass, s; that of a coarse encoder is longer, see [`super::pace::Pace::at`].
+    /// Delay of the observer's low-pass, s; that of a coarse encoder is longer, see [`super::pace::Pace::of`].
     pub observer_time: f32,
     /// Time in which the monitor lowers the gain from full to none where all friction is over-compensated once more, s.
     pub fall_time: f32,
@@ -48,6 +51,10 @@ pub struct Supervision {
     pub least_friction: f32,
     /// How long velocity and position may contradict each other, s.
     pub implausible_time: f32,
+    /// How long the torque of a joint at rest is held, s; it falls to 0 within the same time again.
+    pub hold_time: f32,
+    /// Angle after which the position begins anew, rad; 0 where it never does.
+    pub turn: f32,
     /// Whether and how far the compensation follows a friction that changes; not, unless the firmware sets bounds.
     pub adaptation: Option<AdaptationSettings>,
 }
@@ -69,16 +76,22 @@ impl Supervision {
             rise_time: 0.5,
             least_friction: 0.1 * friction.abs(),
             implausible_time: 0.2,
+            hold_time: 2.0,
+            turn: TAU,
             adaptation: None,
         }
     }
 
-    /// Whether the settings can be kept: inertia and count from 0 to 1e9, the others from 1e-9 to 1e9, where no product of them overflows.
+    /// Whether the settings can be kept: inertia, count and turn from 0 to 1e9, the others from 1e-9 to 1e9, where no product of them overflows.
     ///
     /// # Errors
     /// [`SupervisionError`] names the first one that cannot.
     pub fn validate(&self) -> Result<(), SupervisionError> {
-        let may_be_0 = [(self.inertia, SupervisionError::Inertia), (self.count, SupervisionError::Count)];
+        let may_be_0 = [
+            (self.inertia, SupervisionError::Inertia),
+            (self.count, SupervisionError::Count),
+            (self.turn, SupervisionError::Turn),
+        ];
         let above_0 = [
             (self.rest_velocity, SupervisionError::RestVelocity),
             (self.standstill, SupervisionError::Standstill),
@@ -88,6 +101,7 @@ impl Supervision {
             (self.rise_time, SupervisionError::RiseTime),
             (self.least_friction, SupervisionError::LeastFriction),
             (self.implausible_time, SupervisionError::ImplausibleTime),
+            (self.hold_time, SupervisionError::HoldTime),
         ];
         let refused = |least: f32| move |(setting, _): &(f32, SupervisionError)| !is_within(least, *setting);
         let beyond = may_be_0.into_iter().find(refused(0.0));
@@ -97,7 +111,7 @@ impl Supervision {
 }
 
 /// Whether a setting lies from `least`, which is not negative, to [`LARGEST`]: the patterns of what is negative or no number lie above.
-fn is_within(least: f32, setting: f32) -> bool {
+pub(super) fn is_within(least: f32, setting: f32) -> bool {
     (least.to_bits()..=LARGEST.to_bits()).contains(&setting.to_bits())
 }
 
@@ -128,6 +142,10 @@ pub enum SupervisionError {
     LeastFriction,
     /// The time of a contradiction is not from 1e-9 to 1e9 s.
     ImplausibleTime,
+    /// The time for which a torque is held is not from 1e-9 to 1e9 s.
+    HoldTime,
+    /// The angle of a turn is not from 0 to 1e9 rad.
+    Turn,
 }
 
 impl core::fmt::Display for SupervisionError {
@@ -143,6 +161,8 @@ impl core::fmt::Display for SupervisionError {
             Self::RiseTime => "the time in which the gain rises is out of range",
             Self::LeastFriction => "the least friction is out of range",
             Self::ImplausibleTime => "the time of a contradiction is out of range",
+            Self::HoldTime => "the time for which a torque is held is out of range",
+            Self::Turn => "the angle of a turn is out of range",
         })
     }
 }

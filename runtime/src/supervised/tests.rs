@@ -168,10 +168,14 @@ fn settings_that_cannot_be_kept_are_refused_by_name() {
             (Supervision { rest_velocity: bad, ..good }, SupervisionError::RestVelocity),
             (Supervision { observer_time: bad, ..good }, SupervisionError::ObserverTime),
             (Supervision { implausible_time: bad, ..good }, SupervisionError::ImplausibleTime),
+            (Supervision { hold_time: bad, ..good }, SupervisionError::HoldTime),
+            (Supervision { turn: bad, ..good }, SupervisionError::Turn),
         ] {
             assert_eq!(Supervisor::new(settings).err(), Some(error));
         }
     }
+    let mut supervisor = Supervisor::new(good).unwrap();
+    assert_eq!([-1.0, f32::NAN, 0.0].map(|inertia| supervisor.set_inertia(inertia).is_ok()), [false, false, true]);
     assert_eq!(Supervisor::new(Supervision::new(INERTIA, 0.0, COUNT)).err(), Some(SupervisionError::LeastFriction));
 }
 
@@ -200,9 +204,10 @@ fn the_reference_leads_through_zero_and_the_joint_in_sliding() {
     }
     assert_eq!(blended(&supervision, 0.27, 0.3), 0.27);
     assert_eq!(blended(&supervision, -0.27, -0.3), -0.27);
-    // Stuck, or moved against its reference: what is wanted counts.
-    assert_eq!(blended(&supervision, 0.0, 0.3), 0.3);
-    assert_eq!(blended(&supervision, -0.3, 0.3), 0.3);
+    // Stuck, or moved against its reference: what it takes to break away.
+    for (measured, reference, broken_away) in [(0.0, 0.3, 2.0), (-0.3, 0.3, 2.0), (0.0, -0.3, -2.0)] {
+        assert!((blended(&supervision, measured, reference) - broken_away * rest).abs() < 1.0e-6);
+    }
 }
 
 #[test]

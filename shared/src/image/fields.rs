@@ -45,6 +45,13 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// A name: its bytes behind their number.
+    #[inline(never)]
+    pub(super) fn name(&mut self) -> &'a [u8] {
+        let length = self.number();
+        self.bytes(length as usize)
+    }
+
     /// A float.
     #[inline(never)]
     pub(super) fn float(&mut self) -> f32 {

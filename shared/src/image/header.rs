@@ -7,8 +7,15 @@ use crate::invalid::InvalidModel;
 /// First bytes of every image.
 pub const MAGIC: [u8; 4] = *b"FRKN";
 
-/// Version of the format that this crate writes and reads.
+/// Version of the format that this crate writes, and the latest that it reads.
 pub const FORMAT_VERSION: u16 = 6;
+
+/// Earliest version that is read.
+pub const EARLIEST_VERSION: u16 = 3;
+
+/// Since when the provenance has the error of the law, and the covariance of the rigid body.
+pub(super) const LAW_ERROR_SINCE: u16 = 5;
+pub(super) const RIGID_BODY_ERROR_SINCE: u16 = 6;
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 16;
@@ -27,7 +34,7 @@ pub enum ImageError {
     Truncated,
     /// The bytes do not begin with [`MAGIC`].
     BadMagic,
-    /// The format version is not [`FORMAT_VERSION`].
+    /// The format version is not one from [`EARLIEST_VERSION`] to [`FORMAT_VERSION`], or has effects that are written otherwise today.
     UnsupportedVersion(u16),
     /// The payload length exceeds [`MAX_PAYLOAD_BYTES`], or the model has more cells than the reader has room for.
     TooLarge,
@@ -45,6 +52,14 @@ pub enum ImageError {
     NoImage,
     /// The tag of whom the drive trusts does not stand behind the image.
     NotAuthentic,
+    /// The image is of another joint than the firmware asks for.
+    OtherJoint,
+    /// The torque of the image is in another unit.
+    OtherUnit,
+    /// The image reads a channel that the drive does not measure.
+    MissingChannel,
+    /// The image is older than the firmware allows.
+    Outdated,
     /// The image holds a kind of law or effect that this firmware was built without.
     NotBuiltIn,
 }
@@ -63,6 +78,10 @@ impl core::fmt::Display for ImageError {
             Self::BufferTooSmall => f.write_str("the buffer is too small for the image"),
             Self::NoImage => f.write_str("there is no intact image"),
             Self::NotAuthentic => f.write_str("the image is not authentic"),
+            Self::OtherJoint => f.write_str("the image is of another joint"),
+            Self::OtherUnit => f.write_str("the torque of the image is in another unit"),
+            Self::MissingChannel => f.write_str("the image reads a channel that the drive does not measure"),
+            Self::Outdated => f.write_str("the image is older than the firmware allows"),
             Self::NotBuiltIn => f.write_str("the image needs a part that was left out of this firmware"),
         }
     }
@@ -139,6 +158,7 @@ fn sum_over(sum: u32, bytes: &[u8]) -> u32 {
 
 /// The header's fields after magic and version were found right.
 pub(super) struct Header {
+    pub(super) version: u16,
     pub(super) cells: u16,
     payload_bytes: usize,
     crc32: u32,
@@ -153,14 +173,14 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, ImageError> {
     }
     let [v0, v1, c0, c1] = *version_and_cells;
     let version = u16::from_le_bytes([v0, v1]);
-    if version != FORMAT_VERSION {
+    if !(EARLIEST_VERSION..=FORMAT_VERSION).contains(&version) {
         return Err(ImageError::UnsupportedVersion(version));
     }
     let payload_bytes = u32::from_le_bytes(*length) as usize;
     if payload_bytes > MAX_PAYLOAD_BYTES {
         return Err(ImageError::TooLarge);
     }
-    Ok(Header { cells: u16::from_le_bytes([c0, c1]), payload_bytes, crc32: u32::from_le_bytes(*crc32) })
+    Ok(Header { version, cells: u16::from_le_bytes([c0, c1]), payload_bytes, crc32: u32::from_le_bytes(*crc32) })
 }
 
 /// Length in bytes of the image at the start of `bytes`, header included, as its header states it.
@@ -169,6 +189,14 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, ImageError> {
 /// [`ImageError::Truncated`], [`ImageError::BadMagic`], [`ImageError::UnsupportedVersion`] or [`ImageError::TooLarge`].
 pub fn image_bytes(bytes: &[u8]) -> Result<usize, ImageError> {
     Ok(HEADER_BYTES + header(bytes)?.payload_bytes)
+}
+
+/// The format version of an image.
+///
+/// # Errors
+/// As [`image_bytes`].
+pub fn image_version(bytes: &[u8]) -> Result<u16, ImageError> {
+    Ok(header(bytes)?.version)
 }
 
 /// The CRC-32 that an image carries.

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use super::fields::Fields;
-use super::header::{Header, ImageError, header, verified, verified_payload};
+use super::header::{Header, ImageError, LAW_ERROR_SINCE, RIGID_BODY_ERROR_SINCE, header, verified, verified_payload};
 use crate::invalid::{InvalidModel, ensure};
 use crate::table::{Geometric, GeometricShape, Symmetry, is_usable};
 use crate::units::Unit;
@@ -20,6 +20,8 @@ pub struct TableImage<'a> {
     pub cells: Cells<'a>,
     /// Unit of the output.
     pub output_unit: Unit,
+    /// Name of the joint.
+    pub joint: &'a [u8],
 }
 
 impl<'a> TableImage<'a> {
@@ -29,6 +31,7 @@ impl<'a> TableImage<'a> {
     ///
     /// # Errors
     /// [`ImageError::NotBuiltIn`] for any other law, and those of [`super::decode`].
+    #[inline(always)]
     pub fn read(bytes: &'a [u8]) -> Result<Self, ImageError> {
         let (header, payload) = verified(bytes)?;
         Self::of_payload(&header, payload)
@@ -48,14 +51,13 @@ impl<'a> TableImage<'a> {
     #[inline(always)]
     fn of_payload(header: &Header, payload: &'a [u8]) -> Result<Self, ImageError> {
         let mut fields = Fields::new(payload);
-        for _ in 0..PROVENANCE_NAMES {
-            let length = fields.number();
-            fields.bytes(length as usize);
-        }
+        let [joint, _version]: [&[u8]; PROVENANCE_NAMES] = core::array::from_fn(|_| fields.name());
         for _ in 0..PROVENANCE_NUMBERS {
             fields.number();
         }
-        fields.bytes(4 * PROVENANCE_FLOATS);
+        let floats = if header.version >= RIGID_BODY_ERROR_SINCE { RIGID_BODY_ERROR_FLOATS } else { 0 };
+        let floats = if header.version >= LAW_ERROR_SINCE { floats + LAW_ERROR_FLOATS } else { 0 };
+        fields.bytes(4 * floats);
         let law = fields.number();
         let shape = GeometricShape {
             first_cell: fields.number() as u16,
@@ -90,7 +92,7 @@ impl<'a> TableImage<'a> {
         // Behind a black box the loop stays as short as it is written.
         let words = black_box(column.ok_or(InvalidModel::CellOutOfPool)?.as_flattened().as_chunks().0);
         ensure(words.iter().all(|word| is_usable(u32::from_le_bytes(*word))), InvalidModel::Coefficient)?;
-        Ok(Self { layout, cells, output_unit })
+        Ok(Self { layout, cells, output_unit, joint })
     }
 }
 
@@ -101,7 +103,8 @@ const VELOCITY: u32 = 0;
 /// What of the image is passed over.
 const PROVENANCE_NAMES: usize = 2;
 const PROVENANCE_NUMBERS: usize = 2;
-const PROVENANCE_FLOATS: usize = 17;
+const LAW_ERROR_FLOATS: usize = 2;
+const RIGID_BODY_ERROR_FLOATS: usize = 15;
 const INPUT_BYTES: usize = 9;
 const LIMIT_FLOATS: usize = 1;
 const BODY_FLOATS: usize = 5;

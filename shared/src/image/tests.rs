@@ -127,6 +127,8 @@ fn every_failure_has_its_error() {
     }
     assert_eq!(changed(0, 0), ImageError::BadMagic);
     assert_eq!(changed(4, 9), ImageError::UnsupportedVersion(9));
+    assert_eq!(changed(4, 2), ImageError::UnsupportedVersion(2));
+    assert_eq!(changed(4, 5), ImageError::CrcMismatch);
     assert_eq!(changed(11, 1), ImageError::TooLarge);
     assert_eq!(changed(40, 0x55), ImageError::CrcMismatch);
     assert_eq!(decode::<8>(&bytes), Err(ImageError::TooLarge));
@@ -140,6 +142,35 @@ fn every_failure_has_its_error() {
     let crc32 = checksum(&[&malformed[..12], &malformed[16..]]);
     malformed[12..16].copy_from_slice(&crc32.to_le_bytes());
     assert_eq!(decode::<64>(&malformed), Err(ImageError::Malformed));
+}
+
+/// Of the version before the effects of today, as an earlier writer would have made it.
+#[test]
+fn effects_of_another_encoding_are_refused_and_no_effects_are_not() {
+    let as_version_3 = |model: &Pool| {
+        let mut payload = [0; 8192];
+        let used = postcard::to_slice(&("axis", "0.1.0", 1u64, 2u64), &mut payload).unwrap().len();
+        let used = used + postcard::to_slice(model, &mut payload[used..]).unwrap().len();
+        let mut bytes =
+            [&MAGIC[..], &[3, 0], &(model.cells.len() as u16).to_le_bytes(), &(used as u32).to_le_bytes()].concat();
+        bytes.extend(checksum(&[&bytes, &payload[..used]]).to_le_bytes());
+        [&bytes[..], &payload[..used]].concat()
+    };
+    let mut model = table_image(Symmetry::Odd).model;
+    let read = decode::<64>(&as_version_3(&model)).unwrap();
+    assert_eq!((&read.model, read.provenance.law_error), (&model, LawError::default()));
+    model.inputs.push(input(Quantity::Position)).unwrap();
+    model.effects.push(Effect::Spring { stiffness: 1.0, rest: 0.0 }).unwrap();
+    assert_eq!(decode::<64>(&as_version_3(&model)), Err(ImageError::UnsupportedVersion(3)));
+}
+
+#[test]
+fn a_model_that_changes_in_memory_has_another_checksum() {
+    let model = table_image(Symmetry::Sided).model;
+    let sum = model_checksum(&model);
+    let mut changed = model.clone();
+    changed.cells[5] = Cell::from_floats([1.0, 0.5, -0.25, 1.0e-3]);
+    assert_eq!((model_checksum(&model), model_checksum(&changed) == sum), (sum, false));
 }
 
 #[test]

@@ -2,15 +2,19 @@
 
 mod fmu;
 mod model_file;
+mod number;
+mod slot;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use frikan_runtime::slots::slot_header;
+use frikan_shared::authentication::release_block;
 use frikan_shared::image::Image;
 use frikan_shared::model::Law;
 
 use self::model_file::ModelFileArguments;
+use self::number::number;
+use self::slot::FlashArguments;
 use super::output::{Outputs, print, say};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
@@ -37,9 +41,15 @@ pub struct Export {
     /// Put the header of a flash slot in front, with this sequence number
     #[arg(long, value_parser = number, value_name = "SEQUENCE")]
     pub slot: Option<u32>,
+    /// How the flash of the slot is written
+    #[command(flatten)]
+    pub flash: FlashArguments,
     /// Put the tag of the key in this file behind the image, for drives that ask for one
     #[arg(long, value_name = "KEY")]
     pub key_file: Option<PathBuf>,
+    /// Number the release, under the tag: a drive refuses an older one than its firmware has seen
+    #[arg(long, value_parser = number, value_name = "NUMBER", requires = "key_file")]
+    pub release: Option<u32>,
     /// Processor family, needed for `uf2`: a boot loader takes no file of another (github.com/microsoft/uf2, `utils/uf2families.json`)
     #[arg(long, value_parser = number, value_name = "NUMBER")]
     pub family: Option<u32>,
@@ -66,9 +76,9 @@ pub enum Format {
     Hex,
     /// UF2, for boot loaders that show up as a drive
     Uf2,
-    /// An object file with the bytes in its section `.frikan`
+    /// An object file with the bytes in its section `.frikan`, at the symbol FILE_image
     Elf,
-    /// The bytes as an array for a C compiler
+    /// The bytes as the array FILE_image for a C compiler
     CHeader,
     /// Law and effects as C source that needs nothing else, the very bits of the drive: FILE.c and FILE.h
     C,
@@ -128,8 +138,8 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Bin => bytes.clone(),
         Format::Hex => hex::intel_hex(&bytes, place.address).into_bytes(),
         Format::Uf2 => uf2::uf2(&bytes, place.address, place.family),
-        Format::Elf => object_file(&bytes, processor(arguments.processor))?,
-        Format::CHeader => c_array::c_header(&bytes, &title).into_bytes(),
+        Format::Elf => object_file(&stem(&arguments.output), &bytes, processor(arguments.processor))?,
+        Format::CHeader => c_array::c_header(&stem(&arguments.output), &bytes, &title).into_bytes(),
         Format::Json => readable::readable(&image_bytes, &image).into_bytes(),
         Format::Rust => rust::module(&title, &image)?.into_bytes(),
         Format::Python => python::module(&title, &image)?.into_bytes(),
@@ -197,15 +207,20 @@ fn flashed(arguments: &Export, image: Vec<u8>) -> Result<Vec<u8>> {
     }
     let mut bytes = image;
     if let Some(path) = &arguments.key_file {
+        bytes.extend(arguments.release.iter().flat_map(|number| release_block(*number)));
         let tag = key::load(path)?.tag(&bytes);
         bytes.extend(tag);
     }
-    if let Some(sequence) = arguments.slot {
-        let header = slot_header(sequence, &bytes)
-            .ok_or_else(|| Error::new(&codes::FILE_TOO_LARGE, "the image is too large for a slot"))?;
-        bytes.splice(..0, header);
+    match arguments.slot {
+        Some(sequence) => arguments.flash.slot(sequence, &bytes, arguments.address),
+        None => arguments.flash.refused_without_slot().map(|()| bytes),
     }
-    Ok(bytes)
+}
+
+/// The name of a file, by which what it defines is called; `frikan` for standard output.
+fn stem(output: &Path) -> String {
+    let stem = output.file_stem().filter(|stem| *stem != "-");
+    stem.map_or_else(|| "frikan".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Where the bytes go in flash, as far as the form says it; 0 where it does not.
@@ -268,12 +283,4 @@ fn c_names(source: &Path) -> Result<(String, PathBuf)> {
     let name = source.file_stem().filter(|_| source.extension().is_some_and(|extension| extension == "c"));
     let name = name.ok_or_else(|| Error::new(&codes::USAGE, "`--to c` writes two files: name one that ends in .c"))?;
     Ok((name.to_string_lossy().into_owned(), source.with_extension("h")))
-}
-
-fn number(text: &str) -> std::result::Result<u32, String> {
-    let parsed = match text.strip_prefix("0x") {
-        Some(digits) => u32::from_str_radix(digits, 16),
-        None => text.parse(),
-    };
-    parsed.map_err(|_| "a number such as 1 or 0x08060000 is expected".to_owned())
 }

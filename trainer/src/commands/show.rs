@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32};
+use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32, image_version};
 use frikan_shared::model::{Law, LawError, RIGID_BODY_CONSTANTS, RigidBodyError};
 
 use super::output::Outputs;
@@ -98,6 +98,7 @@ fn describe_found(out: &mut String, found: &Found<'_>, is_dump: bool) -> std::fm
         Err(error) => writeln!(out, "image       refused: {error}")?,
     }
     match found.authentic {
+        Some(true) if found.release > 0 => writeln!(out, "tag         authentic, release {}", found.release),
         Some(true) => writeln!(out, "tag         authentic"),
         Some(false) => writeln!(out, "tag         NOT authentic: the drive refuses this image"),
         None => Ok(()),
@@ -189,7 +190,8 @@ fn describe(out: &mut String, bytes: &[u8], image: &Image<CELLS>) -> std::fmt::R
     )?;
     writeln!(
         out,
-        "image       format {FORMAT_VERSION}, {} bytes, {} cells, CRC-32 {:08x}",
+        "image       format {}, {} bytes, {} cells, CRC-32 {:08x}",
+        image_version(bytes).unwrap_or(FORMAT_VERSION),
         bytes.len(),
         model.cells.len(),
         image_crc32(bytes).unwrap_or(0)

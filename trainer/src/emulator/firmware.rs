@@ -26,7 +26,8 @@ pub struct Firmware {
     features: Option<String>,
 }
 
-/// The firmware folder: `FRIKAN_FIRMWARE`, or `tests/firmware` of the checkout around the current directory.
+/// The firmware folder: `FRIKAN_FIRMWARE`, or `tests/firmware` of the checkout around the current directory, or of that which this program was built
+/// from.
 ///
 /// # Errors
 /// `FRK-I006` where there is none.
@@ -40,9 +41,13 @@ pub fn firmware_folder() -> Result<PathBuf> {
         });
     }
     let here = env::current_dir().map_err(|error| Error::from_io(Path::new("."), &error))?;
-    here.ancestors().map(|folder| folder.join(FOLDER_IN_CHECKOUT)).find(is_firmware).ok_or_else(|| {
+    // The checkout that this program was built from is the parent folder of its package.
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+    let folders = here.ancestors().chain(sources).map(|folder| folder.join(FOLDER_IN_CHECKOUT));
+    folders.into_iter().find(is_firmware).ok_or_else(|| {
         let message = format!(
-            "no firmware to run: start inside a checkout of Frikan, or name its {FOLDER_IN_CHECKOUT} in {FIRMWARE_VARIABLE}"
+            "no firmware to run: the checkout that this program was built from is gone; start inside another, or name its \
+             {FOLDER_IN_CHECKOUT} in {FIRMWARE_VARIABLE}"
         );
         Error::new(&codes::FIRMWARE_NOT_FOUND, message)
     })

@@ -2,15 +2,24 @@
 
 use std::fmt::Write;
 
-/// A header with `bytes` as `frikan_image`.
+use super::source::identifier;
+
+/// The symbol of an image's first byte.
+pub(super) fn image_symbol(name: &str) -> String {
+    format!("{}_image", identifier(name))
+}
+
+/// A header with `bytes` as `NAME_image`; what of `name` C does not take becomes `_`.
 #[must_use]
-pub fn c_header(bytes: &[u8], title: &str) -> String {
+pub fn c_header(name: &str, bytes: &[u8], title: &str) -> String {
+    let symbol = image_symbol(name);
+    let upper = symbol.to_ascii_uppercase();
     let mut text =
         format!("/* {title}, {} bytes. Made by `trainer export --to c-header`; do not edit. */\n", bytes.len());
-    text.push_str("#ifndef FRIKAN_IMAGE_H\n#define FRIKAN_IMAGE_H\n\n#include <stdint.h>\n\n");
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "#define FRIKAN_IMAGE_BYTES {}u\n", bytes.len());
-    text.push_str("static const uint8_t frikan_image[FRIKAN_IMAGE_BYTES] = {\n");
+    let _ = writeln!(text, "#ifndef {upper}_H\n#define {upper}_H\n\n#include <stdint.h>\n");
+    let _ = writeln!(text, "#define {upper}_BYTES {}u\n", bytes.len());
+    let _ = writeln!(text, "static const uint8_t {symbol}[{upper}_BYTES] = {{");
     for chunk in bytes.chunks(12) {
         text.push_str("   ");
         for byte in chunk {

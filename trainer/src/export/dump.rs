@@ -6,6 +6,9 @@ use frikan_shared::image::{Image, ImageError, MAGIC, decode};
 
 use crate::fit::CELLS;
 
+/// Bytes from the header of a slot to its image: at once, or in the next program unit where that has more bytes.
+const HEADER_OFFSETS: [usize; 2] = [SLOT_HEADER_BYTES, 32];
+
 /// A place at which an image begins.
 #[derive(Debug)]
 pub struct Found<'a> {
@@ -17,6 +20,8 @@ pub struct Found<'a> {
     pub image: Result<(&'a [u8], Box<Image<CELLS>>), ImageError>,
     /// Whether the tag of the key stands behind it, where a key was given.
     pub authentic: Option<bool>,
+    /// Number of the release, where the tag says so; 0 for none.
+    pub release: u32,
 }
 
 impl Found<'_> {
@@ -34,12 +39,22 @@ pub fn images<'a>(dump: &'a [u8], key: Option<&Key>) -> Vec<Found<'a>> {
     let found = |offset: usize| {
         let stored = Trust::Anyone.stored(&dump[offset..]);
         let image = stored.and_then(|bytes| Ok((bytes, Box::new(decode(bytes)?))));
-        let slot = offset.checked_sub(SLOT_HEADER_BYTES).and_then(|start| valid_slots(&dump[start..], &[])[0]);
-        let is_authentic = |key| {
+        let sequence = HEADER_OFFSETS.into_iter().find_map(|before| {
+            let header = dump.get(offset.checked_sub(before)?..)?.get(..SLOT_HEADER_BYTES)?;
+            valid_slots(&[header, &dump[offset..]].concat(), &[])[0].map(|slot| slot.sequence)
+        });
+        let released = key.map(|key| {
             let trust = Trust::Key(key);
-            trust.stored(&dump[offset..]).and_then(|bytes| trust.decode::<CELLS>(bytes)).is_ok()
-        };
-        Found { offset, sequence: slot.map(|slot| slot.sequence), image, authentic: key.map(is_authentic) }
+            let (image, release) = trust.stored(&dump[offset..]).and_then(|bytes| trust.released(bytes))?;
+            decode::<CELLS>(image).map(|_| release)
+        });
+        Found {
+            offset,
+            sequence,
+            image,
+            authentic: released.map(|released| released.is_ok()),
+            release: released.and_then(Result::ok).unwrap_or(0),
+        }
     };
     starts.map(found).collect()
 }
@@ -59,11 +74,21 @@ pub fn in_use<'a, 'b>(found: &'b [Found<'a>]) -> Option<&'b Found<'a>> {
 mod tests {
     use super::*;
     use frikan_runtime::slots::slot_header;
+    use frikan_shared::authentication::release_block;
 
     const KEY: Key = Key::new([3; 32]);
 
     fn golden(name: &str) -> Vec<u8> {
         std::fs::read(format!("{}/../fixtures/{name}.frk", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    }
+
+    #[test]
+    fn the_number_of_a_release_is_that_under_the_tag() {
+        let mut release = [&golden("elbow")[..], &release_block(7)].concat();
+        release.extend(KEY.tag(&release));
+        let found = |key| images(&slot(1, &release), key).remove(0);
+        assert_eq!((found(Some(&KEY)).release, found(Some(&KEY)).authentic), (7, Some(true)));
+        assert_eq!((found(None).release, found(Some(&Key::new([4; 32]))).release), (0, 0));
     }
 
     fn slot(sequence: u32, image: &[u8]) -> Vec<u8> {
@@ -84,6 +109,9 @@ mod tests {
         assert_eq!(in_use(&found).unwrap().offset, 2164);
         // Without a key the first tag is no matter, and numbers run on through zero.
         assert_eq!(in_use(&images(&dump, None)).unwrap().offset, 2164);
+        // Flash words of 32 bytes.
+        let apart = [&slot_header(3, &elbow).unwrap()[..], &[0; 16], &elbow].concat();
+        assert_eq!(images(&apart, None)[0].sequence, Some(3));
         let only_first = images(&dump[..2148], None);
         assert_eq!(in_use(&only_first).unwrap().offset, 116);
     }

@@ -5,13 +5,11 @@ use object::{
     Architecture, BinaryFormat, Endianness, FileFlags, SectionKind, SymbolFlags, SymbolKind, SymbolScope, elf,
 };
 
+use super::c_array::image_symbol;
 use crate::error::{Error, Result, codes};
 
 /// The section in which the image lies.
 pub const SECTION: &str = ".frikan";
-
-/// The symbol of its first byte; the symbol's size is the image's.
-pub const SYMBOL: &str = "frikan_image";
 
 /// Processors for which objects are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,11 +20,11 @@ pub enum Processor {
     Riscv32,
 }
 
-/// The object file of an image, which begins on a multiple of 4.
+/// The object file of an image, which begins on a multiple of 4, at the symbol `NAME_image`, whose size is the image's.
 ///
 /// # Errors
 /// `FRK-I001` where it cannot be made.
-pub fn object_file(bytes: &[u8], processor: Processor) -> Result<Vec<u8>> {
+pub fn object_file(name: &str, bytes: &[u8], processor: Processor) -> Result<Vec<u8>> {
     let (architecture, e_flags) = match processor {
         Processor::Arm => (Architecture::Arm, elf::EF_ARM_EABI_VER5),
         Processor::Riscv32 => (Architecture::Riscv32, Default::default()),
@@ -36,7 +34,7 @@ pub fn object_file(bytes: &[u8], processor: Processor) -> Result<Vec<u8>> {
     let section = object.add_section(Vec::new(), SECTION.into(), SectionKind::ReadOnlyData);
     let value = object.append_section_data(section, bytes, 4);
     object.add_symbol(Symbol {
-        name: SYMBOL.into(),
+        name: image_symbol(name).into_bytes(),
         value,
         size: bytes.len() as u64,
         kind: SymbolKind::Data,

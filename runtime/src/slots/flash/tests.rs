@@ -239,6 +239,27 @@ fn an_uncorrectable_word_anywhere_is_a_bad_slot() {
     }
 }
 
+/// The image has a checksum of its own and is decoded all the same; the slot's covers its number and its length too.
+#[test]
+fn a_flipped_bit_anywhere_is_a_bad_slot() {
+    let (old, new) = (image(1.0, 0), image(2.0, 3));
+    for unit in [1, 32] {
+        let mut chip = Chip::new(unit, 0xFF);
+        chip.update(&old).unwrap();
+        let stored = chip.update(&new).unwrap();
+        let start = chip.layout.slot(stored.which) as usize;
+        let header = start..start + SLOT_HEADER_BYTES;
+        let image = stored.at as usize..(stored.at + stored.bytes) as usize;
+        for bit in header.chain(image).flat_map(|byte| 8 * byte..8 * byte + 8).step_by(EVERY) {
+            let mut bad = chip.clone();
+            bad.bytes[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(bad.model().as_ref(), Ok(&old), "bit {} of unit {unit}", bit - 8 * start);
+            let [newest, older] = intact(&mut bad, &chip.layout);
+            assert!(newest.is_some_and(|slot| slot.which != stored.which) && older.is_none());
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_kept_is_refused_by_name() {
     for (slots, bytes, unit, sector, erased, error) in [

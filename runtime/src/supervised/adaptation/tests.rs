@@ -185,3 +185,29 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_was_learnt_survives_a_loss_of_power_and_damage_does_no_harm() {
+    let truth = Correction { level: 0.7, viscous: 0.1, offset: 0.2 };
+    let (mut joint, mut driven) = (supervised(Some(settings())), Driven { time: 0.0, compensation: 0.0 });
+    driven.run(&mut joint, 5.0 * MEMORY, truth);
+    let learnt = joint.supervisor.learnt();
+    let mut again = supervised(Some(settings()));
+    again.supervisor.restore(&learnt);
+    assert_eq!(again.supervisor.correction(), joint.supervisor.correction());
+    Driven { time: 0.0, compensation: 0.0 }.run(&mut again, 0.5, truth);
+    assert!(is_close(again.supervisor.correction(), truth), "{:?}", again.supervisor.correction());
+    // Without an adaptation there is nothing to restore.
+    let mut fixed = supervised(None);
+    fixed.supervisor.restore(&learnt);
+    assert_eq!(fixed.supervisor.correction(), Correction::NONE);
+    for place in 0..9 {
+        for bad in [f32::NAN, f32::INFINITY, 1.0e30, -1.0e3] {
+            let mut damaged = learnt;
+            damaged.means[place] = bad;
+            again.supervisor.restore(&damaged);
+            let Correction { level, viscous, offset } = again.supervisor.correction();
+            assert!((0.5..=1.3).contains(&level) && viscous.abs() <= 0.5 && offset.abs() <= 0.4, "{place} {bad}");
+        }
+    }
+}

@@ -8,7 +8,7 @@ use std::process::Command;
 use frikan_shared::image::{Image, image_crc32};
 
 use crate::error::{Error, Result, codes};
-use crate::export::fmu::{CoSimulation, IDENTIFIER, Library, unit};
+use crate::export::fmu::{CoSimulation, Library, unit};
 use crate::fit::CELLS;
 
 /// Compilers that are tried where `CC` names none.
@@ -48,7 +48,7 @@ fn library(unit: &CoSimulation) -> std::result::Result<Library, String> {
     for (name, text) in &unit.sources {
         std::fs::write(folder.path().join(name), text).map_err(|error| error.to_string())?;
     }
-    let file = format!("{IDENTIFIER}.{extension}");
+    let file = format!("{}.{extension}", unit.identifier);
     compile(folder.path(), &unit.compiled().collect::<Vec<_>>(), &file)?;
     let bytes = std::fs::read(folder.path().join(&file)).map_err(|error| error.to_string())?;
     Ok(Library { platform, file, bytes })

@@ -8,15 +8,12 @@ use frikan_shared::units::Unit;
 use crate::fit::CELLS;
 use crate::markup::escape;
 
-/// Name of the unit, and so of its library.
-pub const IDENTIFIER: &str = "joint_friction";
-
 /// How the sources are compiled (FMI 3.0.2, section 2.5.1).
-pub(super) fn build<'a>(sources: impl Iterator<Item = &'a str>) -> String {
+pub(super) fn build<'a>(identifier: &str, sources: impl Iterator<Item = &'a str>) -> String {
     let files: String = sources.map(|name| format!("      <SourceFile name=\"{name}\"/>\n")).collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  \
-         <BuildConfiguration modelIdentifier=\"{IDENTIFIER}\">\n    <SourceFileSet language=\"C99\">\n{files}    </SourceFileSet>\n  \
+         <BuildConfiguration modelIdentifier=\"{identifier}\">\n    <SourceFileSet language=\"C99\">\n{files}    </SourceFileSet>\n  \
          </BuildConfiguration>\n</fmiBuildDescription>\n"
     )
 }
@@ -28,6 +25,7 @@ const FIRST_INPUT: usize = 3;
 
 /// What the document says.
 pub(super) struct Description<'a> {
+    pub(super) identifier: &'a str,
     pub(super) title: &'a str,
     pub(super) token: &'a str,
     pub(super) model: &'a Model<CELLS>,
@@ -38,8 +36,8 @@ pub(super) struct Description<'a> {
 
 impl Description<'_> {
     pub(super) fn xml(&self) -> String {
-        let Self { title, token, model, names, moves_link } = self;
-        let (title, identifier) = (escape(title), IDENTIFIER);
+        let Self { identifier, title, token, model, names, moves_link } = self;
+        let title = escape(title);
         let is_linear = model.inputs.iter().any(|input| matches!(input.unit, Unit::MetrePerSecond | Unit::Metre));
         let position_unit = if is_linear { Unit::Metre } else { Unit::Radian };
         let mut units = vec![model.output_unit, position_unit];

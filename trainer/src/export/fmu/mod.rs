@@ -10,7 +10,6 @@ use zip::ZipWriter;
 use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 
-pub use self::description::IDENTIFIER;
 use self::description::{Description, build};
 use super::source::{c, moves_link, parameters};
 use crate::error::Result;
@@ -19,15 +18,19 @@ use crate::fit::CELLS;
 /// The functions of FMI around `begin` and `advance`.
 const FMI: &str = include_str!("fmi3.c");
 
-/// Name of the law's source and header.
-const LAW: &str = "law";
+/// Name of the unit of an image whose checksum is `crc32`, and so of its library and its law: two units link together.
+fn identifier(crc32: u32) -> String {
+    format!("joint_friction_{crc32:08x}")
+}
 
 /// A unit without library.
 #[derive(Clone, Debug)]
 pub struct CoSimulation {
+    /// Its name.
+    pub identifier: String,
     description: String,
     /// Names and texts of the sources.
-    pub sources: Vec<(&'static str, String)>,
+    pub sources: Vec<(String, String)>,
 }
 
 /// A library for one platform.
@@ -47,36 +50,38 @@ pub struct Library {
 /// # Errors
 /// `FRK-U005` for a law that has no form in C: networks and integer tables.
 pub fn unit(image: &Image<CELLS>, title: &str, crc32: u32) -> Result<CoSimulation> {
-    let c::Evaluator { header, source } = c::evaluator(LAW, title, image)?;
+    let identifier = identifier(crc32);
+    let c::Evaluator { header, source } = c::evaluator(&identifier, title, image)?;
     let token = format!("frikan-{crc32:08x}");
     let model = &image.model;
     let moves_link = moves_link(model);
     let names = parameters(model);
-    let description = Description { title, token: &token, model, names: &names, moves_link };
+    let description = Description { identifier: &identifier, title, token: &token, model, names: &names, moves_link };
     let interface = format!(
-        "/* {title}. Made by `trainer export --to fmu`; do not edit. */\n#include \"{LAW}.h\"\n\n#define TOKEN \"{token}\"\n\
+        "/* {title}. Made by `trainer export --to fmu`; do not edit. */\n#include \"{identifier}.h\"\n\n#define TOKEN \"{token}\"\n\
          enum {{ INPUTS = {}, OUTPUTS = {} }};\n\n{}\n{FMI}",
         names.len(),
         1 + usize::from(moves_link),
-        calls(names.len(), model.effects.is_empty(), moves_link),
+        calls(&identifier, names.len(), model.effects.is_empty(), moves_link),
     );
-    let sources = vec![("law.c", source), ("law.h", header), ("fmi3.c", interface)];
-    Ok(CoSimulation { description: description.xml(), sources })
+    let sources = [(format!("{identifier}.c"), source), (format!("{identifier}.h"), header)];
+    let sources = sources.into_iter().chain([("fmi3.c".to_owned(), interface)]).collect();
+    Ok(CoSimulation { description: description.xml(), identifier, sources })
 }
 
 /// `begin` and `advance`: the outputs before the first step, and after one.
-fn calls(inputs: usize, is_static: bool, moves_link: bool) -> String {
+fn calls(identifier: &str, inputs: usize, is_static: bool, moves_link: bool) -> String {
     let values: Vec<String> = (0..inputs).map(|place| format!("(float)input[{place}]")).collect();
     let values = values.join(", ");
     let no_position = if moves_link { "    output[1] = 0.0;\n" } else { "" };
-    let begin = format!("    output[0] = {LAW}_friction({values});\n{no_position}");
+    let begin = format!("    output[0] = {identifier}_friction({values});\n{no_position}");
     let (memory, advance) = if is_static {
         ("typedef struct { char nothing; } Memory;".to_owned(), format!("    (void)memory, (void)step;\n{begin}"))
     } else {
         let position = if moves_link { "    output[1] = memory->position;\n" } else { "" };
         (
-            format!("typedef {LAW}_state Memory;"),
-            format!("    output[0] = {LAW}_step(memory, step, {values});\n{position}"),
+            format!("typedef {identifier}_state Memory;"),
+            format!("    output[0] = {identifier}_step(memory, step, {values});\n{position}"),
         )
     };
     format!(
@@ -87,8 +92,8 @@ fn calls(inputs: usize, is_static: bool, moves_link: bool) -> String {
 
 impl CoSimulation {
     /// Names of the sources that make the library.
-    pub fn compiled(&self) -> impl Iterator<Item = &'static str> {
-        self.sources.iter().map(|(name, _)| *name).filter(|name| name.ends_with(".c"))
+    pub fn compiled(&self) -> impl Iterator<Item = &str> {
+        self.sources.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".c"))
     }
 
     /// The unit as a file, the same bytes for the same parts.
@@ -106,7 +111,7 @@ impl CoSimulation {
         for (name, text) in &self.sources {
             add(format!("sources/{name}"), text.as_bytes())?;
         }
-        add("sources/buildDescription.xml".to_owned(), build(self.compiled()).as_bytes())?;
+        add("sources/buildDescription.xml".to_owned(), build(&self.identifier, self.compiled()).as_bytes())?;
         if let Some(Library { platform, file, bytes }) = library {
             add(format!("binaries/{platform}/{file}"), bytes)?;
         }

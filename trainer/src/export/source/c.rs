@@ -7,7 +7,7 @@ use frikan_shared::image::Image;
 use frikan_shared::model::Model;
 
 use super::language::Language;
-use super::law::{identifier, law, parameters, reads_position, step, unusable};
+use super::law::{identifier, law, no_law, parameters, reads_position, step, unusable};
 use super::library;
 use crate::error::Result;
 use crate::fit::CELLS;
@@ -65,9 +65,10 @@ fn body_of_step(model: &Model<CELLS>, stem: &str) -> Vec<String> {
 
 fn what_friction_is(model: &Model<CELLS>) -> String {
     let mut text = format!(
-        "/* The static law in {}, at most {:?}; 0 where an input is NaN.\n",
+        "/* The static law in {}, at most {:?}; 0 where {}.\n",
         model.output_unit.symbol(),
-        model.output_limit
+        model.output_limit,
+        no_law(model)
     );
     for (input, name) in model.inputs.iter().zip(parameters(model)) {
         let (low, high, unit) = (input.low, input.high, input.unit.symbol());
@@ -81,7 +82,7 @@ fn state(model: &Model<CELLS>, stem: &str) -> String {
     format!(
         "/* What the effects remember; all zero at the start. `position` is what the last step adds to the link's position. */\n\
          typedef struct {{\n    float memory[{}][4];\n{travel}    float position;\n}} {stem}_state;\n\n\
-         /* Law and effects after dt seconds; 0, and nothing remembered, where an input or dt is not finite or dt is negative. */\n",
+         /* Law and effects after dt seconds; 0, and nothing remembered, where an input is not finite or dt is not above 0 and at most 1. */\n",
         model.effects.len()
     )
 }
@@ -91,7 +92,7 @@ fn preamble(name: &str, title: &str) -> String {
         "/* {title}. Made by `trainer export --to c`; do not edit.\n \
          * Every operation is rounded by itself: no -ffast-math, nor what is part of it. */\n\
          #include \"{name}.h\"\n\n#include <float.h>\n#include <stdint.h>\n\n\
-         #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || FLT_EVAL_METHOD != 0\n\
+         #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) \\\n    || (FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16)\n\
          #error \"float operations must be rounded one by one, to float\"\n#endif\n\
          #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0\n\
          #error \"an input that is NaN must be told from a number: compile without -ffinite-math-only\"\n#endif\n\

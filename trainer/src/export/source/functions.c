@@ -188,8 +188,8 @@ static float divided(float x, float y) { return x / y; }
 
 static int is_finite(float x) { return (bits_of(x) & 0x7FFFFFFFu) < 0x7F800000u; }
 
-/* from 0 on and finite */
-static int is_period(float dt) { return bits_of(dt) < 0x7F800000u; }
+/* above 0 and at most 1 */
+static int is_period(float dt) { return dt > 0.0f && dt <= 1.0f; }
 
 /* a table whose cells grow with |x| + offset; a side has origin, last position, cells per 2^32 and the bits that turn the sign */
 static float geometric(const float table[][4], float x, float offset, const uint32_t sides[2][4]) {

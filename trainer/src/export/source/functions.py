@@ -19,7 +19,7 @@ def is_finite(x):
 
 
 def is_period(dt):
-    return math.copysign(1.0, dt) > 0.0 and is_finite(dt)
+    return 0.0 < dt <= 1.0
 
 
 def magnitude_of(x):

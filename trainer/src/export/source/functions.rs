@@ -197,9 +197,9 @@ fn is_finite(x: f32) -> bool {
     x.is_finite()
 }
 
-/// From 0 on and finite.
+/// Above 0 and at most 1.
 fn is_period(dt: f32) -> bool {
-    dt.to_bits() < 0x7F80_0000
+    dt > 0.0 && dt <= 1.0
 }
 
 /// A table whose cells grow with `|x| + offset`; a side has origin, last position, cells per 2^32 and the bits that turn the sign.

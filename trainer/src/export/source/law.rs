@@ -26,12 +26,45 @@ fn parameter(input: &Input) -> String {
 }
 
 /// A name as every language takes it.
-pub(super) fn identifier(name: &str) -> String {
+pub(in crate::export) fn identifier(name: &str) -> String {
     let mut identifier: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if identifier.starts_with(|c: char| c.is_ascii_digit()) || identifier.is_empty() {
         identifier.insert(0, '_');
     }
     identifier
+}
+
+/// Where the law is 0 whatever the model says. A law alone is all that a drive evaluates: as its step, it gives nothing for an input that is not finite
+/// and at rest, where friction is what holds the joint.
+pub(super) fn no_law(model: &Model<CELLS>) -> &'static str {
+    match (model.effects.is_empty(), velocity(model).is_some()) {
+        (true, true) => "an input is not finite or the velocity is 0",
+        (true, false) => "an input is not finite",
+        (false, _) => "an input is NaN",
+    }
+}
+
+/// The name of the velocity as a parameter, where it is one.
+fn velocity(model: &Model<CELLS>) -> Option<String> {
+    model.inputs.iter().find(|input| input.quantity == Quantity::Velocity).map(parameter)
+}
+
+/// The condition of [`no_law`].
+fn is_no_law(language: Language, model: &Model<CELLS>) -> String {
+    let is_nan = |name: String| match language {
+        Language::C => format!("{name} != {name}"),
+        Language::Rust => format!("{name}.is_nan()"),
+        Language::Python => format!("math.isnan({name})"),
+    };
+    let names = parameters(model).into_iter();
+    if !model.effects.is_empty() {
+        // A table reads its first input alone.
+        let read = if matches!(model.law, Law::Expression(_)) { model.inputs.len() } else { 1 };
+        return language.any(&names.take(read).map(is_nan).collect::<Vec<_>>());
+    }
+    let not_finite = names.map(|name| language.not(&format!("is_finite({name})")));
+    let at_rest = velocity(model).map(|velocity| format!("{velocity} == {}", language.number(0.0)));
+    language.any(&not_finite.chain(at_rest).collect::<Vec<_>>())
 }
 
 /// Statements of the static law, the last of which returns it.
@@ -40,23 +73,18 @@ pub(super) fn identifier(name: &str) -> String {
 /// `FRK-U005` for networks and integer tables.
 pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String>> {
     let names = parameters(model);
-    let is_nan = |name: &String| match language {
-        Language::C => format!("{name} != {name}"),
-        Language::Rust => format!("{name}.is_nan()"),
-        Language::Python => format!("math.isnan({name})"),
-    };
+    let nothing = language.return_where(&is_no_law(language, model), 0.0);
     let refusal = |reason: &str| Err(Error::new(&codes::UNSUITABLE_FORM, reason));
     let of_table = |table: Table| {
-        let nothing = language.return_where(&is_nan(&names[0]), 0.0);
-        let others = names[1..].iter().filter_map(|name| language.ignored(name));
-        others.chain([nothing, language.last(&lookup(language, &table, &names[0]))]).collect()
+        let unread = if model.effects.is_empty() { &[][..] } else { &names[1..] };
+        let ignored = unread.iter().filter_map(|name| language.ignored(name));
+        ignored.chain([nothing.clone(), language.last(&lookup(language, &table, &names[0]))]).collect()
     };
     match &model.law {
         Law::Geometric(layout) => Ok(of_table(Table::Geometric(*layout))),
         Law::Uniform(layout) => Ok(of_table(Table::Uniform(*layout))),
         Law::Expression(program) => {
-            let any_nan = language.any(&names.iter().map(is_nan).collect::<Vec<_>>());
-            let mut statements = vec![language.return_where(&any_nan, 0.0)];
+            let mut statements = vec![nothing.clone()];
             let reads = |index: usize| program.operations.iter().any(|operation| program::reads(operation, index));
             for (index, (input, name)) in model.inputs.iter().zip(&names).enumerate().filter(|(index, _)| reads(*index))
             {

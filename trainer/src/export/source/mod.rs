@@ -13,7 +13,7 @@ pub mod rust;
 
 use frikan_shared::model::Model;
 
-pub(super) use self::law::parameters;
+pub(super) use self::law::{identifier, parameters};
 use crate::fit::CELLS;
 
 /// Whether an effect adds to the position of the link.

@@ -6,7 +6,7 @@ use frikan_shared::image::Image;
 use frikan_shared::model::Model;
 
 use super::language::Language;
-use super::law::{law, parameters, step, unusable};
+use super::law::{law, no_law, parameters, step, unusable};
 use super::library;
 use crate::error::Result;
 use crate::fit::CELLS;
@@ -29,10 +29,10 @@ pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
         }
         text += "]\n";
     }
-    let (unit, limit) = (model.output_unit.symbol(), model.output_limit);
+    let (unit, limit, no_law) = (model.output_unit.symbol(), model.output_limit, no_law(model));
     let _ = write!(
         text,
-        "\n\ndef friction({names}):\n    \"\"\"The static law in {unit}, at most {limit:?}; 0 where an input is NaN.\n"
+        "\n\ndef friction({names}):\n    \"\"\"The static law in {unit}, at most {limit:?}; 0 where {no_law}.\n"
     );
     for (input, name) in model.inputs.iter().zip(parameters(model)) {
         let (low, high, unit) = (input.low, input.high, input.unit.symbol());
@@ -64,7 +64,7 @@ fn stepping(model: &Model<CELLS>, names: &str) -> String {
         "\n\nclass Friction:\n    \"\"\"What the effects remember; `position` is what the last step adds to the link's position.\"\"\"\n\n    \
          def __init__(self):\n        self.memory = [[0.0] * 4 for _ in range({})]\n        self.travel = [0.0] * 4\n        \
          self.position = 0.0\n\n    def step(self, dt, {names}):\n        \
-         \"\"\"Law and effects after dt seconds; 0, and nothing remembered, where an input or dt is not finite or dt is negative.\"\"\"\n{body}",
+         \"\"\"Law and effects after dt seconds; 0, and nothing remembered, where an input is not finite or dt is not above 0 and at most 1.\"\"\"\n{body}",
         model.effects.len()
     )
 }

@@ -6,7 +6,7 @@ use frikan_shared::image::Image;
 use frikan_shared::model::Model;
 
 use super::language::Language;
-use super::law::{law, parameters, reads_position, step, unusable};
+use super::law::{law, no_law, parameters, reads_position, step, unusable};
 use super::library;
 use crate::error::Result;
 use crate::fit::CELLS;
@@ -38,7 +38,7 @@ fn indented(statements: &[String], by: &str) -> String {
 fn what_friction_is(model: &Model<CELLS>) -> String {
     let unit = model.output_unit.symbol();
     let mut text =
-        format!("/// The static law in {unit}, at most {:?}; 0 where an input is NaN.\n///\n", model.output_limit);
+        format!("/// The static law in {unit}, at most {:?}; 0 where {}.\n///\n", model.output_limit, no_law(model));
     for (input, name) in model.inputs.iter().zip(parameters(model)) {
         let (low, high, unit) = (input.low, input.high, input.unit.symbol());
         let _ = writeln!(text, "/// * `{name}`: {low:?} to {high:?} {unit}, held at the nearer end outside");
@@ -72,7 +72,7 @@ fn stepping(model: &Model<CELLS>, names: &str) -> String {
          memory: [[f32; 4]; {count}],\n{travel}    /// What the last step adds to the link's position.\n    pub position: f32,\n}}\n\n\
          impl Friction {{\n    /// At rest, cold, nothing wound up.\n    pub const fn new() -> Self {{\n        \
          Self {{ memory: [[0.0; 4]; {count}]{no_travel}, position: 0.0 }}\n    }}\n\n    \
-         /// Law and effects after `dt` seconds; 0, and nothing remembered, where an input or `dt` is not finite or `dt` is negative.\n    \
+         /// Law and effects after `dt` seconds; 0, and nothing remembered, where an input is not finite or `dt` is not above 0 and at most 1.\n    \
          pub fn step(&mut self, dt: f32, {names}) -> f32 {{\n{body}    }}\n}}\n"
     )
 }

@@ -1,21 +1,10 @@
 //! The supervised drive of a joint with LuGre friction whose encoder has 12 to 21 bits.
 
-mod rig;
-
-use rig::{BASE, ELBOW, Joint, MOTIONS, Motion, Row, Run, Scores, WRIST};
-
-use frikan_runtime::compensator::Status;
-use frikan_runtime::supervised::Supervised;
-
-const JOINTS: [Joint; 3] = [ELBOW, WRIST, BASE];
-
-fn rows(run: Run) -> Vec<Row> {
-    run.rows(run.supervision(), |_, _| {})
-}
+use crate::joint::{JOINTS, MOTIONS, Motion, Run, Scores};
 
 /// Scores without and with compensation.
 fn both(run: Run) -> [Scores; 2] {
-    [Run { gain: 0.0, ..run }, run].map(|run| Scores::of(&rows(run)))
+    [Run { gain: 0.0, ..run }, run].map(|run| Scores::of(&run.plain()))
 }
 
 #[test]
@@ -54,33 +43,4 @@ fn whatever_is_worse_than_without_compensation_is_said_to_be_degraded() {
         }
     }
     assert!(worse > 0, "the test is idle");
-}
-
-#[test]
-fn a_dead_velocity_sensor_switches_the_compensation_off_once() {
-    let run = Run::of(ELBOW, Motion::Sine, 18);
-    let rows = run.rows(run.supervision(), |time, sample| {
-        if time > 2.0 {
-            sample.measurement.velocity = 0.0;
-        }
-    });
-    let is_on = |row: &Row| row.answer.status == Supervised::Compensator(Status::Active);
-    let switched = rows.windows(2).filter(|pair| is_on(&pair[0]) != is_on(&pair[1])).count();
-    assert_eq!((switched, rows.last().unwrap().answer.torque), (1, 0.0));
-}
-
-/// One sample that is missing costs what the slew takes, and no knock.
-#[test]
-fn missing_samples_are_no_knock() {
-    let run = Run::of(ELBOW, Motion::Sine, 18);
-    let whole = Scores::of(&rows(run));
-    let mut index = 0;
-    let gaps = run.rows(run.supervision(), |_, sample| {
-        index += 1;
-        if index % 97 == 0 {
-            sample.measurement.velocity = f32::NAN;
-        }
-    });
-    let gaps = Scores::of(&gaps);
-    assert!(gaps.rms < 1.1 * whole.rms && gaps.share > 0.9, "{whole:?} {gaps:?}");
 }

@@ -52,6 +52,24 @@ pub const BASE: Joint = Joint {
     control: [12_000.0, 720.0],
 };
 
+pub const JOINTS: [Joint; 3] = [ELBOW, WRIST, BASE];
+
+/// What is compensated, N m, by the velocity.
+pub type Law = Box<dyn FnMut(&Measurement, f32) -> f32>;
+
+impl Joint {
+    /// Friction at a steady velocity.
+    pub fn friction(&self, velocity: f64) -> f64 {
+        let level = self.coulomb + self.stribeck * (-velocity.abs() / self.stribeck_velocity).exp();
+        level * (192.0 * velocity).tanh() + self.viscous * velocity
+    }
+
+    /// A model of so much of its friction.
+    pub fn law(self, scale: f64) -> Law {
+        Box::new(move |sample, _| (scale * self.friction(sample.velocity.into())) as f32)
+    }
+}
+
 /// What a joint is asked to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
@@ -65,12 +83,21 @@ pub enum Motion {
     Dwells,
     /// 0.5 rad at 0.5 Hz.
     Sine,
+    /// 0.5 mrad there and back at 2 Hz, within the contact.
+    Small,
+    /// 1.2 rad there and back at 0.5 Hz, with a wall after 0.1 rad.
+    Blocked,
+    /// 20 mrad in a second, and standing still for long.
+    Stay,
     /// Pushed without a position loop, and let go.
     Nudge,
 }
 
 pub const MOTIONS: [Motion; 6] =
     [Motion::Hold, Motion::Creep, Motion::Reversals, Motion::Dwells, Motion::Sine, Motion::Nudge];
+
+/// Where a joint is blocked, rad.
+const WALL: f64 = 0.1;
 
 /// When the joint is let go, s.
 const LET_GO: f64 = 0.7;
@@ -79,7 +106,7 @@ impl Motion {
     pub fn duration(self) -> f64 {
         match self {
             Self::Nudge => 4.0,
-            Self::Reversals => 21.0,
+            Self::Reversals | Self::Stay => 21.0,
             _ => 12.0,
         }
     }
@@ -105,6 +132,9 @@ impl Motion {
             Self::Creep => Some([0.01 * (time - 0.25), 0.01, 0.0]),
             Self::Reversals => Some(sine(0.05, 0.1)),
             Self::Sine => Some(sine(0.5, 0.5)),
+            Self::Small => Some(sine(5.0e-4, 2.0)),
+            Self::Blocked => Some(sine(1.2, 0.5)),
+            Self::Stay => Some(quintic(0.02, time)),
             Self::Dwells => {
                 let [x, v, a] = quintic(0.2, time % 2.0);
                 let is_back = !((time / 2.0) as u64).is_multiple_of(2);
@@ -164,19 +194,27 @@ impl Run {
         Supervision::new(self.joint.inertia as f32, self.joint.coulomb as f32, self.count() as f32)
     }
 
+    /// The rows of the run.
+    pub fn plain(&self) -> Vec<Row> {
+        self.rows(self.supervision(), |_, _| {})
+    }
+
     /// The rows of the run; `between` sees and may change what the drive measures.
     pub fn rows(&self, supervision: Supervision, mut between: impl FnMut(f64, &mut Sample)) -> Vec<Row> {
+        self.driven(supervision, |time, sample, _, _| between(time, sample))
+    }
+
+    /// The rows of the run; `between` stands where the firmware does.
+    pub fn driven(
+        &self,
+        supervision: Supervision,
+        mut between: impl FnMut(f64, &mut Sample, &mut Supervisor, &mut Limited<Exported<Law>>),
+    ) -> Vec<Row> {
         let Self { joint, motion, rate, friction, gain, .. } = *self;
         let (count, dt) = (self.count(), (1.0 / rate) as f32);
-        let [coulomb, stribeck, decay, viscous] =
-            [joint.coulomb, joint.stribeck, joint.stribeck_velocity, joint.viscous].map(|number| number as f32);
-        let law = move |sample: &Measurement, _: f32| {
-            let v = sample.velocity;
-            (coulomb + stribeck * (-v.abs() / decay).exp()) * (192.0 * v).tanh() + viscous * v
-        };
-        let largest = 4.0 * (coulomb + stribeck);
+        let largest = 4.0 * (joint.coulomb + joint.stribeck) as f32;
         let limits = Limits::new(gain, largest, largest / 2e-3).unwrap();
-        let mut compensator = Limited::by(Ok(Exported(law)), limits);
+        let mut compensator = Limited::by(Ok(Exported(joint.law(1.0))), limits);
         let mut supervisor = Supervisor::new(supervision).unwrap();
         let mut controller = Controller::new(Settings {
             stiffness: joint.control[0] as f32,
@@ -186,7 +224,8 @@ impl Run {
             velocity_corner: 628.0,
             torque_limit: f32::MAX,
         });
-        let mut moving = Moving::default();
+        let mut moving =
+            Moving { wall: if motion == Motion::Blocked { WALL } else { f64::INFINITY }, ..Moving::default() };
         let (mut acting, mut loop_torque, mut rows) = (0.0, [0.0; 2], Vec::new());
         for index in 0..(motion.duration() * rate) as usize {
             let time = index as f64 / rate;
@@ -202,7 +241,7 @@ impl Run {
                 reference_velocity: target.map(|target| target.velocity),
                 loop_torque: loop_torque[0],
             };
-            between(time, &mut seen);
+            between(time, &mut seen, &mut supervisor, &mut compensator);
             let answer = supervisor.step(&mut compensator, &seen, dt);
             let wanted = sample.feedback + sample.feed_forward;
             loop_torque = [loop_torque[1], wanted];
@@ -228,6 +267,8 @@ struct Moving {
     velocity: f64,
     /// Deflection of the bristles, rad.
     bristles: f64,
+    /// Position that it does not get beyond, rad.
+    wall: f64,
 }
 
 impl Moving {
@@ -248,6 +289,9 @@ impl Moving {
             let friction = joint.contact * self.bristles + micro * rate + scale * joint.viscous * v;
             self.velocity += dt / joint.inertia * (torque - friction);
             self.position += dt * self.velocity;
+            if self.position > self.wall {
+                (self.position, self.velocity) = (self.wall, self.velocity.min(0.0));
+            }
         }
     }
 }
