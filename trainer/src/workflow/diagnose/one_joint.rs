@@ -31,7 +31,7 @@ pub(super) fn refuse_diverged(real: &Recording, simulated: &Recording) -> Result
     let velocity = if rotary { "rad/s" } else { "m/s" };
     let compared = [(unit, actuator(real), actuator(simulated)), (velocity, fastest(real), fastest(simulated))];
     for (unit, recorded, computed) in compared {
-        if recorded > 0.0 && !(computed <= DIVERGED_RATIO * recorded) {
+        if recorded > 0.0 && computed > DIVERGED_RATIO * recorded {
             let message = format!(
                 "the simulation reaches {} {unit}, the recording {} {unit}: it has diverged, or is in another unit",
                 digits(computed),
