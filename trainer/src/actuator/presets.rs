@@ -36,18 +36,21 @@ const fn stall(torque: f64, voltage: f64, current: f64) -> [(Constant, Known); 2
 }
 
 const XL330: [(Constant, Known); 2] = stall(0.52, 5.0, 1.47);
-const XL320: [(Constant, Known); 2] = stall(0.39, 7.4, 1.1);
+/// Stall gives 0.35 N m/A and 6.7 ohm; BAM looks for up to 1.5 N m/A and 40 ohm.
+const XL320: [(Constant, Known); 2] =
+    [(Constant::TorqueConstant, Known::Between(0.18, 1.5)), (Constant::Resistance, Known::Between(3.4, 40.0))];
 const MX64: [(Constant, Known); 2] = stall(6.0, 12.0, 4.1);
 const MX106: [(Constant, Known); 2] = stall(8.4, 12.0, 5.2);
 const XM430: [(Constant, Known); 2] = stall(4.1, 12.0, 2.3);
-/// 30 kgf cm.
-const STS3215: [(Constant, Known); 2] = stall(2.94, 12.0, 2.7);
+/// 8 kgf cm/A by the data sheet, as BAM quotes it, whose bounds these are: variants of the servo are for 7.4 and for 12 V.
+const STS3215: [(Constant, Known); 2] =
+    [(Constant::TorqueConstant, Known::Between(0.25, 2.5)), (Constant::Resistance, Known::Between(0.4, 10.0))];
 
 /// Position counts per rad of an encoder of 12 bit.
 const COUNTS_PER_RAD: f64 = 4096.0 / std::f64::consts::TAU;
 
 /// Every preset.
-pub static PRESETS: [Preset; 9] = [
+pub static PRESETS: [Preset; 10] = [
     Preset {
         name: "XL330",
         kind: Kind::PositionServo,
@@ -57,7 +60,7 @@ pub static PRESETS: [Preset; 9] = [
             (Constant::FirmwareErrorGain, Known::Given(COUNTS_PER_RAD / (256.0 * 885.0))),
             (Constant::DutyLimit, Known::Given(1.0)),
         ],
-        source: "Robotis e-manual XL330-M288-T: stall 0.52 N m and 1.47 A at 5 V, PWM limit 885; duty from position error as in Rhoban BAM",
+        source: "emanual.robotis.com/docs/en/dxl/x/xl330-m288: stall 0.52 N m and 1.47 A at 5 V, PWM limit 885; duty per error as in github.com/Rhoban/bam, bam/xl330/actuator.py (0.00246 a rad there, measured)",
     },
     Preset {
         name: "XL320",
@@ -68,7 +71,7 @@ pub static PRESETS: [Preset; 9] = [
             (Constant::FirmwareErrorGain, Known::Given(0.050_48)),
             (Constant::DutyLimit, Known::Given(1.0)),
         ],
-        source: "Robotis e-manual XL-320: stall 0.39 N m and 1.1 A at 7.4 V; duty per error measured by Rhoban BAM with an oscilloscope",
+        source: "emanual.robotis.com/docs/en/dxl/x/xl320: stall 0.39 N m and 1.1 A at 7.4 V; duty per error by oscilloscope and bounds: github.com/Rhoban/bam, bam/dynamixel/actuator.py",
     },
     Preset {
         name: "MX-64",
@@ -79,7 +82,7 @@ pub static PRESETS: [Preset; 9] = [
             (Constant::FirmwareErrorGain, Known::Given(0.158)),
             (Constant::DutyLimit, Known::Given(0.9625)),
         ],
-        source: "Robotis e-manual MX-64: stall 6.0 N m and 4.1 A at 12 V; duty per error and its limit measured by Rhoban BAM",
+        source: "emanual.robotis.com/docs/en/dxl/mx/mx-64: stall 6.0 N m and 4.1 A at 12 V; duty per error and its limit by oscilloscope: github.com/Rhoban/bam, bam/dynamixel/actuator.py",
     },
     Preset {
         name: "MX-106",
@@ -90,13 +93,13 @@ pub static PRESETS: [Preset; 9] = [
             (Constant::FirmwareErrorGain, Known::Given(0.158)),
             (Constant::DutyLimit, Known::Given(0.9625)),
         ],
-        source: "Robotis e-manual MX-106: stall 8.4 N m and 5.2 A at 12 V; duty per error and its limit measured by Rhoban BAM",
+        source: "emanual.robotis.com/docs/en/dxl/mx/mx-106: stall 8.4 N m and 5.2 A at 12 V; duty per error and its limit by oscilloscope: github.com/Rhoban/bam, bam/dynamixel/actuator.py",
     },
     Preset {
         name: "XM430",
         kind: Kind::PositionServo,
         constants: &[XM430[0], XM430[1], (Constant::DutyLimit, Known::Given(1.0))],
-        source: "Robotis e-manual XM430-W350: stall 4.1 N m and 2.3 A at 12 V; the duty per position error is not among its figures",
+        source: "emanual.robotis.com/docs/en/dxl/x/xm430-w350: stall 4.1 N m and 2.3 A at 12 V; the duty per position error is not among its figures",
     },
     Preset {
         name: "STS3215",
@@ -107,25 +110,31 @@ pub static PRESETS: [Preset; 9] = [
             (Constant::FirmwareErrorGain, Known::Given(0.166)),
             (Constant::DutyLimit, Known::Given(0.97)),
         ],
-        source: "Feetech STS3215, 12 V: stall 30 kgf cm and 2.7 A; duty per error and its limit measured by Rhoban BAM with an oscilloscope",
+        source: "github.com/Rhoban/bam, bam/feetech/actuator.py: 8 kgf cm/A by the data sheet, duty per error and its limit by oscilloscope, bounds of the constants",
+    },
+    Preset {
+        name: "HLS2915",
+        kind: Kind::Current,
+        constants: &[(Constant::TorqueConstant, Known::Between(0.5, 1.6))],
+        source: "github.com/Rhoban/bam, bam/feetech_hls/actuator.py: stall 14.2 kgf cm and 1.5 A by the data sheet, bounds of the constant; in constant-current mode",
     },
     Preset {
         name: "Go1",
         kind: Kind::Pd,
         constants: &[(Constant::Kp, about(20.0)), (Constant::Kd, about(0.5))],
-        source: "gains of the walking controllers published for the Unitree Go1 (Margolis & Agrawal 2022): 20 N m/rad, 0.5 N m s/rad",
+        source: "github.com/Improbable-AI/walk-these-ways, go1_gym/envs/go1/go1_config.py (Margolis & Agrawal 2022): 20 N m/rad, 0.5 N m s/rad",
     },
     Preset {
         name: "Go2",
         kind: Kind::Pd,
         constants: &[(Constant::Kp, about(20.0)), (Constant::Kd, about(0.5))],
-        source: "gains of Unitree's own walking controller for the Go2 (unitree_rl_gym): 20 N m/rad, 0.5 N m s/rad",
+        source: "github.com/unitreerobotics/unitree_rl_gym, legged_gym/envs/go2/go2_config.py: 20 N m/rad, 0.5 N m s/rad",
     },
     Preset {
         name: "Damiao",
         kind: Kind::Pd,
         constants: &[(Constant::Kp, Known::Between(0.0, 500.0)), (Constant::Kd, Known::Between(0.0, 5.0))],
-        source: "ranges of the gains in the protocol of Damiao's DM-J motors: 0 to 500 N m/rad, 0 to 5 N m s/rad",
+        source: "MIT mode of Damiao's DM-J motors, as drivers of the DM4310 define it (KP_MAX 500, KD_MAX 5): 0 to 500 N m/rad, 0 to 5 N m s/rad",
     },
 ];
 

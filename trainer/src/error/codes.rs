@@ -175,6 +175,10 @@ registry! {
         "A line of the list is not a task as `trainer plan` writes it.",
         "The wrong file is named, or the list was edited, cut short or sorted: line N has to be task N.",
         "Write the list again with `trainer plan`; results of tasks that are the same are kept.";
+    SIMULATION_DIVERGED = "FRK-D045" Data "simulation diverged",
+        "The simulation reaches a torque or a speed that is a hundred times that of the recording: it computes nothing about this joint.",
+        "A time step that is too long for the controller or the friction, or a column in another unit.",
+        "Halve the time step, take a softer controller or an implicit integrator; compare the units of both files.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording, or the law is worth no more on rows that it has not seen than a constant torque, a spring or Coulomb friction alone. No image is written; `--force` writes it all the same.",
         "One speed, one acceleration, a small range of positions, a single frequency, or a joint that does not slide.",

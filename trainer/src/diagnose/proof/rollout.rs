@@ -23,6 +23,14 @@ pub struct Rollout {
     pub baseline_rmse: f64,
     /// The same with the effects.
     pub improved_rmse: f64,
+    /// Mean absolute position error of the base model.
+    pub baseline_mae: f64,
+    /// The same with the effects.
+    pub improved_mae: f64,
+    /// Largest position error of the base model.
+    pub baseline_max: f64,
+    /// The same with the effects.
+    pub improved_max: f64,
     /// The motion of every rollout.
     #[serde(skip)]
     pub motions: Vec<Motion>,
@@ -79,14 +87,26 @@ pub(crate) fn roll_out(workbench: &Workbench, baseline: &Refit, improved: &Refit
         starts: before.len(),
         baseline_rmse: root_mean_square_of(&before),
         improved_rmse: root_mean_square_of(&after),
+        baseline_mae: mean_of(&before, f64::abs),
+        improved_mae: mean_of(&after, f64::abs),
+        baseline_max: largest_of(&before),
+        improved_max: largest_of(&after),
         motions: motions.collect(),
     })
 }
 
-/// Root mean square over all rollouts of the mean square of each, their first rows left out, where nothing has strayed yet.
+/// Mean over all rollouts of the mean of something in each, their first rows left out, where nothing has strayed yet.
+fn mean_of(strays: &[Vec<f64>], of: impl Fn(f64) -> f64) -> f64 {
+    let of_one = |strays: &Vec<f64>| strays.iter().map(|stray| of(*stray)).sum::<f64>() / (strays.len() - 1) as f64;
+    strays.iter().map(of_one).sum::<f64>() / strays.len() as f64
+}
+
 fn root_mean_square_of(strays: &[Vec<f64>]) -> f64 {
-    let mean_square = |strays: &Vec<f64>| strays.iter().map(|s| s * s).sum::<f64>() / (strays.len() - 1) as f64;
-    (strays.iter().map(mean_square).sum::<f64>() / strays.len() as f64).sqrt()
+    mean_of(strays, |stray| stray * stray).sqrt()
+}
+
+fn largest_of(strays: &[Vec<f64>]) -> f64 {
+    strays.iter().flatten().fold(0.0, |most, stray| most.max(stray.abs()))
 }
 
 /// Inertia in the actuator's unit a unit of acceleration: that of the given rigid body, else that of the base.

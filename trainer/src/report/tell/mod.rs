@@ -283,13 +283,30 @@ fn proof(diagnosis: &Diagnosis, units: Units) -> Option<String> {
     } else {
         String::new()
     };
-    Some(format!(
-        "Held-out error {} on {} rows that took no part in fitting and could only withdraw a finding \
+    Some(
+        format!(
+            "Held-out error {} on {} rows that took no part in fitting and could only withdraw a finding \
          (ratio {}{interval}).",
-        pair(proof.baseline_rmse, "->", proof.improved_rmse, units.actuator),
-        proof.rows,
-        digits(ratio),
-    ))
+            pair(proof.baseline_rmse, "->", proof.improved_rmse, units.actuator),
+            proof.rows,
+            digits(ratio),
+        ) + &rollout(diagnosis, units),
+    )
+}
+
+/// How far a simulation comes off before and after, where there is one.
+fn rollout(diagnosis: &Diagnosis, units: Units) -> String {
+    let Some(rollout) = &diagnosis.rollout else { return String::new() };
+    let unit = units.of_channel("position");
+    format!(
+        " Simulated under the recorded torque for {} s from {} recorded states of these rows, the joint comes off by {} (mean absolute error of \
+         the position), {} (root mean square) and at most {}.",
+        digits(rollout.horizon_s),
+        rollout.starts,
+        pair(rollout.baseline_mae, "->", rollout.improved_mae, &unit),
+        pair(rollout.baseline_rmse, "->", rollout.improved_rmse, &unit),
+        pair(rollout.baseline_max, "->", rollout.improved_max, &unit),
+    )
 }
 
 fn minor(diagnosis: &Diagnosis) -> Option<String> {

@@ -1,5 +1,6 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
+use super::one_joint::{refuse_diverged, refuse_other_joint};
 use super::request::{Against, Request};
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
@@ -84,15 +85,19 @@ fn simulated(source: Source<'_>, real: &Recording, joint: &Joint) -> Result<Reco
         simulated = simulated.with_torque_as_current(joint.actuator_per_torque("A")?);
     }
     same_units(real, &simulated)?;
+    refuse_diverged(real, &simulated)?;
     Ok(simulated)
 }
 
 /// Signals of recordings of one joint, one behind the other.
 fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
-    let mut all = Signals::of(&real[0], joint)?;
+    let first = Signals::of(&real[0], joint)?;
+    let mut all = first.clone();
     for next in &real[1..] {
         same_units(&real[0], next)?;
-        all.append(Signals::of(next, joint)?)
+        let signals = Signals::of(next, joint)?;
+        refuse_other_joint(&first, &signals, [&real[0], next])?;
+        all.append(signals)
             .map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()).in_file(next.file()))?;
     }
     Ok(all)

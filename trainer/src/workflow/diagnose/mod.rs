@@ -1,6 +1,7 @@
 //! From recordings and what they are compared with to a diagnosis that tells itself.
 
 mod compare;
+mod one_joint;
 mod request;
 mod sealed;
 mod summary;

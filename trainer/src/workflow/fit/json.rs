@@ -3,14 +3,18 @@
 use frikan_shared::image::image_crc32;
 use serde_json::{Value, json};
 
-use super::servo;
+use super::simulated::SimulatedMotions;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Soundness, SplitScore, Trace};
-use crate::servo::ServoFit;
 use crate::workflow::recordings::Warning;
 
 /// The object that `--json` writes.
-pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: &[Warning], seconds: f64) -> Value {
+pub(super) fn summary(
+    outcome: &Outcome,
+    motions: Option<&SimulatedMotions>,
+    warnings: &[Warning],
+    seconds: f64,
+) -> Value {
     let inputs: Vec<&str> = outcome.inputs.iter().map(|input| input.name.as_str()).collect();
     let tests: Vec<Value> = outcome.tests.iter().map(recording).collect();
     let train: Vec<Value> = outcome.train.iter().map(recording).collect();
@@ -65,7 +69,7 @@ pub(super) fn summary(outcome: &Outcome, of_servo: Option<&ServoFit>, warnings: 
         "train_recordings": train,
         "test": tests,
         "image": {"bytes": outcome.image.len(), "crc32": image_crc32(&outcome.image).unwrap_or(0)},
-        "rollout": of_servo.map(servo::to_json),
+        "rollout": motions.map(SimulatedMotions::to_json),
         "seconds": seconds,
         "seed": outcome.seed,
     })

@@ -2,6 +2,7 @@
 
 mod json;
 mod servo;
+mod simulated;
 mod text;
 
 use std::path::Path;
@@ -18,6 +19,7 @@ use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::report;
 use crate::servo::{ServoFit, fit_servo};
+use simulated::SimulatedMotions;
 
 /// A fit with what was noticed of its recordings.
 #[derive(Clone, Debug)]
@@ -32,6 +34,8 @@ pub struct Fitted {
     pub warnings: Vec<Warning>,
     /// Time that reading and fitting took, s.
     pub seconds: f64,
+    /// The joint simulated with the image, where it can be.
+    motions: Option<SimulatedMotions>,
 }
 
 /// Fits recordings of one joint; `tests` are only scored.
@@ -71,21 +75,25 @@ pub fn fit(
         Some(servo) => servo.outcome.clone(),
         None => crate::fit::fit(&recordings, &tests, joint, options, progress)?,
     };
-    Ok(Fitted { outcome, servo, recordings, warnings, seconds: start.elapsed().as_secs_f64() })
+    let motions = match &servo {
+        Some(servo) => Some(SimulatedMotions::of_servo(servo, joint)),
+        None => SimulatedMotions::under_torque(&outcome, &recordings, &tests, joint),
+    };
+    Ok(Fitted { outcome, servo, recordings, warnings, seconds: start.elapsed().as_secs_f64(), motions })
 }
 
 impl Fitted {
     /// The result as JSON, schema `frikan.fit/1`.
     #[must_use]
     pub fn json(&self) -> Value {
-        json::summary(&self.outcome, self.servo.as_ref(), &self.warnings, self.seconds)
+        json::summary(&self.outcome, self.motions.as_ref(), &self.warnings, self.seconds)
     }
 
     /// The result for a terminal; `image` is the name of the image's file, where one is written.
     #[must_use]
     pub fn text(&self, image: Option<&Path>) -> String {
         let text = text::summary(&self.outcome, &self.warnings, image, self.seconds);
-        text + &self.servo.as_ref().map(servo::text).unwrap_or_default()
+        text + &self.motions.as_ref().map(SimulatedMotions::text).unwrap_or_default()
     }
 
     /// What was identified of the actuator as `[actuator]` of a joint.toml.
