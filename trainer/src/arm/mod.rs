@@ -1,0 +1,5 @@
+//! Whole arms: the chain of a URDF, its dynamics, and what recordings of all joints say of its bodies and of the friction of each
+//! joint. Knows no files and no commands.
+
+pub mod chain;
+pub mod dynamics;
