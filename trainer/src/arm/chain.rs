@@ -59,25 +59,23 @@ pub const NAMES: [(&str, &str); INERTIAL] = [
 ];
 
 impl Chain {
-    /// The chain of a URDF, gravity along -z of its root. Fixed joints, joints that follow another, and those not `moving` (all move
-    /// where it is empty) stand at zero, and what they carry belongs to the link before them.
+    /// The chain of a URDF, gravity along -z of its root. Fixed joints, joints that follow another, and those that are `held` stand at
+    /// zero, and what they carry belongs to the link before them.
     ///
     /// # Errors
-    /// `FRK-D021` when the text is no URDF, has no moving joint, lacks one of those named, or is no tree.
-    pub fn parse(urdf: &str, moving: &[String]) -> Result<Self> {
+    /// `FRK-D021` when the text is no URDF, has no moving joint, lacks one of those held, or is no tree.
+    pub fn parse(urdf: &str, held: &[String]) -> Result<Self> {
         let robot = Robot::parse(urdf)?;
         let can_move = |joint: &&Joint| joint.kind != Kind::Fixed && !joint.is_mimic;
         let movable: Vec<&str> = robot.joints.iter().filter(can_move).map(|joint| joint.name.as_str()).collect();
         if movable.is_empty() {
             return Err(Error::new(&codes::BAD_URDF, "no joint of this robot moves"));
         }
-        if let Some(unknown) = moving.iter().find(|name| !movable.contains(&name.as_str())) {
+        if let Some(unknown) = held.iter().find(|name| !movable.contains(&name.as_str())) {
             let message = format!("no moving joint of the robot has this name; they are {}", movable.join(", "));
             return Err(Error::new(&codes::BAD_URDF, message).with_value(unknown));
         }
-        let moves = |joint: &Joint| {
-            movable.contains(&joint.name.as_str()) && (moving.is_empty() || moving.contains(&joint.name))
-        };
+        let moves = |joint: &Joint| movable.contains(&joint.name.as_str()) && !held.contains(&joint.name);
         let mut chain = Self { joints: Vec::new(), gravity: Vector3::new(0.0, 0.0, -GRAVITY_M_S2) };
         let mut seen = BTreeSet::new();
         let is_root = |link: &&Link| robot.joints.iter().all(|joint| joint.child != link.name);
@@ -114,7 +112,7 @@ impl Chain {
             }
         }
         if chain.joints.is_empty() {
-            return Err(Error::new(&codes::BAD_URDF, "the links of this robot form a loop"));
+            return Err(Error::new(&codes::BAD_URDF, "every joint is held, or the links of this robot form a loop"));
         }
         Ok(chain)
     }
@@ -155,7 +153,7 @@ mod tests {
 
     #[test]
     fn joints_come_from_the_base_outwards_and_carry_what_is_fixed_to_them() {
-        let chain = Chain::parse(BRANCHED, &["j1".to_owned(), "j2".to_owned()]).unwrap();
+        let chain = Chain::parse(BRANCHED, &["grip".to_owned()]).unwrap();
         let names: Vec<&str> = chain.joints.iter().map(|joint| joint.name.as_str()).collect();
         assert_eq!((names, chain.joints[1].parent), (vec!["j1", "j2"], Some(0)));
         assert_eq!((chain.joints[1].limits, chain.joints[0].limits), (Some([-1.0, 1.0]), None));

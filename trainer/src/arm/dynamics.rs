@@ -88,7 +88,7 @@ impl LinkMotion {
     }
 
     /// A wrench about the origin of the link as one about that of its carrier.
-    fn to_carrier(&self) -> Matrix6<f64> {
+    fn to_carrier(self) -> Matrix6<f64> {
         let mut transform = Matrix6::zeros();
         transform.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.rotation);
         transform.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.rotation);
