@@ -98,7 +98,7 @@ fn what_is_wrong_with_an_arm_is_told() {
     }
 }
 
-/// Two links that swing each other, each recorded with the other's position: what one joint alone cannot tell is told by both.
+/// Two links that swing each other, each recorded with the other's position. Each by itself, `fit` leaves 37 and 36 % of their torques.
 #[test]
 fn a_real_double_pendulum_is_one_arm() {
     let Some(recordings) = frikan_tests::recordings() else { return };
@@ -131,7 +131,7 @@ fn a_real_double_pendulum_is_one_arm() {
     assert!(matches!(done.status, 0 | 4), "{}", done.messages);
     let arm: Value = serde_json::from_slice(&std::fs::read(at.join("found/arm.json")).unwrap()).unwrap();
     println!("{arm:#}");
-    for (joint, most) in [0.35, 0.35].into_iter().enumerate() {
+    for (joint, most) in [0.33, 0.345].into_iter().enumerate() {
         let error = number(&arm["joints"][joint]["train"]["relative_error"]);
         assert!(error < most, "{error}");
     }

@@ -10,8 +10,8 @@ use crate::error::{Error, Result, codes};
 use crate::fit::{self, Options, Progress, Stage};
 use crate::joint::Joint;
 use crate::recording::{Quantity, Recording};
-use crate::samples::Preparation;
-use crate::samples::states::states;
+use crate::samples::states::{States, states};
+use crate::samples::{BendingLaw, Preparation, Samples};
 
 /// Most samples of all runs together: constants of bodies and friction are known no better for more, and memory grows with them.
 const MOST_SAMPLES: f64 = 20_000.0;
@@ -138,7 +138,7 @@ fn require_torques(arm: &Arm) -> Result<()> {
 /// Where each joint moves, with the noise of its motion.
 fn moving(arm: &Arm, motion: &Motion) -> Result<Vec<Moving>> {
     let preparation = &motion.preparation;
-    let of = |(joint, samples): (usize, &crate::samples::Samples)| {
+    let of = |(joint, samples): (usize, &Samples)| {
         let recordings: Vec<Recording> = arm.runs.iter().map(|run| run.joints[joint].clone()).collect();
         let mut noise = [0.0_f64; 2];
         let mut is_seen = false;
@@ -149,7 +149,9 @@ fn moving(arm: &Arm, motion: &Motion) -> Result<Vec<Moving>> {
         }
         let rows: Vec<usize> = if is_seen { (0..samples.len()).collect() } else { Vec::new() };
         let states = states(&recordings, preparation, samples, &rows)?.unwrap_or_default();
-        Ok(Moving { states, noise })
+        // A joint that hardly changes its velocity shows no friction of its own.
+        let shows = BendingLaw::over(&states.velocity).is_ok();
+        Ok(Moving { states: if shows { states } else { States::default() }, noise })
     };
     motion.joints.iter().enumerate().map(of).collect()
 }

@@ -1,6 +1,7 @@
 //! The filter for all joints, chosen by what bodies and friction leave of the recorded torques on blocks held out; and what an ampere of
 //! each joint is in torque.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::base::Base;
@@ -21,6 +22,9 @@ const TRIED_SAMPLES: f64 = 5_000.0;
 const BLOCKS: usize = 40;
 /// Below this share of the top speed a joint is taken to rest.
 const REST_SHARE: f64 = 0.01;
+/// Turns in which bodies and torque constants are identified, at most, and the change at which they agree.
+const TURNS: usize = 100;
+const AGREED: f64 = 1e-4;
 /// Standard errors from which the torque of an ampere is known.
 const CLEAR: f64 = 4.0;
 
@@ -41,9 +45,12 @@ impl Plan {
         let tried = candidates.par_iter().map(|preparation| {
             let mut motion = Motion::of(runs, preparation, TRIED_SAMPLES)?;
             let columns = motion.columns(chain, base);
-            let constants = constants(chain, base, &motion, &columns, given)?;
+            let mut constants = constants(chain, base, &motion, &columns, given)?;
             motion.scale(&constants);
-            Ok((cross_fitted(chain, base, &motion, &columns)?, Self { preparation: *preparation, constants }))
+            let rows: Vec<Vec<usize>> = motion.joints.iter().map(moving_rows).collect();
+            let mut system = system(&motion, &columns, &rows);
+            agree(chain, base, &mut system, &mut constants)?;
+            Ok((cross_fitted(chain, base, &system)?, Self { preparation: *preparation, constants }))
         });
         let (mut best, mut failed) = (None, None);
         for trial in tried.collect::<Vec<Result<(f64, Self)>>>() {
@@ -65,9 +72,8 @@ fn moving_rows(samples: &Samples) -> Vec<usize> {
     (0..velocity.len()).filter(|&row| velocity[row].abs() > least).collect()
 }
 
-/// Sum of the logarithms of what is left of the recorded torque of each joint, identified on other blocks than those that count.
-fn cross_fitted(chain: &Chain, base: &Base, motion: &Motion, columns: &Columns) -> Result<f64> {
-    let rows: Vec<Vec<usize>> = motion.joints.iter().map(moving_rows).collect();
+/// The normal equations with friction of a few smooth shapes.
+fn system(motion: &Motion, columns: &Columns, rows: &[Vec<usize>]) -> System {
     let of = |joint: usize| {
         let samples = &motion.joints[joint];
         let velocity = samples.velocity.as_deref().unwrap_or_default();
@@ -80,26 +86,57 @@ fn cross_fitted(chain: &Chain, base: &Base, motion: &Motion, columns: &Columns) 
             scored: samples.recorded.as_deref().unwrap_or_default(),
         }
     };
-    let joints: Vec<JointRows<'_>> = (0..chain.len()).map(of).collect();
-    let system = System::new(&joints, &even_blocks(motion.len(), BLOCKS));
+    let joints: Vec<JointRows<'_>> = (0..rows.len()).map(of).collect();
+    System::new(&joints, &even_blocks(motion.len(), BLOCKS))
+}
+
+/// Bodies and friction of the blocks that count, with the weights that what they leave gives the joints.
+fn solved(chain: &Chain, base: &Base, system: &System, counts: &dyn Fn(usize) -> bool) -> Result<DVector<f64>> {
     let expected = expected(chain, base);
+    let not_told = || {
+        Error::new(&codes::NOT_IDENTIFIABLE, "bodies and friction of the joints cannot be told apart on this motion")
+    };
+    let first = system.solve(&vec![1.0; chain.len()], &expected, counts).ok_or_else(not_told)?;
+    let squares = system.left(&first, counts, false);
+    let weights: Vec<f64> = squares.into_iter().map(|square| if square > 0.0 { square.recip() } else { 0.0 }).collect();
+    system.solve(&weights, &expected, counts).ok_or_else(not_told)
+}
+
+/// Torque constants that were not given, so that the joints agree on the bodies that they share: bodies and constants are identified in
+/// turn. How large all of them are, the masses of the URDF say where no constant is given.
+fn agree(chain: &Chain, base: &Base, system: &mut System, constants: &mut [Option<TorqueConstant>]) -> Result<()> {
+    let is_open = |constant: &Option<TorqueConstant>| constant.is_some_and(|constant| constant.ci95.is_some());
+    let open: Vec<usize> = (0..chain.len()).filter(|joint| is_open(&constants[*joint])).collect();
+    for _ in 0..if open.is_empty() { 0 } else { TURNS } {
+        let bodies = solved(chain, base, system, &|_| true)?;
+        let share =
+            |joint: &usize| system.share_of(*joint, &bodies.as_slice()[..base.len()]).filter(|share| *share > 0.0);
+        let mut factors: Vec<f64> = open.iter().map(|joint| share(joint).map_or(1.0, f64::recip)).collect();
+        if open.len() == chain.len() {
+            let mean = (factors.iter().map(|factor| factor.ln()).sum::<f64>() / factors.len() as f64).exp();
+            factors.iter_mut().for_each(|factor| *factor /= mean);
+        }
+        for (&joint, factor) in open.iter().zip(&factors) {
+            system.scale(joint, *factor);
+            if let Some(constant) = &mut constants[joint] {
+                constant.value *= factor;
+                constant.ci95 = constant.ci95.map(|interval| interval.map(|end| end * factor));
+            }
+        }
+        if factors.iter().all(|factor| (factor - 1.0).abs() < AGREED) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Sum of the logarithms of what is left of the recorded torque of each joint, identified on other blocks than those that count.
+fn cross_fitted(chain: &Chain, base: &Base, system: &System) -> Result<f64> {
     let mut left = vec![0.0; chain.len()];
     for held in 0..2 {
-        let learnt = |block: usize| block % 2 != held;
-        let mut weights = vec![1.0; chain.len()];
-        let mut solution = None;
-        for _ in 0..2 {
-            let solved = system.solve(&weights, &expected, &learnt);
-            let solved =
-                solved.ok_or_else(|| Error::new(&codes::NOT_IDENTIFIABLE, "the joints cannot be told apart"))?;
-            let squares = system.left(&solved, &learnt, false);
-            weights = squares.into_iter().map(|square| if square > 0.0 { square.recip() } else { 0.0 }).collect();
-            solution = Some(solved);
-        }
-        if let Some(solution) = solution {
-            let scored = system.left(&solution, &|block| block % 2 == held, true);
-            left.iter_mut().zip(scored).for_each(|(sum, square)| *sum += square);
-        }
+        let solution = solved(chain, base, system, &|block| block % 2 != held)?;
+        let scored = system.left(&solution, &|block| block % 2 == held, true);
+        left.iter_mut().zip(scored).for_each(|(sum, square)| *sum += square);
     }
     Ok(left.into_iter().filter(|left| *left > 0.0).map(f64::ln).sum())
 }

@@ -60,6 +60,34 @@ impl System {
         Self { shared, begins, products: products.collect(), width }
     }
 
+    /// Takes what is to be explained of a joint so many times.
+    pub(super) fn scale(&mut self, joint: usize, factor: f64) {
+        for block in &mut self.products[joint] {
+            block.moments *= factor;
+            block.energy *= factor * factor;
+            block.scored.0 *= factor;
+            block.scored.1 *= factor * factor;
+        }
+    }
+
+    /// How many times the torque that shared parameters make of a joint is in what is to be explained of it, its own columns identified
+    /// along; `None` where they make none.
+    pub(super) fn share_of(&self, joint: usize, shared: &[f64]) -> Option<f64> {
+        let blocks = &self.products[joint];
+        let width = blocks.first()?.moments.len();
+        let gram = blocks.iter().fold(DMatrix::zeros(width, width), |sum, block| sum + &block.gram);
+        let moments = blocks.iter().fold(DVector::zeros(width), |sum, block| sum + &block.moments);
+        let own = width - self.shared;
+        // The shared columns as one, then the own.
+        let mut together = DMatrix::zeros(width, 1 + own);
+        shared.iter().enumerate().for_each(|(index, value)| together[(index, 0)] = *value);
+        (0..own).for_each(|index| together[(self.shared + index, 1 + index)] = 1.0);
+        let matrix = together.transpose() * gram * &together;
+        (matrix[(0, 0)] > 0.0)
+            .then(|| solve_symmetric(&matrix, &(together.transpose() * moments)))?
+            .map(|found| found[0])
+    }
+
     /// Number of blocks.
     pub(super) fn blocks(&self) -> usize {
         self.products.first().map_or(0, Vec::len)
@@ -214,6 +242,7 @@ mod tests {
         assert!(system.left(&found, &|_| true, false).iter().all(|left| *left < 1e-10));
         assert!(system.errors(&[1.0, 4.0], &nothing).iter().all(|error| error.norm() < 1e-6));
         assert_eq!((system.first_of(0), system.first_of(1)), (2, 3));
+        assert!((system.share_of(1, &[1.0, -1.5]).unwrap() - 2.0).abs() < 1e-6);
         let told = system.told(&[1.0, 4.0]);
         assert!(told[0] > 100.0 && told[1] > 100.0, "{told:?}");
     }

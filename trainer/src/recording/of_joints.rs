@@ -97,8 +97,8 @@ fn columns(raw: &RawTable, joints: &[Joint]) -> Vec<Vec<Found>> {
     let header = raw.table.header();
     let names: Vec<String> = joints.iter().map(|joint| plain(joint.name.as_deref().unwrap_or_default())).collect();
     let mut found: Vec<Vec<Found>> = joints.iter().map(|_| Vec::new()).collect();
-    // Numbered columns: quantity, rank and unit, with the number.
-    let mut numbered: BTreeMap<(Quantity, usize), Vec<(usize, usize, Option<String>)>> = BTreeMap::new();
+    // Columns of one quantity and name, each with its number.
+    let mut numbered: BTreeMap<(Quantity, usize), Vec<(usize, Found)>> = BTreeMap::new();
     for (column, name) in header.iter().enumerate() {
         if let Some((joint, rest)) = of_name(name, &names) {
             if let Some(Reading { quantity, rank, unit, .. }) = read(&rest) {
@@ -107,18 +107,16 @@ fn columns(raw: &RawTable, joints: &[Joint]) -> Vec<Vec<Found>> {
         } else if let Some(Reading { quantity, rank, joint, unit }) = read(name) {
             let number = joint.trim_matches(['[', ']', '_']).parse::<usize>();
             if let Ok(number) = number {
-                numbered.entry((quantity, rank)).or_default().push((number, column, unit));
+                numbered.entry((quantity, rank)).or_default().push((number, Found { quantity, column, unit, rank }));
             }
         }
     }
-    for ((quantity, rank), mut columns) in numbered {
-        columns.sort_unstable();
-        let numbers: Vec<usize> = columns.iter().map(|(number, ..)| *number).collect();
+    for mut columns in numbered.into_values() {
+        columns.sort_by_key(|(number, found)| (*number, found.column));
+        let numbers: Vec<usize> = columns.iter().map(|(number, _)| *number).collect();
         let counts_from = |first: usize| numbers.iter().copied().eq(first..first + joints.len());
         if counts_from(0) || counts_from(1) {
-            for (of, (_, column, unit)) in found.iter_mut().zip(columns) {
-                of.push(Found { quantity, column, unit, rank });
-            }
+            found.iter_mut().zip(columns).for_each(|(of, (_, column))| of.push(column));
         }
     }
     for of in &mut found {

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{FittedArm, joint_doubt};
+use super::fitted::{FittedArm, beyond_trained, joint_doubt};
 use crate::arm::fit::{BaseEstimate, JointOutcome};
 use crate::fit::outcome::{Outcome, Score, SplitScore, Trace};
 use crate::workflow::recordings::Warning;
@@ -35,13 +35,14 @@ fn joint(joint: &JointOutcome, image: Option<&str>) -> Value {
         "load_friction": joint.load_friction.map(|load| json!({"value": load.value, "ci95": load.ci95})),
         "torque_constant": joint.torque_constant.map(|constant| json!({"value": constant.value, "ci95": constant.ci95, "unit": "N m/A"})),
         "train": of(&|law| scores(law.train_score, &law.train_split)),
-        "test": of(&|law| law.tests.iter().map(test).collect()),
+        "test": of(&|law| law.tests.iter().map(|trace| test(law, trace)).collect()),
     })
 }
 
-fn test(trace: &Trace) -> Value {
+fn test(law: &Outcome, trace: &Trace) -> Value {
     let mut value = scores(trace.score, &trace.split);
     value["recording"] = json!(trace.label);
+    value["beyond_trained_velocity"] = json!(beyond_trained(law, trace));
     value
 }
 

@@ -1,5 +1,6 @@
 //! From recordings of a whole arm to a law for each joint, that tell themselves.
 
+mod fitted;
 mod json;
 mod recordings;
 mod text;
@@ -9,42 +10,16 @@ use std::time::Instant;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use super::fit::doubt;
 use super::recordings::{Source, Warning, motion_of};
 use crate::arm::chain::Chain;
-use crate::arm::fit::{Arm, ArmProgress, JointOutcome, Outcome};
+use crate::arm::fit::{Arm, ArmProgress};
 use crate::arm::motion::Run;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::export::simulator::{ModelFile, Request, Simulator, write};
 use crate::fit::Options;
 use crate::fit::model::from_bytes;
-use crate::joint::{ArmFile, Joint};
-
-/// What is known of an arm, and its recordings.
-#[derive(Clone, Copy, Debug)]
-pub struct Recorded<'a> {
-    /// Recordings of all joints to learn from.
-    pub recordings: &'a [Source<'a>],
-    /// Recordings that are only scored.
-    pub tests: &'a [Source<'a>],
-    /// Text of the URDF.
-    pub urdf: &'a str,
-    /// What else is known.
-    pub file: &'a ArmFile,
-}
-
-/// An arm with what was noticed of its recordings.
-#[derive(Clone, Debug)]
-pub struct FittedArm {
-    /// Bodies, friction and laws.
-    pub outcome: Outcome,
-    /// What the checks of the recordings put right or noticed.
-    pub warnings: Vec<Warning>,
-    /// Time that reading and fitting took, s.
-    pub seconds: f64,
-    /// One seed, one arm.
-    pub seed: u64,
-}
+use crate::joint::Joint;
+pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 
 /// Fits an arm.
 ///
@@ -102,7 +77,7 @@ impl FittedArm {
         let mut text = urdf.to_owned();
         for joint in &self.outcome.joints {
             let Ok(law) = &joint.law else { continue };
-            if doubt(&law.sound).is_some() && !force {
+            if joint_doubt(joint).is_some() && !force {
                 continue;
             }
             let image = from_bytes(&law.image)?;
@@ -118,20 +93,5 @@ impl FittedArm {
     #[must_use]
     pub fn recordings(&self) -> Vec<(String, String)> {
         self.outcome.joints.iter().flat_map(recordings::of_joint).collect()
-    }
-}
-
-/// The name of a joint as that of a file, without an ending.
-#[must_use]
-pub fn file_name(joint: &str) -> String {
-    joint.chars().map(|c| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '_' }).collect()
-}
-
-/// Why the law of a joint may not be relied upon, where it may not or there is none.
-#[must_use]
-pub fn joint_doubt(joint: &JointOutcome) -> Option<Error> {
-    match &joint.law {
-        Ok(law) => doubt(&law.sound),
-        Err(error) => Some(error.clone()),
     }
 }

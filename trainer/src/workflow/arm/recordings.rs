@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::file_name;
+use super::fitted::file_name;
 use crate::arm::fit::JointOutcome;
 use crate::recording::{Channel, Recording};
 

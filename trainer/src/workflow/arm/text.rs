@@ -2,12 +2,14 @@
 
 use std::fmt::Write;
 
-use super::{FittedArm, joint_doubt};
+use super::fitted::{FittedArm, beyond_trained, joint_doubt};
 use crate::fit::outcome::{Score, SplitScore};
 use crate::law::significant;
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;
+/// Share of rows beyond the velocities that a law was learnt from, from which it is told.
+const TOLD_BEYOND: f64 = 0.001;
 
 /// What `trainer arm` prints; `images` holds the name of the image of each joint, `None` where it was kept back.
 pub(super) fn summary(arm: &FittedArm, images: &[Option<String>]) -> String {
@@ -35,6 +37,14 @@ fn write_summary(out: &mut String, arm: &FittedArm, images: &[Option<String>]) -
             write_score(out, "train", law.train_score, &law.train_split, law.unit)?;
             for test in &law.tests {
                 write_score(out, &format!("test {}", test.label), test.score, &test.split, law.unit)?;
+                let beyond = beyond_trained(law, test);
+                if beyond > TOLD_BEYOND {
+                    writeln!(
+                        out,
+                        "              {:.1} % of its rows are faster than any that the law was learnt from",
+                        100.0 * beyond
+                    )?;
+                }
             }
         }
         match joint.load_friction {
