@@ -1,5 +1,6 @@
 //! What the cross-crate tests share.
 
+pub mod arm;
 pub mod c;
 pub mod closed_loop;
 pub mod command;

@@ -94,6 +94,24 @@ pub fn read_whole(path: &Path, limit_bytes: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Reads a file of at most `limit_bytes` whole, as text.
+///
+/// # Errors
+/// As [`read_whole`]; `FRK-D004` where it is not UTF-8.
+pub fn read_text(path: &Path, limit_bytes: u64) -> Result<String> {
+    let not_text =
+        || Error::new(&codes::NOT_UTF8, "this file has to be UTF-8 text").in_file(path.display().to_string());
+    String::from_utf8(read_whole(path, limit_bytes)?).map_err(|_| not_text())
+}
+
+/// Makes a folder, and those that it lies in, where it does not exist.
+///
+/// # Errors
+/// `FRK-I001` where it cannot be made.
+pub fn create_folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|error| Error::from_io(path, &error))
+}
+
 /// Opens a file for reading; a folder is refused here rather than at the first read.
 ///
 /// # Errors

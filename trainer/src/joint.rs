@@ -1,7 +1,9 @@
 //! `joint.toml`: what a user knows about the joint. Every key is optional; units are in the keys.
 
 mod actuator;
+mod arm;
 mod columns;
+mod drive;
 mod in_recording;
 mod keys;
 mod urdf;
@@ -11,7 +13,9 @@ use std::path::Path;
 use serde::Deserialize;
 
 pub use actuator::{ActuatorTable, OfRecording, OfRecordings, Payload};
+pub use arm::ArmFile;
 pub use columns::{ColumnMapping, Columns, Side, Simulation};
+pub use drive::{Drive, Limits};
 
 use crate::error::{Error, Result, codes};
 use crate::files;
@@ -77,51 +81,9 @@ pub struct RigidBody {
     pub urdf: Option<String>,
     /// Name of this joint in the URDF file; may be absent where the file has a single moving joint.
     pub joint: Option<String>,
-}
-
-/// Parameters of the drive.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Drive {
-    /// Motor torque per ampere, N m/A; above zero.
-    #[serde(rename = "torque_constant_Nm_A")]
-    pub torque_constant_nm_a: Option<f64>,
-    /// Motor turns per joint turn; not zero.
-    pub gear_ratio: Option<f64>,
-    /// Encoder counts per turn of the shaft that carries the encoder; above zero.
-    pub counts_per_turn: Option<f64>,
-    /// Largest torque of the drive at the joint, N m; above zero.
-    #[serde(rename = "torque_limit_Nm")]
-    pub torque_limit_nm: Option<f64>,
-    /// Rate of the control loop, Hz; above zero.
-    #[serde(rename = "rate_Hz")]
-    pub rate_hz: Option<f64>,
-}
-
-/// Limits within which the joint may be moved; what is absent is taken from a recording.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Limits {
-    /// Lowest position, rad (m on a linear axis).
-    #[serde(alias = "lowest_position_m")]
-    pub lowest_position_rad: Option<f64>,
-    /// Highest position, rad (m).
-    #[serde(alias = "highest_position_m")]
-    pub highest_position_rad: Option<f64>,
-    /// Largest speed, rad/s (m/s); from 1e-9 to 1e9.
-    #[serde(alias = "velocity_m_s")]
-    pub velocity_rad_s: Option<f64>,
-    /// Largest acceleration, rad/s2 (m/s2); from 1e-9 to 1e9.
-    #[serde(alias = "acceleration_m_s2")]
-    pub acceleration_rad_s2: Option<f64>,
-}
-
-impl Drive {
-    /// Joint torque per ampere of motor current, N m/A, when known.
-    #[must_use]
-    pub fn joint_torque_per_ampere(&self) -> Option<f64> {
-        self.torque_constant_nm_a.map(|constant| constant * self.gear_ratio.unwrap_or(1.0))
-    }
+    /// Whether a recorded rigid-body torque is right as it is; otherwise its scale, and inertia beside it, are identified.
+    #[serde(default)]
+    pub recorded_is_exact: bool,
 }
 
 impl Joint {
@@ -155,11 +117,8 @@ impl Joint {
     /// # Errors
     /// `FRK-I...` when it cannot be read, `FRK-D015` with its row when a key or value is not understood.
     pub fn load(path: &Path) -> Result<Self> {
-        let label = path.display().to_string();
-        let bytes = files::read_whole(path, SIZE_LIMIT_BYTES)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Error::new(&codes::NOT_UTF8, "joint.toml has to be UTF-8 text").in_file(&label))?;
-        let mut joint = Self::parse(&text).map_err(|error| error.in_file(label))?;
+        let text = files::read_text(path, SIZE_LIMIT_BYTES)?;
+        let mut joint = Self::parse(&text).map_err(|error| error.in_file(path.display().to_string()))?;
         if let Some(urdf) = joint.rigid_body.urdf.clone() {
             joint.take_from_urdf(&path.with_file_name(urdf))?;
         }
@@ -168,12 +127,10 @@ impl Joint {
 
     /// Fills in what `joint.toml` leaves open from the body that moves with the joint in a URDF file.
     fn take_from_urdf(&mut self, path: &Path) -> Result<()> {
-        let label = path.display().to_string();
-        let bytes = files::read_whole(path, URDF_LIMIT_BYTES)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Error::new(&codes::NOT_UTF8, "a URDF file has to be UTF-8 text").in_file(&label))?;
+        let text = files::read_text(path, URDF_LIMIT_BYTES)?;
         let body = &mut self.rigid_body;
-        let moved = urdf::moved_body(&text, body.joint.as_deref()).map_err(|error| error.in_file(label))?;
+        let moved = urdf::moved_body(&text, body.joint.as_deref());
+        let moved = moved.map_err(|error| error.in_file(path.display().to_string()))?;
         body.inertia_kgm2.get_or_insert(moved.inertia);
         if let (Some((torque, phase)), None) = (moved.gravity, body.gravity_torque_nm) {
             body.gravity_torque_nm = Some(torque);

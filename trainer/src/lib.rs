@@ -2,6 +2,7 @@
 //! `recording -> checks -> samples -> kan -> law -> compile -> drive`, and `diagnose` asks what a model leaves out.
 
 pub mod actuator;
+pub mod arm;
 pub mod checks;
 pub mod commands;
 pub mod compile;
@@ -30,6 +31,7 @@ pub mod rig;
 pub mod rollout;
 pub mod samples;
 pub mod servo;
+mod urdf;
 pub mod workflow;
 
 pub use workflow::diagnose::diagnose;

@@ -7,7 +7,7 @@ use frikan_trainer::commands::fleet::{gather, plan, run as run_task};
 use frikan_trainer::commands::output::{print, say};
 use frikan_trainer::commands::terminal::shell;
 use frikan_trainer::commands::{
-    check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
+    arm, check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
 };
 use frikan_trainer::error::Result;
 
@@ -27,6 +27,7 @@ enum Command {
     Init(init::Init),
     Check(check::Check),
     Fit(fit::Fit),
+    Arm(arm::Arm),
     Show(show::Show),
     Predict(predict::Predict),
     Rollout(rollout::Rollout),
@@ -48,6 +49,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Init(arguments) => init::run(arguments).map(|()| 0),
         Command::Check(arguments) => check::run(arguments),
         Command::Fit(arguments) => fit::run(arguments),
+        Command::Arm(arguments) => arm::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),
         Command::Rollout(arguments) => rollout::run(arguments).map(|()| 0),

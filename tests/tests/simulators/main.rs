@@ -2,6 +2,7 @@
 //! the simulator's own file, and MuJoCo or Drake runs it on a motion that nobody has seen. Other formats are read by their own programs.
 //! `tests/setup.sh` installs these under `target/simulators`; without one its tests say so and do nothing.
 
+mod arm;
 mod foreign;
 mod mujoco;
 mod others;

@@ -177,7 +177,8 @@ pub(super) fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + 
     Ok(pool.install(work))
 }
 
-fn line(progress: &Progress) -> String {
+/// What a fit is doing, as a line of progress.
+pub(super) fn line(progress: &Progress) -> String {
     let stage = progress.stage.name();
     match progress.rmse {
         Some(rmse) => format!("{stage}: step {}, rmse {rmse:.4}", progress.steps),

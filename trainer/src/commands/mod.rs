@@ -1,5 +1,6 @@
 //! One file a subcommand: parse, call, print. No arithmetic here.
 
+pub mod arm;
 pub mod check;
 pub mod closed_loop;
 pub mod diagnose;

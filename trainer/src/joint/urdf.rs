@@ -3,13 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
-use roxmltree::{Document, Node};
+use nalgebra::{Isometry3, Vector3};
 
 use crate::error::{Error, Result, codes};
-
-/// Standard acceleration of gravity, m/s2.
-const GRAVITY_M_S2: f64 = 9.806_65;
+use crate::urdf::{Body, GRAVITY_M_S2, Joint, Kind, Robot};
 
 /// What moves with a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,153 +23,69 @@ pub(super) struct MovedBody {
 /// # Errors
 /// `FRK-D021` with its row when the file is no URDF, lacks the joint, or nothing that moves has a mass.
 pub(super) fn moved_body(text: &str, name: Option<&str>) -> Result<MovedBody> {
-    let document = Document::parse(text)
-        .map_err(|error| Error::new(&codes::BAD_URDF, error.to_string()).at_row(u64::from(error.pos().row)))?;
-    let robot = document.root_element();
-    let joint = find_joint(robot, name)?;
-    let prismatic = joint.attribute("type") == Some("prismatic");
-    let axis = match child(joint, "axis") {
-        Some(axis) => vector(axis, "xyz", [1.0, 0.0, 0.0])?,
-        None => Vector3::x(),
-    };
-    let Some(axis) = axis.try_normalize(1e-9) else { return Err(at(joint, "the axis of this joint has no direction")) };
-    let down = pose_in_root(robot, joint)?.rotation.inverse() * Vector3::new(0.0, 0.0, -GRAVITY_M_S2);
+    let robot = Robot::parse(text)?;
+    let joint = find_joint(&robot, name)?;
+    let axis = joint.axis;
+    let down = pose_in_root(&robot, joint)?.rotation.inverse() * Vector3::new(0.0, 0.0, -GRAVITY_M_S2);
 
     let (mut mass, mut inertia, mut sine, mut cosine) = (0.0, 0.0, 0.0, 0.0);
-    for link in moved_links(robot, joint)? {
-        mass += link.mass;
-        let lever = axis.cross(&link.centre);
-        inertia += axis.dot(&(link.inertia * axis)) + link.mass * lever.norm_squared();
+    for body in moved_bodies(&robot, joint)? {
+        mass += body.mass;
+        let lever = axis.cross(&body.centre);
+        inertia += axis.dot(&(body.inertia * axis)) + body.mass * lever.norm_squared();
         // The centre moves along axis x R(q) p = cos q (axis x p) + sin q (axis x (axis x p)); the joint holds its weight.
-        cosine -= link.mass * down.dot(&lever);
-        sine -= link.mass * down.dot(&axis.cross(&lever));
+        cosine -= body.mass * down.dot(&lever);
+        sine -= body.mass * down.dot(&axis.cross(&lever));
     }
-    if prismatic && mass > 0.0 {
+    if joint.kind == Kind::Prismatic && mass > 0.0 {
         return Ok(MovedBody { inertia: mass, gravity: None });
     }
     if inertia <= 0.0 {
-        return Err(at(joint, "nothing that moves with this joint has a mass"));
+        return Err(joint.error("nothing that moves with this joint has a mass"));
     }
     Ok(MovedBody { inertia, gravity: Some((sine.hypot(cosine), cosine.atan2(sine))) })
 }
 
-/// Mass, centre and inertia of a link in the frame of the joint.
-struct Link {
-    mass: f64,
-    centre: Vector3<f64>,
-    inertia: Matrix3<f64>,
-}
-
-fn joints<'a, 'i>(robot: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
-    robot.children().filter(|node| node.has_tag_name("joint"))
-}
-
-fn find_joint<'a, 'i>(robot: Node<'a, 'i>, name: Option<&str>) -> Result<Node<'a, 'i>> {
-    let moving = |joint: &Node| matches!(joint.attribute("type"), Some("revolute" | "continuous" | "prismatic"));
-    let candidates: Vec<Node> = joints(robot).filter(moving).collect();
-    let named = candidates.iter().find(|joint| name.is_some() && joint.attribute("name") == name);
+fn find_joint<'a>(robot: &'a Robot, name: Option<&str>) -> Result<&'a Joint> {
+    let candidates: Vec<&Joint> = robot.joints.iter().filter(|joint| joint.kind != Kind::Fixed).collect();
+    let named = candidates.iter().find(|joint| name == Some(&joint.name));
     match (named, name, candidates.as_slice()) {
-        (Some(joint), _, _) => Ok(*joint),
-        (None, None, [joint]) => Ok(*joint),
+        (Some(joint), _, _) => Ok(joint),
+        (None, None, [joint]) => Ok(joint),
         _ => {
-            let names: Vec<&str> = candidates.iter().filter_map(|joint| joint.attribute("name")).collect();
+            let names: Vec<&str> = candidates.iter().map(|joint| joint.name.as_str()).collect();
             let message = format!("`[rigid_body] joint` has to name one of the moving joints: {}", names.join(", "));
             Err(Error::new(&codes::BAD_URDF, message).with_value(name.unwrap_or("")))
         }
     }
 }
 
-/// Every link beyond the joint, down the tree.
-fn moved_links(robot: Node, joint: Node) -> Result<Vec<Link>> {
+/// Every body beyond the joint, down the tree, in the frame of the joint.
+fn moved_bodies(robot: &Robot, joint: &Joint) -> Result<Vec<Body>> {
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();
-    let mut open = vec![(link_name(joint, "child")?, Isometry3::identity())];
+    let mut open = vec![(joint.child.as_str(), Isometry3::identity())];
     while let Some((name, pose)) = open.pop() {
         if !seen.insert(name) {
-            return Err(at(joint, "the links beyond this joint form a loop"));
+            return Err(joint.error("the links beyond this joint form a loop"));
         }
-        let link = robot.children().find(|node| node.has_tag_name("link") && node.attribute("name") == Some(name));
-        if let Some(inertial) = link.and_then(|link| child(link, "inertial")) {
-            found.push(read_inertial(inertial, &pose)?);
-        }
-        for next in joints(robot) {
-            if link_name(next, "parent")? == name {
-                open.push((link_name(next, "child")?, pose * origin(next)?));
-            }
-        }
+        found.push(robot.body(name).seen_from(&pose));
+        let beyond = robot.joints.iter().filter(|next| next.parent == name);
+        open.extend(beyond.map(|next| (next.child.as_str(), pose * next.pose)));
     }
     Ok(found)
 }
 
-fn read_inertial(inertial: Node, pose: &Isometry3<f64>) -> Result<Link> {
-    let pose = pose * origin(inertial)?;
-    let mass = child(inertial, "mass").map_or(Ok(0.0), |node| number(node, "value", 0.0))?;
-    let inertia = match child(inertial, "inertia") {
-        None => Matrix3::zeros(),
-        Some(node) => {
-            let [xx, yy, zz] = [number(node, "ixx", 0.0)?, number(node, "iyy", 0.0)?, number(node, "izz", 0.0)?];
-            let [xy, xz, yz] = [number(node, "ixy", 0.0)?, number(node, "ixz", 0.0)?, number(node, "iyz", 0.0)?];
-            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-        }
-    };
-    let rotation = pose.rotation.to_rotation_matrix();
-    Ok(Link { mass, centre: pose.translation.vector, inertia: rotation * inertia * rotation.transpose() })
-}
-
 /// Pose of the joint's frame in the root, through the joints between them.
-fn pose_in_root(robot: Node, joint: Node) -> Result<Isometry3<f64>> {
-    let mut pose = origin(joint)?;
-    let mut link = link_name(joint, "parent")?;
-    for _ in joints(robot) {
-        let mut above = None;
-        for candidate in joints(robot) {
-            if link_name(candidate, "child")? == link {
-                above = Some(candidate);
-            }
-        }
-        let Some(above) = above else { return Ok(pose) };
-        pose = origin(above)? * pose;
-        link = link_name(above, "parent")?;
+fn pose_in_root(robot: &Robot, joint: &Joint) -> Result<Isometry3<f64>> {
+    let mut pose = joint.pose;
+    let mut link = &joint.parent;
+    for _ in &robot.joints {
+        let Some(above) = robot.joints.iter().find(|candidate| candidate.child == *link) else { return Ok(pose) };
+        pose = above.pose * pose;
+        link = &above.parent;
     }
-    Err(at(joint, "the links before this joint form a loop"))
-}
-
-fn link_name<'a>(joint: Node<'a, '_>, side: &str) -> Result<&'a str> {
-    let link = child(joint, side).and_then(|node| node.attribute("link"));
-    link.ok_or_else(|| at(joint, &format!("this joint names no {side} link")))
-}
-
-fn origin(node: Node) -> Result<Isometry3<f64>> {
-    let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
-    let xyz = vector(origin, "xyz", [0.0; 3])?;
-    let rpy = vector(origin, "rpy", [0.0; 3])?;
-    Ok(Isometry3::from_parts(Translation3::from(xyz), UnitQuaternion::from_euler_angles(rpy.x, rpy.y, rpy.z)))
-}
-
-fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|inner| inner.has_tag_name(tag))
-}
-
-fn number(node: Node, attribute: &str, absent: f64) -> Result<f64> {
-    let Some(text) = node.attribute(attribute) else { return Ok(absent) };
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(at(node, "this is not a finite number").in_column(attribute).with_value(text)),
-    }
-}
-
-fn vector(node: Node, attribute: &str, absent: [f64; 3]) -> Result<Vector3<f64>> {
-    let Some(text) = node.attribute(attribute) else { return Ok(Vector3::from(absent)) };
-    let numbers: Vec<f64> = text.split_whitespace().filter_map(|part| part.parse().ok()).collect();
-    match numbers[..] {
-        [x, y, z] if numbers.iter().all(|value: &f64| value.is_finite()) => Ok(Vector3::new(x, y, z)),
-        _ => Err(at(node, "three finite numbers are needed here").in_column(attribute).with_value(text)),
-    }
-}
-
-fn at(node: Node, message: &str) -> Error {
-    let row = node.document().text_pos_at(node.range().start).row;
-    Error::new(&codes::BAD_URDF, message).at_row(u64::from(row))
+    Err(joint.error("the links before this joint form a loop"))
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod guess;
 mod health;
 mod merged;
 mod names;
+mod of_joints;
 mod quantity;
 mod select;
 mod source;
@@ -97,6 +98,28 @@ fn names_of(path: &Path) -> (String, String) {
     let file = path.display().to_string();
     let label = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
     (file, label)
+}
+
+/// Reads a recording of several joints: one recording a joint, in the order of `joints`, whose names tell which columns are whose.
+///
+/// # Errors
+/// As [`load`]; `FRK-D013` where no column is the position of a joint.
+pub fn load_joints(path: &Path, joints: &[Joint]) -> Result<Vec<Recording>> {
+    let (file, label) = names_of(path);
+    let recordings = source::open(path).and_then(|source| parse_joints(&label, source, joints));
+    let mut recordings = recordings.map_err(|error| error.in_file(&file))?;
+    recordings.iter_mut().for_each(|recording| recording.file.clone_from(&file));
+    Ok(recordings)
+}
+
+/// The same from any stream of bytes.
+///
+/// # Errors
+/// As [`parse`]; `FRK-D013` where no column is the position of a joint.
+pub fn parse_joints(label: &str, source: impl std::io::Read, joints: &[Joint]) -> Result<Vec<Recording>> {
+    let (raw, fingerprint) = read(source)?;
+    let parts = of_joints::take_apart(&raw, joints)?;
+    parts.into_iter().map(|(part, joint)| interpret(label, part, fingerprint, &joint)).collect()
 }
 
 /// Reads a recording from any stream of bytes, with bounded memory for a record of any length.

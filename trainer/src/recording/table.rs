@@ -81,6 +81,17 @@ impl TextTable {
         table
     }
 
+    /// The same rows with the columns `kept` only (increasing indices).
+    fn with_columns(&self, kept: &[usize]) -> Self {
+        let header = kept.iter().map(|column| self.header[*column].clone()).collect();
+        let mut table = Self::new(header, self.header_line);
+        for row in 0..self.len() {
+            table.begin_row(self.line(row));
+            kept.iter().for_each(|column| table.push_field(self.cell(row, *column)));
+        }
+        table
+    }
+
     fn field(&self, index: usize) -> &str {
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         &self.text[start..self.ends[index]]
@@ -113,6 +124,18 @@ impl RawTable {
             Ok(_) => Err(here(&codes::NOT_FINITE, "this value is not finite")),
             Err(_) if field.is_empty() => Err(here(&codes::NOT_A_NUMBER, "this field is empty")),
             Err(_) => Err(here(&codes::NOT_A_NUMBER, "this is not a number")),
+        }
+    }
+
+    /// The same rows with the columns `kept` only (increasing indices).
+    pub(super) fn with_columns(&self, kept: &[usize]) -> Self {
+        let units =
+            if self.units.is_empty() { Vec::new() } else { kept.iter().map(|c| self.units[*c].clone()).collect() };
+        Self {
+            table: self.table.with_columns(kept),
+            units,
+            decimal_comma: self.decimal_comma,
+            notes: self.notes.clone(),
         }
     }
 

@@ -10,13 +10,13 @@ const KNOTS: usize = 12;
 const SAMPLES_PER_KNOT: usize = 8;
 
 /// Friction as straight pieces between knots of speed, a set of its own for each direction.
-pub(super) struct BendingLaw {
+pub(crate) struct BendingLaw {
     forward: Vec<f64>,
     backward: Vec<f64>,
 }
 
 impl BendingLaw {
-    pub(super) fn over(velocity: &[f64]) -> Result<Self> {
+    pub(crate) fn over(velocity: &[f64]) -> Result<Self> {
         let forward = knots(velocity.iter().copied().filter(|v| *v > 0.0).collect());
         let backward = knots(velocity.iter().map(|v| -v).filter(|v| *v > 0.0).collect());
         if forward.len() + backward.len() < 4 {
@@ -28,12 +28,12 @@ impl BendingLaw {
     }
 
     /// One column for every knot forward, then for every knot backward; each is the torque at its knot.
-    pub(super) fn columns(&self, velocity: &[f64]) -> Vec<Vec<f64>> {
+    pub(crate) fn columns(&self, velocity: &[f64]) -> Vec<Vec<f64>> {
         self.columns_as(velocity, |column| column)
     }
 
     /// The same averaged over states of such velocities.
-    pub(super) fn averaged_columns(&self, velocity: &[f64], averages: &Averages) -> Vec<Vec<f64>> {
+    pub(crate) fn averaged_columns(&self, velocity: &[f64], averages: &Averages) -> Vec<Vec<f64>> {
         self.columns_as(velocity, |column| averages.over(&column))
     }
 
@@ -49,7 +49,7 @@ impl BendingLaw {
     }
 
     /// Weights of the knots in the mean of both directions, averaged over the speeds that were driven.
-    pub(super) fn even_part(&self, velocity: &[f64]) -> Vec<f64> {
+    pub(crate) fn even_part(&self, velocity: &[f64]) -> Vec<f64> {
         let share = 0.5 / velocity.len() as f64;
         let mean = |knots: &[f64], knot| velocity.iter().map(|v| hat(knots, knot, v.abs())).sum::<f64>() * share;
         let forward = (0..self.forward.len()).map(|knot| mean(&self.forward, knot));

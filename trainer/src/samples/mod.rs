@@ -21,10 +21,12 @@ mod width;
 
 use std::ops::Range;
 
+pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
 pub(crate) use grid::interpolate;
 pub use plan::{Preparation, Request, VelocitySource};
 pub use prepare::{prepare, prepare_every_row};
+pub(crate) use width::smooth_friction_columns;
 
 use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};

@@ -21,6 +21,10 @@ const VELOCITY_NOISE_SHARE: f64 = 0.01;
 const MOTION_SHARE: f64 = 0.15;
 /// Gain left at half the output rate, as the product of frequency and sigma: 10 dB below the passband.
 const NYQUIST_FREQUENCY_SIGMAS: f64 = 0.2415;
+/// Periods over which the coarse velocity is taken.
+const COARSE_PERIODS: f64 = 10.0;
+/// Coarse velocity over what noise alone would make of it, root mean squares, from which a joint moves: its noise is a hundredth of its power.
+const SEEN_OVER_NOISE: f64 = 10.0;
 /// Nor wider than this share of the recording.
 const SPAN_SHARE: f64 = 0.01;
 
@@ -98,6 +102,30 @@ impl Preparation {
         let trials = width::trials(&[recording], &candidates, &|samples: &Samples| Ok((residual(samples)?, 0.0)));
         let chosen = width::best(&trials).map(|trial| trial.preparation);
         Ok(chosen.unwrap_or_else(|| quietest(&motions, &candidates)))
+    }
+
+    /// Every filter that the recordings of joints that move together allow, from each source of the velocity that all of them have;
+    /// joints at rest do not count.
+    ///
+    /// # Errors
+    /// `FRK-D009` when clock or motion is missing.
+    pub(crate) fn of_joints(recordings: &[&Recording]) -> Result<Vec<Self>> {
+        let mut motions = recordings.iter().map(|recording| Motion::of(recording)).collect::<Result<Vec<_>>>()?;
+        let has = [VelocitySource::Derived, VelocitySource::Recorded]
+            .map(|source| motions.iter().all(|motion| motion.has(source)));
+        motions.retain(Motion::is_seen);
+        let mut found = candidates(&motions, &Request::default());
+        found.retain(|preparation| has[usize::from(preparation.velocity == VelocitySource::Recorded)]);
+        Ok(found)
+    }
+
+    /// The same filter with the noise of this recording's motion.
+    ///
+    /// # Errors
+    /// `FRK-D009` when clock or motion is missing.
+    pub(crate) fn with_noise_of(&self, recording: &Recording) -> Result<Self> {
+        let noise = Motion::of(recording)?.acceleration_noise(self.velocity, self.sigma_s.unwrap_or(0.0));
+        Ok(Self { acceleration_noise: noise, ..*self })
     }
 
     fn unfiltered() -> Self {
@@ -212,7 +240,7 @@ pub(super) struct Motion {
     /// Noise of the recorded position and of the recorded velocity; `None` where there is none.
     position_noise: Option<f64>,
     velocity_noise: Option<f64>,
-    /// Coarse velocity at every row, over ten periods.
+    /// Coarse velocity at every row, over [`COARSE_PERIODS`].
     velocity: Vec<f64>,
     rms_velocity: f64,
     /// Usual size of the acceleration, rad/s2 or m/s2.
@@ -247,7 +275,7 @@ impl Motion {
         let rounding = recording.health.position_resolution.unwrap_or(0.0) / 12.0_f64.sqrt();
         let centre = mean(position);
         let centred: Vec<f64> = position.iter().map(|q| q - centre).collect();
-        let reach = 10.min(position.len() - 1);
+        let reach = (COARSE_PERIODS as usize).min(position.len() - 1);
         let rates: Vec<f64> =
             position.windows(reach + 1).map(|w| (w[reach] - w[0]) / (reach as f64 * period_s)).collect();
         let rms_velocity = root_mean_square(&rates);
@@ -261,6 +289,12 @@ impl Motion {
             acceleration_scale: rms_velocity / time_scale.max(period_s),
             longest_sigma_s: (MOTION_SHARE * time_scale).min(SPAN_SHARE * span),
         })
+    }
+
+    /// Whether the motion stands out of the noise of the position.
+    fn is_seen(&self) -> bool {
+        let noise = self.position_noise.map_or(0.0, |noise| noise * 2.0_f64.sqrt() / (COARSE_PERIODS * self.period_s));
+        self.rms_velocity > SEEN_OVER_NOISE * noise
     }
 
     fn has(&self, velocity: VelocitySource) -> bool {

@@ -122,13 +122,14 @@ impl Separation {
 }
 
 /// The torque of the rigid-body parameters given in `joint.toml`, in the unit of the actuator, at every sample:
-/// inertia * acceleration + gravity_torque * sin(position + phase).
+/// inertia * acceleration + gravity_torque * sin(position + phase), and the recorded one where it is right as it is.
 ///
 /// # Errors
 /// `FRK-D014` when the actuator is a current and no torque constant is known, `FRK-D009` when position is missing.
 pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
-    let mut torque = vec![0.0; samples.len()];
     let body = &joint.rigid_body;
+    let recorded = samples.rigid_body.clone().filter(|_| body.recorded_is_exact);
+    let mut torque = recorded.unwrap_or_else(|| vec![0.0; samples.len()]);
     if body.inertia_kgm2.is_none() && body.gravity_torque_nm.is_none() {
         return Ok(torque);
     }
@@ -153,17 +154,18 @@ pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
 
 /// The rigid-body terms that these samples ask to be identified: those that `joint.toml` does not give.
 ///
-/// Beside a recorded rigid-body torque these are its scale, extra inertia and offset; otherwise inertia, gravity on a
+/// Beside a recorded rigid-body torque these are its scale, extra inertia and offset, or the offset alone where it is right as it is; otherwise inertia, gravity on a
 /// rotary axis whose position covers enough, and offset where both directions are present.
 #[must_use]
 pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
     let mut terms = Vec::new();
     let body = &joint.rigid_body;
     let mut push = |kind, column: Vec<f64>| terms.push(Term { kind, column });
-    if let Some(recorded) = &samples.rigid_body {
+    let is_exact = body.recorded_is_exact && samples.rigid_body.is_some();
+    if let Some(recorded) = samples.rigid_body.as_ref().filter(|_| !is_exact) {
         push(TermKind::TorqueScale, recorded.clone());
     }
-    if let Some(acceleration) = samples.acceleration.as_ref().filter(|_| body.inertia_kgm2.is_none()) {
+    if let Some(acceleration) = samples.acceleration.as_ref().filter(|_| body.inertia_kgm2.is_none() && !is_exact) {
         let kind = if samples.rigid_body.is_some() { TermKind::ExtraInertia } else { TermKind::Inertia };
         push(kind, acceleration.clone());
     }

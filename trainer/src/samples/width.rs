@@ -137,7 +137,7 @@ pub(super) fn cross_fitted(samples: &Samples, joint: &Joint) -> Result<(Vec<f64>
     let inertia_at = terms.iter().position(|term| term.kind.is_inertia());
     let mut columns: Vec<Vec<f64>> =
         terms.into_iter().filter(|term| term.kind != rigid_body::TermKind::TorqueOffset).map(|t| t.column).collect();
-    columns.extend(friction_columns(samples.require_velocity()?));
+    columns.extend(smooth_friction_columns(samples.require_velocity()?));
     let blocks = block_of_rows(samples);
     let mut left = vec![0.0; samples.len()];
     let mut inertia = 0.0;
@@ -163,7 +163,7 @@ fn given_inertia(joint: &Joint, samples: &Samples) -> f64 {
 }
 
 /// Friction over velocity as a few smooth shapes that serve at any width: signs, viscous, their asymmetries, a constant.
-fn friction_columns(velocity: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn smooth_friction_columns(velocity: &[f64]) -> Vec<Vec<f64>> {
     let top = top_speed(velocity).max(f64::MIN_POSITIVE);
     let mut columns: Vec<Vec<f64>> =
         SIGN_WIDTHS.iter().map(|width| velocity.iter().map(|v| (v / (width * top)).tanh()).collect()).collect();

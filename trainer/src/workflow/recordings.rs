@@ -43,6 +43,19 @@ impl Source<'_> {
             Self::Bytes { label, bytes } => recording::parse(label, bytes, joint).map_err(|error| error.in_file(label)),
         }
     }
+
+    /// The recordings of each of these joints that stand there together.
+    ///
+    /// # Errors
+    /// As [`recording::load_joints`].
+    pub(crate) fn read_joints(self, joints: &[Joint]) -> Result<Vec<Recording>> {
+        match self {
+            Self::File(path) => recording::load_joints(path, joints),
+            Self::Bytes { label, bytes } => {
+                recording::parse_joints(label, bytes, joints).map_err(|error| error.in_file(label))
+            }
+        }
+    }
 }
 
 /// A note on a recording for a reader.
@@ -71,10 +84,7 @@ pub(crate) fn load_all<'a, S: Into<Source<'a>>>(
     }
     if recordings.len() > 1 {
         for (recording, warnings) in recordings.iter().zip(&mut warnings) {
-            for warning in warnings {
-                warning.note.recording = Some(recording.label.clone());
-                warning.message = recording_note(&warning.note, units(recording));
-            }
+            warnings.iter_mut().for_each(|warning| warning.tell(&recording.label, recording));
         }
     }
     Ok((recordings, warnings.concat()))
@@ -110,6 +120,16 @@ pub(crate) fn motion(recording: Recording, joint: &Joint) -> Result<(Recording, 
     checks::review_motion(recording, joint).map(with_warnings)
 }
 
+/// The motion of one joint of a recording, by a name that warnings tell.
+///
+/// # Errors
+/// As [`motion`].
+pub(crate) fn motion_of(name: &str, recording: Recording, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
+    let (recording, mut warnings) = motion(recording, joint)?;
+    warnings.iter_mut().for_each(|warning| warning.tell(name, &recording));
+    Ok((recording, warnings))
+}
+
 fn with_warnings(Reviewed { recording, notes }: Reviewed) -> (Recording, Vec<Warning>) {
     let actuator = recording.separated_friction().or_else(|| recording.actuator());
     let actuator = actuator.map_or("torque", |channel| channel.name.as_str()).to_owned();
@@ -129,6 +149,12 @@ impl fmt::Display for Warning {
 }
 
 impl Warning {
+    /// Names the recording in the message.
+    fn tell(&mut self, name: &str, recording: &Recording) {
+        self.note.recording = Some(name.to_owned());
+        self.message = recording_note(&self.note, units(recording));
+    }
+
     /// What was found, one sentence without a final stop.
     #[must_use]
     pub fn message(&self) -> &str {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use frikan_shared::image::Image;
 
-use crate::error::{Error, Result, codes};
+use crate::error::{Result, codes};
 use crate::export::simulator::{ModelFile, Request, Simulator, write};
 use crate::files;
 use crate::fit::CELLS;
@@ -42,7 +42,7 @@ impl ModelFileArguments {
         let text = match &self.into {
             // A stage may be binary; the layer only refers to it.
             Some(path) if simulator == Simulator::Usd => files::open(path).map(|_| String::new())?,
-            Some(path) => read(path)?,
+            Some(path) => files::read_text(path, SIZE_LIMIT_BYTES)?,
             None => String::new(),
         };
         let into = path.as_deref().zip(self.joint_name.as_deref()).map(|(path, joint)| ModelFile {
@@ -63,12 +63,6 @@ impl ModelFileArguments {
     pub(super) fn inputs(&self) -> impl Iterator<Item = &Path> {
         [&self.into, &self.joint].into_iter().flatten().map(PathBuf::as_path)
     }
-}
-
-fn read(path: &Path) -> Result<String> {
-    let bytes = files::read_whole(path, SIZE_LIMIT_BYTES)?;
-    let message = "a model file has to be UTF-8 text";
-    String::from_utf8(bytes).map_err(|_| Error::new(&codes::NOT_UTF8, message).in_file(path.display().to_string()))
 }
 
 fn inertia(text: &str) -> std::result::Result<f64, String> {

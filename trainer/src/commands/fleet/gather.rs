@@ -13,6 +13,7 @@ use super::task::{Done, FLEET_FILE, Task, Tasks};
 use super::told::{json, text};
 use crate::commands::output::Outputs;
 use crate::error::{Error, Result, codes};
+use crate::files::create_folder;
 use crate::fleet::{FittedLaw, Measured, Ripple, survey};
 use crate::numerics::statistics::NORMAL_95;
 use crate::parameter::Parameter;
@@ -49,7 +50,7 @@ pub struct Gather {
 pub fn run(arguments: &Gather) -> Result<u8> {
     let tasks = Tasks::load(&arguments.tasks)?;
     let list = tasks.all()?;
-    std::fs::create_dir_all(&arguments.output).map_err(|error| Error::from_io(&arguments.output, &error))?;
+    create_folder(&arguments.output)?;
     let results: Vec<Option<Done>> = list.par_iter().map(|task| tasks.result(task)).collect::<Result<_>>()?;
     let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());
     for (task, done) in list.iter().zip(results) {

@@ -9,7 +9,7 @@ use super::task::{Done, Failure, SCHEMA, Task, Tasks, folder_of};
 use crate::commands::fit::in_pool;
 use crate::commands::output::{print, say};
 use crate::error::{Error, Result};
-use crate::files::write_together;
+use crate::files::{create_folder, write_together};
 use crate::fit::Options;
 use crate::fleet::{Rows, ripple};
 use crate::joint::Joint;
@@ -117,7 +117,7 @@ fn strongest_ripple(fitted: &Fitted) -> Option<[f64; 2]> {
 fn leave(tasks: &Tasks, done: &Done, image: Option<Vec<u8>>) -> Result<()> {
     let [result, image_file] = tasks.results(&done.task);
     let folder = folder_of(&result);
-    std::fs::create_dir_all(folder).map_err(|error| Error::from_io(folder, &error))?;
+    create_folder(folder)?;
     let text = serde_json::json!(done).to_string() + "\n";
     let mut files = Vec::new();
     files.extend(image.as_ref().map(|image| (image_file.as_path(), image.as_slice())));

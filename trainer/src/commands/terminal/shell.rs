@@ -7,6 +7,7 @@ use clap_complete::Shell;
 
 use super::output::{Outputs, print};
 use crate::error::{Error, Result, codes};
+use crate::files::create_folder;
 
 /// Print completions for a shell: `source <(trainer completions bash)`.
 #[derive(Args, Clone, Debug)]
@@ -40,7 +41,7 @@ pub fn completions(arguments: &Completions, mut program: Command) -> Result<()> 
 /// # Errors
 /// `FRK-I...` when they cannot be written.
 pub fn man(arguments: &Man, mut program: Command) -> Result<()> {
-    std::fs::create_dir_all(&arguments.output).map_err(|error| Error::from_io(&arguments.output, &error))?;
+    create_folder(&arguments.output)?;
     program.build();
     let mut outputs = Outputs::default();
     let name = program.get_name().to_owned();

@@ -28,6 +28,9 @@ pub(in crate::fit) fn in_force(material: &Material, joint: &Joint, coefficients:
         *gravity_sin = per_newton_metre * gravity * phase.cos();
         *gravity_cos = per_newton_metre * gravity * phase.sin();
     }
+    if joint.rigid_body.recorded_is_exact && material.samples.rigid_body.is_some() {
+        *given_scale = 1.0;
+    }
     for (term, coefficient) in separation.terms.iter().zip(coefficients) {
         match term.kind {
             TermKind::Inertia | TermKind::ExtraInertia => *inertia += coefficient,

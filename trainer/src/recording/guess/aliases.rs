@@ -16,6 +16,7 @@ const ALIASES: &[(Quantity, &[&str])] = &[
             "theta",
             "joint_position",
             "actual_position",
+            "actual_q",
             "position_actual",
             "present_position",
             "measured_position",
@@ -39,6 +40,7 @@ const ALIASES: &[(Quantity, &[&str])] = &[
             "omega",
             "joint_velocity",
             "actual_velocity",
+            "actual_qd",
             "velocity_actual",
             "present_velocity",
             "measured_velocity",
@@ -108,18 +110,18 @@ const JOINT_WORDS: [&str; 4] = ["joint", "axis", "motor", "j"];
 
 /// What the name of a column says.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Reading {
-    pub(super) quantity: Quantity,
+pub(in crate::recording) struct Reading {
+    pub(in crate::recording) quantity: Quantity,
     /// How far down the list of names it stands: the lower, the likelier.
-    pub(super) rank: usize,
+    pub(in crate::recording) rank: usize,
     /// Which of several joints, empty where the name says none.
-    pub(super) joint: String,
+    pub(in crate::recording) joint: String,
     /// The unit in the name.
-    pub(super) unit: Option<String>,
+    pub(in crate::recording) unit: Option<String>,
 }
 
 /// Reads the name of a column.
-pub(super) fn read(name: &str) -> Option<Reading> {
+pub(in crate::recording) fn read(name: &str) -> Option<Reading> {
     if let Some(state) = JointState::of(name) {
         return Some(Reading {
             quantity: state.quantity,

@@ -1,6 +1,6 @@
 //! What the columns of a file are likely to be: a `joint.toml` that reads it, with the reason for each of its lines.
 
-mod aliases;
+pub(super) mod aliases;
 mod units;
 
 use std::fmt::Write as _;

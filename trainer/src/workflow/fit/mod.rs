@@ -118,12 +118,17 @@ impl Fitted {
     /// Why the fit may not be relied upon, where it may not.
     #[must_use]
     pub fn doubt(&self) -> Option<Error> {
-        let (code, what) = match &self.outcome.sound {
-            Soundness::Sound => return None,
-            Soundness::NotIdentifiable(what) => (&codes::NOT_IDENTIFIABLE, what),
-            Soundness::NotConverged(what) => (&codes::NOT_CONVERGED, what),
-            Soundness::NotPhysical(what) => (&codes::NOT_PHYSICAL, what),
-        };
-        Some(Error::new(code, what.clone()))
+        doubt(&self.outcome.sound)
     }
+}
+
+/// Why a fit may not be relied upon, where it may not.
+pub(in crate::workflow) fn doubt(sound: &Soundness) -> Option<Error> {
+    let (code, what) = match sound {
+        Soundness::Sound => return None,
+        Soundness::NotIdentifiable(what) => (&codes::NOT_IDENTIFIABLE, what),
+        Soundness::NotConverged(what) => (&codes::NOT_CONVERGED, what),
+        Soundness::NotPhysical(what) => (&codes::NOT_PHYSICAL, what),
+    };
+    Some(Error::new(code, what.clone()))
 }

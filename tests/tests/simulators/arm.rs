@@ -1,0 +1,59 @@
+//! The dynamics of an arm are Pinocchio's.
+
+use frikan_tests::arm::SIX_AXES;
+use frikan_trainer::arm::chain::{Chain, INERTIAL};
+use frikan_trainer::arm::dynamics::{NUMBERS, State, regressor, torques};
+use serde_json::json;
+
+use crate::programs::{json as parsed, python, script};
+
+/// A slide between two turning joints, frames turned every way.
+const MIXED: &str = r#"<robot name="r"><link name="base"/>
+    <link name="table"><inertial><origin xyz="0.1 0 0.05" rpy="0.1 0.2 0.3"/><mass value="4"/><inertia ixx="0.2" iyy="0.25" izz="0.3" ixy="0.01" ixz="0.02" iyz="0"/></inertial></link>
+    <link name="slide"><inertial><origin xyz="0 -0.1 0.2"/><mass value="2.5"/><inertia ixx="0.05" iyy="0.06" izz="0.04" ixy="0" ixz="0" iyz="0.01"/></inertial></link>
+    <link name="wrist"><inertial><origin xyz="0.05 0.02 0.1"/><mass value="1.2"/><inertia ixx="0.01" iyy="0.012" izz="0.006" ixy="-0.001" ixz="0" iyz="0"/></inertial></link>
+    <link name="tool"><inertial><origin xyz="0 0 0.03"/><mass value="0.3"/><inertia ixx="0.001" iyy="0.001" izz="0.0005" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="a" type="revolute"><origin xyz="0 0 0.3" rpy="0.2 0 0.1"/><parent link="base"/><child link="table"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="b" type="prismatic"><origin xyz="0.2 0 0.4" rpy="0.3 0.7 0"/><parent link="table"/><child link="slide"/><axis xyz="0 0.6 0.8"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+    <joint name="c" type="revolute"><origin xyz="0 0.1 0.3" rpy="1 0.2 -0.4"/><parent link="slide"/><child link="wrist"/><axis xyz="0.8 0 0.6"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="flange" type="fixed"><origin xyz="0.1 0 0.1" rpy="0 1 0"/><parent link="wrist"/><child link="tool"/></joint></robot>"#;
+
+#[test]
+fn torques_and_their_regressor_are_pinocchios() {
+    let Some(python) = python("pinocchio") else { return };
+    for urdf in [MIXED, SIX_AXES] {
+        let chain = Chain::parse(urdf, &[]).unwrap();
+        let joints = chain.len();
+        let value =
+            |index: usize, joint: usize, scale: f64| scale * (1.3 * index as f64 + 2.1 * joint as f64 + scale).sin();
+        let state =
+            |index: usize| [1.5, 2.0, 6.0].map(|scale| (0..joints).map(|joint| value(index, joint, scale)).collect());
+        let states: Vec<[Vec<f64>; 3]> = (0..8).map(state).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let [file, list] = ["arm.urdf", "states.json"].map(|name| folder.path().join(name));
+        std::fs::write(&file, urdf).unwrap();
+        std::fs::write(&list, json!(states).to_string()).unwrap();
+        let words = ["arm_dynamics.py", file.to_str().unwrap(), list.to_str().unwrap()];
+        let theirs = parsed(&script(&python, &words));
+        let names: Vec<&str> = chain.joints.iter().map(|joint| joint.name.as_str()).collect();
+        assert_eq!(theirs["joints"], json!(names));
+        let bodies: Vec<_> = chain.joints.iter().map(|joint| joint.nominal).collect();
+        for ([q, v, a], answer) in states.iter().zip(theirs["answers"].as_array().unwrap()) {
+            let state = State { position: q, velocity: v, acceleration: a };
+            let mut rows = vec![0.0; joints * joints * NUMBERS];
+            regressor(&chain, &state, &mut rows);
+            for (joint, torque) in torques(&chain, &bodies, &state).into_iter().enumerate() {
+                let wanted = answer["torques"][joint].as_f64().unwrap();
+                assert!(
+                    (torque - wanted).abs() < 1e-9 * wanted.abs().max(1.0),
+                    "{joint}: {torque}, Pinocchio {wanted}"
+                );
+                for number in 0..joints * INERTIAL {
+                    let place = joint * joints * NUMBERS + number / INERTIAL * NUMBERS + number % INERTIAL;
+                    let wanted = answer["regressor"][joint][number].as_f64().unwrap();
+                    assert!((rows[place] - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{joint} {number}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! `trainer arm`: recordings of all joints of an arm in, an image for each joint out.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::fit::{in_pool, line};
+use super::measurement::{Source, profile};
+use super::output::{Outputs, print, say};
+use super::progress::Reporter;
+use crate::compile::profile::Profile;
+use crate::error::{Error, Result, codes};
+use crate::files::{create_folder, read_text};
+use crate::fit::{Budget, Options};
+use crate::joint::ArmFile;
+use crate::workflow::arm::{FittedArm, Recorded, arm, file_name, joint_doubt};
+
+/// Largest `arm.toml` and URDF that are read, in bytes.
+const FILE_LIMIT_BYTES: u64 = 64 << 20;
+
+/// Fit bodies and friction of a whole arm and export an image for each joint.
+#[derive(Args, Clone, Debug)]
+pub struct Arm {
+    /// Recordings of all joints to learn from
+    #[arg(required = true, value_name = "RECORDING")]
+    pub recordings: Vec<PathBuf>,
+    /// Recordings that are only scored
+    #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
+    pub tests: Vec<PathBuf>,
+    /// The robot: joints, and the masses that are known of its links
+    #[arg(long, value_name = "ARM.urdf")]
+    pub urdf: PathBuf,
+    /// arm.toml: column names, drives, gravity, joints that are held
+    #[arg(long, value_name = "ARM.toml")]
+    pub joint: Option<PathBuf>,
+    /// Folder for an image of each joint, arm.json and the URDF with their friction; made where it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`
+    #[arg(long)]
+    pub split: bool,
+    /// Drive that has to have room for the images, by its name as `verify` takes it; the smallest documented one when absent
+    #[arg(long, value_name = "NAME", value_parser = profile)]
+    pub target: Option<Profile>,
+    /// Also write the result as JSON elsewhere; `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Seed of the training: one seed, one set of images
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Threads to use; all when absent. The result does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Write the images in spite of exit status 4: not identifiable, not physical or not converged
+    #[arg(long)]
+    pub force: bool,
+    /// Say nothing on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Runs the command; the exit status is 0 or, where the law of a joint may not be relied upon, 4.
+///
+/// # Errors
+/// As [`arm`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
+pub fn run(arguments: &Arm) -> Result<u8> {
+    let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
+    let in_file = |path: &Path| {
+        let path = path.display().to_string();
+        move |error: Error| error.in_file(path)
+    };
+    let urdf = text(&arguments.urdf)?;
+    let file = match &arguments.joint {
+        None => ArmFile::default(),
+        Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
+    };
+    let budget = Budget { target: arguments.target.unwrap_or_default(), ..Budget::default() };
+    let options = Options { seed: arguments.seed, budget, ..Options::default() };
+    let [recordings, tests] =
+        [&arguments.recordings, &arguments.tests].map(|paths| paths.iter().map(Source::from).collect::<Vec<_>>());
+    let recorded = Recorded { recordings: &recordings, tests: &tests, urdf: &urdf, file: &file };
+    let reporter = Reporter::new(arguments.quiet);
+    let fitted = in_pool(arguments.threads, || {
+        arm(&recorded, &options, &|joint, progress| {
+            reporter.say(&joint.map_or_else(|| line(progress), |joint| format!("{joint}: {}", line(progress))));
+        })
+    })?;
+    drop(reporter);
+    let fitted = fitted.map_err(|error| match error.code() {
+        code if *code == codes::BAD_URDF => error.in_file(arguments.urdf.display().to_string()),
+        code if *code == codes::BAD_JOINT_FILE => {
+            arguments.joint.as_ref().map_or(error.clone(), |path| error.in_file(path.display().to_string()))
+        }
+        _ => error,
+    })?;
+    write(arguments, &fitted, &urdf)?;
+    let doubts = fitted.outcome.joints.iter().filter_map(joint_doubt).collect::<Vec<_>>();
+    if !arguments.quiet {
+        let joints = fitted.outcome.joints.iter();
+        joints
+            .filter_map(|joint| Some((joint, joint_doubt(joint)?)))
+            .for_each(|(joint, doubt)| say(&format!("{}: {doubt}", joint.name)));
+    }
+    Ok(if doubts.is_empty() { 0 } else { codes::NOT_IDENTIFIABLE.class.exit_status() })
+}
+
+fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
+    create_folder(&arguments.output)?;
+    let mut outputs = Outputs::default();
+    let place = |name: &str| arguments.output.join(name);
+    let mut images = Vec::new();
+    for joint in &fitted.outcome.joints {
+        let law = joint.law.as_ref().ok().filter(|_| arguments.force || joint_doubt(joint).is_none());
+        let image = law.map(|law| (format!("{}.frk", file_name(&joint.name)), law.image.clone()));
+        images.push(image.as_ref().map(|(name, _)| name.clone()));
+        if let Some((name, bytes)) = image {
+            outputs.add(&place(&name), bytes);
+        }
+    }
+    let json = format!("{}\n", fitted.json(&images));
+    outputs.add(&place("arm.json"), json.clone());
+    outputs.add(&place("arm.urdf"), fitted.patched(urdf, arguments.force)?);
+    if arguments.split {
+        fitted.recordings().into_iter().for_each(|(name, content)| outputs.add(&place(&name), content));
+    }
+    if let Some(path) = &arguments.json {
+        outputs.add(path, json);
+    }
+    let read = arguments.recordings.iter().chain(&arguments.tests).chain([&arguments.urdf]).chain(&arguments.joint);
+    outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.write()?;
+    if arguments.json.as_deref() == Some(Path::new("-")) {
+        return Ok(());
+    }
+    print(&fitted.text(&images))
+}

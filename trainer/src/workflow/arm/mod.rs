@@ -1,0 +1,97 @@
+//! From recordings of a whole arm to a law for each joint, that tell themselves.
+
+mod fitted;
+mod json;
+mod recordings;
+mod text;
+
+use std::time::Instant;
+
+use nalgebra::Vector3;
+use serde_json::Value;
+
+use super::recordings::{Source, Warning, motion_of};
+use crate::arm::chain::Chain;
+use crate::arm::fit::{Arm, ArmProgress};
+use crate::arm::motion::Run;
+use crate::error::Result;
+use crate::export::simulator::{ModelFile, Request, Simulator, write};
+use crate::fit::Options;
+use crate::fit::model::from_bytes;
+use crate::joint::Joint;
+pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
+
+/// Fits an arm.
+///
+/// # Errors
+/// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`ArmFile::joints`], and whatever reading a recording reports.
+pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> Result<FittedArm> {
+    let start = Instant::now();
+    let mut chain = Chain::parse(of.urdf, &of.file.held)?;
+    if let Some(gravity) = of.file.gravity_m_s2 {
+        chain.gravity = Vector3::from(gravity);
+    }
+    let names: Vec<String> = chain.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints = of.file.joints(&names)?;
+    let mut warnings = Vec::new();
+    let mut load = |sources: &[Source<'_>]| {
+        sources.iter().map(|source| run(*source, &joints, &mut warnings)).collect::<Result<Vec<_>>>()
+    };
+    let (runs, tests) = (load(of.recordings)?, load(of.tests)?);
+    let outcome = crate::arm::fit::fit(&Arm { chain, joints, runs, tests }, options, progress)?;
+    Ok(FittedArm { outcome, warnings, seconds: start.elapsed().as_secs_f64(), seed: options.seed })
+}
+
+/// The joints of one recording, as their motion is safe to use.
+fn run(source: Source<'_>, joints: &[Joint], warnings: &mut Vec<Warning>) -> Result<Run> {
+    let recordings = source.read_joints(joints)?;
+    let label = recordings.first().map_or_else(String::new, |recording| recording.label.clone());
+    let mut reviewed = Vec::with_capacity(recordings.len());
+    for (recording, joint) in recordings.into_iter().zip(joints) {
+        let name = format!("{label}, joint {}", joint.name.as_deref().unwrap_or_default());
+        let (recording, noticed) = motion_of(&name, recording, joint)?;
+        warnings.extend(noticed);
+        reviewed.push(recording);
+    }
+    Run::of(&label, reviewed)
+}
+
+impl FittedArm {
+    /// The result as JSON, schema `frikan.arm/1`; `images` holds the name of the image of each joint, where one is written.
+    #[must_use]
+    pub fn json(&self, images: &[Option<String>]) -> Value {
+        json::summary(self, images)
+    }
+
+    /// The result for a terminal.
+    #[must_use]
+    pub fn text(&self, images: &[Option<String>]) -> String {
+        text::summary(self, images)
+    }
+
+    /// The URDF with Coulomb and viscous friction of the joints whose laws may be relied upon, or of all where `force` says so.
+    ///
+    /// # Errors
+    /// As [`write`].
+    pub fn patched(&self, urdf: &str, force: bool) -> Result<String> {
+        let mut text = urdf.to_owned();
+        for joint in &self.outcome.joints {
+            let Ok(law) = &joint.law else { continue };
+            if joint_doubt(joint).is_some() && !force {
+                continue;
+            }
+            let image = from_bytes(&law.image)?;
+            let into = ModelFile { text: &text, path: "", joint: &joint.name, inertia_of_model: None };
+            let torque_per_ampere = joint.torque_constant.map(|constant| constant.value);
+            let request = Request { title: &joint.name, into: Some(into), torque_per_ampere };
+            text = write(&image, Simulator::Urdf, &request)?;
+        }
+        Ok(text)
+    }
+
+    /// Recordings of each joint with the torque of the bodies beside its own, and a `joint.toml` that reads them: name of a file and content.
+    #[must_use]
+    pub fn recordings(&self) -> Vec<(String, String)> {
+        self.outcome.joints.iter().flat_map(recordings::of_joint).collect()
+    }
+}
