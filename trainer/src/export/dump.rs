@@ -86,7 +86,8 @@ mod tests {
     fn the_number_of_a_release_is_that_under_the_tag() {
         let mut release = [&golden("elbow")[..], &release_block(7)].concat();
         release.extend(KEY.tag(&release));
-        let found = |key| images(&slot(1, &release), key).remove(0);
+        let dump = slot(1, &release);
+        let found = |key| images(&dump, key).remove(0);
         assert_eq!((found(Some(&KEY)).release, found(Some(&KEY)).authentic), (7, Some(true)));
         assert_eq!((found(None).release, found(Some(&Key::new([4; 32]))).release), (0, 0));
     }
