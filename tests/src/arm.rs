@@ -73,7 +73,7 @@ pub fn tones(seconds: f64, seed: u64) -> Vec<Instant> {
     (0..(seconds * RATE_HZ) as usize).map(|row| at(row as f64 / RATE_HZ)).collect()
 }
 
-/// From point to point by polynomials of degree five, all joints at once, with a stop at each.
+/// From point to point by polynomials of degree five, all joints at once, with a stop at each; no faster than the tones.
 #[must_use]
 pub fn point_to_point(moves: usize, seed: u64) -> Vec<Instant> {
     let mut random = Random::new(seed, 0);
@@ -82,7 +82,7 @@ pub fn point_to_point(moves: usize, seed: u64) -> Vec<Instant> {
     for _ in 0..moves {
         let to = point();
         let way: [f64; JOINTS] = std::array::from_fn(|joint| to[joint] - from[joint]);
-        let seconds = 0.5 + way.iter().fold(0.0_f64, |most, way| most.max(way.abs())) / 1.2;
+        let seconds = 0.5 + way.iter().fold(0.0_f64, |most, way| most.max(way.abs())) / 0.8;
         for row in 0..(seconds * RATE_HZ) as usize {
             let s = row as f64 / RATE_HZ / seconds;
             let shape = [

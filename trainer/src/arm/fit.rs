@@ -7,7 +7,8 @@ use super::identify::{Estimate, Identified, LoadFriction, Moving, identify, less
 use super::motion::{Motion, Run, TorqueConstant, torque_of};
 use super::plan::{Plan, plan_prediction};
 use crate::error::{Error, Result, codes};
-use crate::fit::{self, Options, Progress, Stage};
+use crate::fit::outcome::Outcome as JointLaw;
+use crate::fit::{Options, Progress, Stage, fit as fit_joint};
 use crate::joint::Joint;
 use crate::recording::{Quantity, Recording};
 use crate::samples::states::{States, states};
@@ -50,7 +51,7 @@ pub struct JointOutcome {
     /// What an ampere is in torque, where the joint reports a current.
     pub torque_constant: Option<TorqueConstant>,
     /// Law, image and scores; `None` of a joint that hardly moves, with the reason.
-    pub law: std::result::Result<Box<fit::Outcome>, Error>,
+    pub law: std::result::Result<Box<JointLaw>, Error>,
     /// Its recordings with the torque of the bodies, the load that its gear transmits, and its own: those learnt from, then those of the tests.
     pub recordings: Vec<Recording>,
 }
@@ -101,7 +102,7 @@ pub fn fit(arm: &Arm, options: &Options, progress: ArmProgress<'_>) -> Result<Ou
         joint.drive.torque_constant_nm_a = None;
         let inputs = std::iter::once("velocity").chain(found.load[index].map(|_| "load_torque"));
         let options = Options { inputs: Some(inputs.map(str::to_owned).collect()), ..options.clone() };
-        let law = fit::fit(&own, &own_tests, &joint, &options, &|stage| progress(Some(name), stage)).map(Box::new);
+        let law = fit_joint(&own, &own_tests, &joint, &options, &|stage| progress(Some(name), stage)).map(Box::new);
         JointOutcome {
             name: name.clone(),
             load_friction: found.load[index],

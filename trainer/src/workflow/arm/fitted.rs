@@ -2,7 +2,7 @@
 
 use crate::arm::fit::{JointOutcome, Outcome};
 use crate::error::Error;
-use crate::fit::{self, outcome::Trace};
+use crate::fit::outcome::{Outcome as JointLaw, Trace};
 use crate::joint::ArmFile;
 use crate::workflow::fit::doubt;
 use crate::workflow::recordings::{Source, Warning};
@@ -50,7 +50,7 @@ pub fn joint_doubt(joint: &JointOutcome) -> Option<Error> {
 
 /// Share of the rows of a recording in which the joint is faster than any from which its law was learnt: there the law stands still.
 #[must_use]
-pub(super) fn beyond_trained(law: &fit::Outcome, trace: &Trace) -> f64 {
+pub(super) fn beyond_trained(law: &JointLaw, trace: &Trace) -> f64 {
     let Some(range) = law.inputs.iter().find(|input| input.name == "velocity") else { return 0.0 };
     let beyond = trace.velocity.iter().filter(|velocity| !(range.low..=range.high).contains(*velocity)).count();
     beyond as f64 / trace.velocity.len().max(1) as f64
