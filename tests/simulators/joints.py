@@ -8,8 +8,8 @@ import numpy as np
 
 # Time step of every model, s.
 STEP = 0.001
-# Steps of the real joint within one of the simulator's: its friction is stiff.
-SUBSTEPS = 5
+# Fewest steps of the real joint within one of the simulator's, and the longest of them, s: its friction is stiff.
+SUBSTEPS, FINE_STEP = 5, 2e-4
 # A row is logged every so many steps of the simulator.
 LOG_EVERY = 4
 # Actuator of the joint that is recorded.
@@ -49,6 +49,8 @@ class Pair:
     beside_actuator: dict = field(default_factory=dict)
     # Whether friction hangs on the transmitted torque, of which a simulator's friction can have the mean only.
     of_load: bool = False
+    # Time step of the simulation, s.
+    step: float = STEP
 
     @property
     def drives(self):
@@ -71,18 +73,21 @@ def references(pair, seed, t):
     return [reference(drive, seed + 100 * place, t) for place, drive in enumerate(pair.drives)]
 
 
-def simulate(pair, model, seed, seconds, friction=None):
+def simulate(pair, model, seed, seconds, friction=None, commands=None):
     """Rows of time, position, velocity, actuator torque, torque transmitted to the link and friction under the command of `seed`, one a
-    step of the controller; then position and velocity of the other joints. A `friction` acts beside that of the model.
+    step of the controller; then position and velocity of the other joints. A `friction` acts beside that of the model. `commands` are
+    positions and velocities at each step of every joint, in place of those of `seed`.
     """
-    substeps = SUBSTEPS if friction else 1
-    model.opt.timestep = STEP / substeps
+    substeps = max(SUBSTEPS, math.ceil(pair.step / FINE_STEP)) if friction else 1
+    model.opt.timestep = pair.step / substeps
+    if friction:
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     data = mujoco.MjData(model)
     dofs = [model.joint(drive.joint).dofadr[0] for drive in pair.drives]
     controls = [model.actuator(drive.actuator).id for drive in pair.drives]
     dof, armature = dofs[0], model.dof_armature[dofs[0]]
-    steps = int(seconds / STEP)
-    commands = references(pair, seed, np.arange(steps) * STEP)
+    steps = round(seconds / pair.step)
+    commands = commands or references(pair, seed, np.arange(steps) * pair.step)
     for place, (position, velocity) in zip(dofs, commands):
         data.qpos[place], data.qvel[place] = position[0], velocity[0]
     rows = np.empty((steps, 4 + 2 * len(dofs)))
@@ -96,21 +101,21 @@ def simulate(pair, model, seed, seconds, friction=None):
                 data.ctrl[control] = position[step]
         for substep in range(substeps):
             if friction:
-                data.qfrc_applied[dof] = -friction(data.qpos[dof], data.qvel[dof], transmitted, STEP / substeps)
+                data.qfrc_applied[dof] = -friction(data.qpos[dof], data.qvel[dof], transmitted, pair.step / substeps)
             mujoco.mj_step(model, data)
             lost = -(data.qfrc_applied[dof] + data.qfrc_passive[dof] + data.qfrc_constraint[dof])
             transmitted = data.qfrc_actuator[dof] - lost - armature * data.qacc[dof]
             if substep == 0:
                 own, *others = state
                 torque = data.actuator_force[controls[0]]
-                rows[step] = [step * STEP, *own, torque, transmitted, lost, *(value for other in others for value in other)]
+                rows[step] = [step * pair.step, *own, torque, transmitted, lost, *(value for other in others for value in other)]
     return rows
 
 
-def real(pair, seed, seconds):
+def real(pair, seed, seconds, commands=None):
     """The real joint: the inertia of the truth, friction of its own."""
     bare = with_attributes(pair, {**pair.truth, "frictionloss": 0.0, "damping": 0.0})
-    return simulate(pair, bare, seed, seconds, pair.friction())
+    return simulate(pair, bare, seed, seconds, pair.friction(), commands)
 
 
 def best(pair, seed, seconds):

@@ -1,6 +1,9 @@
 //! Five joints of MuJoCo and their simulations: what the diagnosis names, and how near the patched model comes to the real joint, beside the
 //! simulation with the truth and the one that MuJoCo's own `sysid` fits to the same recording.
 
+use std::path::Path;
+
+use frikan_tests::exhaustive;
 use serde_json::Value;
 
 use crate::programs::{diagnosed, export, json, numbers, python, script};
@@ -68,11 +71,58 @@ fn put_right(pair: &str, joint: &str) -> Option<PutRight> {
     let [patched, attributes] =
         ["patched.xml", "attributes.xml"].map(|file| std::fs::read_to_string(folder.join(file)).unwrap());
     println!("{pair}: {errors}\n{patched}\n{}", found.output);
+    holds_in_other_settings(&python, folder, (pair, joint));
     Some(PutRight { findings, told: found.output, errors: json(&errors), patched, attributes })
+}
+
+/// In files of other time steps, integrators and controllers the export is never worse than true attributes nor than `mjcf-patch`, and
+/// leaves what it says: one setting of two joints, or all ten of `mujoco_settings.py` of all.
+fn holds_in_other_settings(python: &Path, folder: &Path, (pair, joint): (&str, &str)) {
+    let count = match (exhaustive(), pair) {
+        (true, _) => "10",
+        (false, "elbow" | "servo") => "1",
+        (false, _) => return,
+    };
+    let at = folder.to_str().expect("a temporary folder has a plain name");
+    let count_of = script(python, &["mujoco_settings.py", "write", pair, at, count]);
+    export(folder, "better.frk --to python -o image.py");
+    for index in 0..count_of.trim().parse().unwrap() {
+        for (form, file) in [("mujoco", "patched"), ("mjcf-patch", "attributes")] {
+            let into = format!("--into setting-{index}.xml --joint-name {joint}");
+            export(folder, &format!("better.frk --to {form} {into} -o {file}-{index}.xml"));
+        }
+    }
+    let compared = json(&script(python, &["mujoco_settings.py", "compare", pair, at, count]));
+    for found in compared.as_array().unwrap() {
+        println!("{pair} {found}");
+        let [patched, plain, truth] =
+            ["patched", "attributes", "true_attributes"].map(|name| found[name].as_f64().unwrap());
+        assert!(patched < 1.05 * truth && patched < 1.001 * plain, "{pair}: {found}");
+        for stated in found["stated"].as_array().unwrap() {
+            let [stated, shown] = [0, 1].map(|place| stated[place].as_f64().unwrap());
+            near(stated, shown, 0.2, &format!("{pair}: {found}"));
+        }
+    }
 }
 
 fn near(found: f64, truth: f64, share: f64, what: &str) {
     assert!((found / truth - 1.0).abs() < share, "{what}: {found}, and {truth} is true");
+}
+
+/// The steps with which the exporter's own are compared are those of the MuJoCo that is installed.
+#[test]
+fn the_kept_steps_of_a_joint_are_those_of_mujoco() {
+    let Some(python) = python("mujoco") else { return };
+    let kept = include_str!("../../../trainer/src/export/simulator/trial/mujoco_steps.txt");
+    let printed = script(&python, &["joint_steps.py"]);
+    assert_eq!(kept.lines().count(), printed.lines().count());
+    for (kept, printed) in kept.lines().zip(printed.lines()) {
+        let near = |(kept, printed): (&str, &str)| match [kept, printed].map(|word| word.parse::<f64>().ok()) {
+            [Some(kept), Some(printed)] => (kept - printed).abs() <= 1e-7 * kept.abs().max(1e-4),
+            _ => kept == printed,
+        };
+        assert!(kept.split(' ').zip(printed.split(' ')).all(near), "{kept}\n{printed}");
+    }
 }
 
 /// A rotor of 0.2 kg m2, twice the Coulomb friction, more viscous friction, and a Stribeck peak that the simulation lacks.

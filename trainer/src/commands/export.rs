@@ -133,7 +133,8 @@ pub fn run(arguments: &Export) -> Result<()> {
     let bytes = flashed(arguments, image_bytes.clone())?;
     let place = place(arguments, bytes.len())?;
     let mut outputs = Outputs::default();
-    let for_simulator = |simulator| arguments.model_file.write(&image, simulator, &title).map(String::into_bytes);
+    let for_simulator =
+        |simulator| arguments.model_file.write((&arguments.model, &image), simulator, &title).map(String::into_bytes);
     let content = match arguments.to {
         Format::Bin => bytes.clone(),
         Format::Hex => hex::intel_hex(&bytes, place.address).into_bytes(),

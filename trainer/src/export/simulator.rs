@@ -2,6 +2,7 @@
 //!
 //! A user's own model file is patched as text: what is not told to the simulator stays as it is, byte for byte.
 
+mod actuator;
 mod body;
 mod content;
 mod edits;
@@ -10,17 +11,21 @@ mod law;
 mod mjcf;
 mod model_file;
 mod python;
+mod request;
 mod sdf;
 #[cfg(test)]
 mod tests;
+mod trial;
 mod urdf;
 mod usd;
 
 use frikan_shared::image::Image;
 
+pub use self::actuator::SimulatedActuator;
 use self::content::Content;
-use self::mjcf::Elements;
+use self::mjcf::Reads;
 pub use self::model_file::ModelFile;
+pub use self::request::{Release, Request};
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;
 
@@ -43,37 +48,54 @@ pub enum Simulator {
     Drake,
 }
 
-/// What is asked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Request<'a> {
-    /// What the image is, in half a line.
-    pub title: &'a str,
-    /// File to patch, if any.
-    pub into: Option<ModelFile<'a>>,
-    /// N m (or N) at the joint for each ampere, for a law of the current.
-    pub torque_per_ampere: Option<f64>,
-}
-
 /// The image as text for a simulator.
 ///
 /// # Errors
-/// `FRK-U001` for a law that does not depend on the velocity or is of a current without its constants, and for a file where the
-/// format takes none; `FRK-D030` with its row where the file lacks the joint or cannot be read.
+/// `FRK-U001` for a law that does not depend on the velocity or is of a current without its constants, and for a file, a simulator or
+/// an empty name where the format takes none; `FRK-D030` with its row where the file lacks the joint, has one that is no axis or bodies
+/// that are too heavy, or cannot be read.
 pub fn write(image: &Image<CELLS>, simulator: Simulator, request: &Request) -> Result<String> {
-    let content = Content::of(image, request.title, request.torque_per_ampere)?;
+    let content = Content::of(image, request)?;
+    let is_mjcf = matches!(simulator, Simulator::Mujoco | Simulator::MjcfPatch);
+    if request.release.is_some() && !is_mjcf {
+        return Err(Error::new(&codes::USAGE, "`--simulator` is for `mujoco` and `mjcf-patch`"));
+    }
+    let release = request.release.unwrap_or(Release::Mujoco4);
     match (simulator, &request.into) {
-        (Simulator::Mujoco, Some(file)) => mjcf::patched(&content, file, Elements::PassiveMotor),
-        (Simulator::MjcfPatch, Some(file)) => mjcf::patched(&content, file, Elements::Joint),
+        (Simulator::Mujoco, Some(file)) => mjcf::patched(&content, file, reads(release), told(release)),
+        (Simulator::MjcfPatch, Some(file)) => {
+            mjcf::patched(&content, file, Reads { passive_motors: false, ..reads(release) }, told(release))
+        }
         (Simulator::Mujoco | Simulator::MjcfPatch, None) => Ok(mjcf::default_class(&content)),
         (Simulator::Urdf, Some(file)) => urdf::patched(&content, file),
         (Simulator::Urdf, None) => Ok(urdf::joint(&content)),
         (Simulator::Sdf, Some(file)) => sdf::patched(&content, file),
         (Simulator::Sdf, None) => Ok(sdf::joint(&content)),
-        (Simulator::Usd, file) => Ok(usd::layer(&content, file.as_ref())),
-        (Simulator::Isaac, None) => Ok(python::isaac(&content)),
-        (Simulator::Drake, None) => Ok(python::drake(&content)),
+        (Simulator::Usd, file) => usd::layer(&content, file.as_ref()),
+        (Simulator::Isaac, None) => python::isaac(&content),
+        (Simulator::Drake, None) => python::drake(&content),
         (Simulator::Isaac | Simulator::Drake, Some(_)) => {
             Err(Error::new(&codes::USAGE, "this form is Python code, which goes into no model file"))
+        }
+    }
+}
+
+/// What a simulator of the MuJoCo family reads.
+fn reads(release: Release) -> Reads {
+    let is_mujoco_4 = release == Release::Mujoco4;
+    Reads { powers: is_mujoco_4, passive_motors: is_mujoco_4 }
+}
+
+/// What a file that is written for it says of that.
+fn told(release: Release) -> &'static str {
+    match release {
+        Release::Mujoco4 => "",
+        Release::Mujoco3 => " Written for MuJoCo 3: attributes that all of its versions read.",
+        Release::Mjx => {
+            " Written for MJX, which has no passive motors and leaves damping beyond the first number out: MJX itself was not run."
+        }
+        Release::Newton => {
+            " Written for Newton with the solver of MuJoCo: Newton itself was not run, and its other solvers step otherwise than was simulated."
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use frikan_shared::image::Image;
 
+use crate::commands::measurement::with_identified;
 use crate::error::{Result, codes};
-use crate::export::simulator::{ModelFile, Request, Simulator, write};
+use crate::export::simulator::{ModelFile, Release, Request, SimulatedActuator, Simulator, write};
 use crate::files;
 use crate::fit::CELLS;
 use crate::joint::Joint;
@@ -20,15 +21,36 @@ pub struct ModelFileArguments {
     /// Model file of a simulator, for `mujoco`, `mjcf-patch`, `urdf`, `sdf`, `usd`: written with the joint as identified, all else as it is
     #[arg(long, value_name = "MODEL_FILE", requires = "joint_name")]
     pub into: Option<PathBuf>,
-    /// Joint of the model file
-    #[arg(long, value_name = "NAME", requires = "into")]
+    /// Joint of the model file, or the name that the joint has in the simulator, for `isaac` and `drake`
+    #[arg(long, value_name = "NAME")]
     pub joint_name: Option<String>,
     /// Inertia of the model file's bodies about the joint without its armature, kg m2 (kg); for MJCF read from the file where it says it
     #[arg(long, value_name = "VALUE", requires = "into", value_parser = inertia)]
     pub inertia_of_model: Option<f64>,
-    /// joint.toml: torque constant and gear ratio, for a law of the current
+    /// Which simulator MJCF is written for: only what it reads [default: mujoco4]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub simulator: Option<ForSimulator>,
+    /// Stiffness and damping of the controller that moves the joint, N m/rad and N m s/rad (N/m, N s/m), as `KP,KV`, with which forms of MuJoCo are
+    /// tried; where nothing is said, a `position` actuator of the file, or a soft and a stiff controller
+    #[arg(long, value_name = "KP,KV", requires = "into", value_parser = gains)]
+    pub gains: Option<[f64; 2]>,
+    /// joint.toml: torque constant and gear ratio, for a law of the current; `[actuator]`, of which simulators of the MuJoCo family and Isaac Lab
+    /// get gains and limit, with what `fit` identified of it beside the image
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,
+}
+
+/// A simulator of the MuJoCo family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ForSimulator {
+    /// Any MuJoCo 3
+    Mujoco3,
+    /// MuJoCo 4.0
+    Mujoco4,
+    /// MJX
+    Mjx,
+    /// Newton
+    Newton,
 }
 
 impl ModelFileArguments {
@@ -36,12 +58,21 @@ impl ModelFileArguments {
     ///
     /// # Errors
     /// As [`write`], and `FRK-I...` or `FRK-D004` where the file cannot be read.
-    pub(super) fn write(&self, image: &Image<CELLS>, simulator: Simulator, title: &str) -> Result<String> {
+    pub(super) fn write(
+        &self,
+        (model, image): (&Path, &Image<CELLS>),
+        simulator: Simulator,
+        title: &str,
+    ) -> Result<String> {
         let joint = self.joint.as_deref().map(Joint::load).transpose()?;
+        let joint = joint.map(|joint| with_identified(joint, model)).transpose()?;
         let path = self.into.as_ref().map(|path| path.display().to_string());
         let text = match &self.into {
             // A stage may be binary; the layer only refers to it.
-            Some(path) if simulator == Simulator::Usd => files::open(path).map(|_| String::new())?,
+            Some(path) if simulator == Simulator::Usd => match files::read_text(path, SIZE_LIMIT_BYTES) {
+                Err(error) if error.code() == &codes::NOT_UTF8 => String::new(),
+                text => text?,
+            },
             Some(path) => files::read_text(path, SIZE_LIMIT_BYTES)?,
             None => String::new(),
         };
@@ -50,9 +81,20 @@ impl ModelFileArguments {
             path,
             joint,
             inertia_of_model: self.inertia_of_model,
+            gains: self.gains,
         });
+        let takes_actuator = matches!(simulator, Simulator::Mujoco | Simulator::MjcfPatch | Simulator::Isaac);
+        let with_actuator = joint.as_ref().filter(|_| takes_actuator);
+        let actuator = with_actuator.map(SimulatedActuator::of).transpose()?.flatten();
         let torque_per_ampere = joint.and_then(|joint| joint.drive.joint_torque_per_ampere());
-        let request = Request { title, into, torque_per_ampere };
+        let release = self.simulator.map(|simulator| match simulator {
+            ForSimulator::Mujoco3 => Release::Mujoco3,
+            ForSimulator::Mujoco4 => Release::Mujoco4,
+            ForSimulator::Mjx => Release::Mjx,
+            ForSimulator::Newton => Release::Newton,
+        });
+        let name = self.joint_name.as_deref().filter(|_| into.is_none());
+        let request = Request { title, into, torque_per_ampere, joint: name, release, actuator };
         write(image, simulator, &request).map_err(|error| match &path {
             Some(path) if error.code() == &codes::BAD_MODEL_FILE => error.in_file(path),
             _ => error,
@@ -69,5 +111,15 @@ fn inertia(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err("a finite number, at least 0, is expected".to_owned()),
+    }
+}
+
+fn gains(text: &str) -> std::result::Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
+    match numbers[..] {
+        [kp, kv] if kp > 0.0 && kv >= 0.0 && kp.is_finite() && kv.is_finite() => Ok([kp, kv]),
+        _ => {
+            Err("two numbers are expected, such as 200,15: a stiffness above 0 and a damping of at least 0".to_owned())
+        }
     }
 }

@@ -5,15 +5,18 @@ use frikan_shared::image::Image;
 use frikan_shared::model::{Law, RigidBody};
 use frikan_shared::units::Unit;
 
-use super::form::Form;
+use super::actuator::SimulatedActuator;
+use super::form::{Form, WORTH_IT};
 use super::law::{FrictionCurve, Load, of_velocity};
+use super::request::Request;
+use super::trial::IdentifiedJoint;
 use crate::error::{Error, Result, codes};
 use crate::figures::digits;
 use crate::fit::CELLS;
 use crate::markup::escape;
 
-/// Share of the error that a richer form has to take off a simpler one to be worth its parameters.
-const WORTH_IT: f64 = 0.9;
+/// Share by which bodies may seem heavier than the identified inertia and still be as heavy: what the inertia of recordings is off by.
+const SAME_INERTIA: f64 = 0.05;
 
 /// Share of the law below which an error is none: fewer digits than recordings determine.
 const NEGLIGIBLE: f64 = 1e-2;
@@ -22,7 +25,7 @@ const NEGLIGIBLE: f64 = 1e-2;
 #[derive(Debug)]
 pub(super) struct Content<'a> {
     pub(super) title: &'a str,
-    /// Name of the joint in the image; may be empty.
+    /// Name of the joint as asked for, or in the image; may be empty.
     pub(super) joint: &'a str,
     pub(super) is_linear: bool,
     pub(super) curve: FrictionCurve,
@@ -32,6 +35,8 @@ pub(super) struct Content<'a> {
     effects: &'a [Effect],
     torque_per_unit: f64,
     has_other_inputs: bool,
+    /// What drives the joint, where it does not put out the torque that it is told.
+    pub(super) actuator: Option<SimulatedActuator>,
 }
 
 /// A cogging torque, `amplitude sin(order q + phase)`, that the actuator has to add.
@@ -43,12 +48,12 @@ pub(super) struct Cogging {
 }
 
 impl<'a> Content<'a> {
-    /// An image for a simulator; `torque_per_ampere` N m (N) at the joint for each ampere of a law of the current.
+    /// An image for a simulator.
     ///
     /// # Errors
     /// `FRK-U001` for a law that does not depend on the velocity, or of a current without its constants.
-    pub(super) fn of(image: &'a Image<CELLS>, title: &'a str, torque_per_ampere: Option<f64>) -> Result<Self> {
-        let model = &image.model;
+    pub(super) fn of(image: &'a Image<CELLS>, request: &Request<'a>) -> Result<Self> {
+        let (model, title, torque_per_ampere) = (&image.model, request.title, request.torque_per_ampere);
         let is_linear = model.inputs.iter().any(|input| input.unit == Unit::MetrePerSecond);
         let torque_per_unit = match (model.output_unit, torque_per_ampere) {
             (Unit::NewtonMetre | Unit::Newton, _) => 1.0,
@@ -66,7 +71,7 @@ impl<'a> Content<'a> {
         let curve = FrictionCurve::of(model, torque_per_unit)?;
         Ok(Self {
             title,
-            joint: image.provenance.joint.as_str(),
+            joint: request.joint.unwrap_or(image.provenance.joint.as_str()),
             is_linear: is_linear || model.output_unit == Unit::Newton,
             coulomb_viscous: Form::coulomb_viscous(&curve),
             body: RigidBody {
@@ -79,6 +84,7 @@ impl<'a> Content<'a> {
             curve,
             effects: &model.effects,
             torque_per_unit,
+            actuator: request.actuator,
             has_other_inputs: model.inputs.len() > 1 && matches!(model.law, Law::Network(_) | Law::Expression(_)),
         })
     }
@@ -94,9 +100,41 @@ impl<'a> Content<'a> {
         Some(f64::from(self.body.inertia) + given).filter(|inertia| *inertia > 0.0)
     }
 
-    /// What the bodies lack of the identified inertia; negative where they have too much.
-    pub(super) fn armature(&self, bodies: f64) -> Option<f64> {
-        self.inertia_with(bodies).map(|inertia| inertia - bodies)
+    /// What the bodies lack of the identified inertia, at least 0; `None` where the image has no inertia.
+    ///
+    /// # Errors
+    /// `FRK-D030` where the bodies have more than was identified, which no armature takes away.
+    pub(super) fn armature(&self, bodies: f64) -> Result<Option<f64>> {
+        let Some(inertia) = self.inertia_with(bodies) else { return Ok(None) };
+        let lack = inertia - bodies;
+        if lack < -SAME_INERTIA * inertia {
+            let message = format!(
+                "the bodies have {} {unit} about this joint and {} {unit} were identified, link and rotor together: no armature takes inertia away, so the bodies are too heavy or the recording was of another load",
+                digits(bodies),
+                digits(inertia),
+                unit = self.inertia_unit(),
+            );
+            return Err(Error::new(&codes::BAD_MODEL_FILE, message));
+        }
+        Ok(Some(lack.max(0.0)))
+    }
+
+    /// The joint as identified, on an inertia, for a trial.
+    pub(super) fn identified(&self, inertia: f64) -> IdentifiedJoint {
+        let (top, mut friction) = (self.curve.top(), self.curve.table.clone());
+        // What yields comes back through its own elements.
+        let cells = (friction.len() - 1) as f64;
+        for (torque, width) in self.yielding() {
+            for (place, friction) in friction.iter_mut().enumerate() {
+                *friction -= torque * (top * (2.0 * place as f64 / cells - 1.0) / width).tanh();
+            }
+        }
+        IdentifiedJoint { inertia, friction, top, presliding: self.presliding() }
+    }
+
+    /// Units of the torque and the velocity.
+    pub(super) fn units(&self) -> [&'static str; 2] {
+        if self.is_linear { ["N", "m/s"] } else { ["N m", "rad/s"] }
     }
 
     /// The nearest form with damping in powers of the velocity, where it is worth them.
@@ -135,12 +173,29 @@ impl<'a> Content<'a> {
 
     /// Torque for each radian (metre) of presliding at a reversal; `None` without such a term.
     pub(super) fn presliding_stiffness(&self) -> Option<f64> {
-        self.effects.iter().find_map(|effect| match effect {
-            Effect::Presliding { elements, .. } => {
-                Some(self.torque_per_unit * elements.iter().map(|e| f64::from(e.torque / e.distance)).sum::<f64>())
+        let elements = self.presliding();
+        (!elements.is_empty()).then(|| elements.iter().map(|[torque, distance]| torque / distance).sum())
+    }
+
+    /// Torque of presliding, N m (N), and the velocity over which its sign is smoothed.
+    fn yielding(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.effects.iter().filter_map(|effect| match effect {
+            Effect::Presliding { elements, smoothing_velocity } => {
+                let torque: f32 = elements.iter().map(|element| element.torque).sum();
+                Some((self.torque_per_unit * f64::from(torque), f64::from(*smoothing_velocity)))
             }
             _ => None,
         })
+    }
+
+    /// Torque and distance of each element of presliding, N m and rad (N and m).
+    fn presliding(&self) -> Vec<[f64; 2]> {
+        let elements = self.effects.iter().filter_map(|effect| match effect {
+            Effect::Presliding { elements, .. } => Some(elements.iter()),
+            _ => None,
+        });
+        let scaled = |torque: f32| self.torque_per_unit * f64::from(torque);
+        elements.flatten().map(|element| [scaled(element.torque), f64::from(element.distance)]).collect()
     }
 
     /// Stiffness and rest position of a spring; `None` without one or where it pushes away.
@@ -176,7 +231,7 @@ impl<'a> Content<'a> {
 
     /// Title, form and its error, and what is left out.
     pub(super) fn remark(&self, form: &Form, held: impl Fn(&Effect) -> bool) -> String {
-        let [torque, velocity] = if self.is_linear { ["N", "m/s"] } else { ["N m", "rad/s"] };
+        let [torque, velocity] = self.units();
         let error = form.deviation(&self.curve);
         let mut text = format!(
             "{}. Friction from {} to {} {velocity}: this form leaves {} {torque} rms, {} {torque} at most, of {} {torque} rms.",

@@ -4,6 +4,9 @@ use super::law::FrictionCurve;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::root_mean_square;
 
+/// Share of the error that a richer form leaves of a simpler one's where it is worth its parameters.
+pub(super) const WORTH_IT: f64 = 0.9;
+
 /// Stribeck velocities that are tried, each a step above the last.
 const STRIBECK_VELOCITIES: usize = 48;
 

@@ -11,6 +11,9 @@ use crate::fit::HostModel;
 /// Velocities of each direction at which the law is asked: thin enough for a Stribeck peak of a hundredth of the range.
 const VELOCITIES: usize = 1000;
 
+/// The same of the table for a trial, which follows the law through rest.
+const TABLE_VELOCITIES: usize = 10_000;
+
 /// Share of the largest torque beyond the viscous part at which a smoothed sign counts as risen.
 const RISEN: f64 = 0.9;
 
@@ -26,6 +29,9 @@ pub(super) struct FrictionCurve {
     pub(super) offset: f64,
     /// Speed above which the smoothed sign of the law has risen; below it a simulator's own friction at rest stands in.
     pub(super) risen: f64,
+    /// The torque at equal distances of the velocity from minus to plus the largest speed; a direction that is not trained is taken to
+    /// be as the other.
+    pub(super) table: Vec<f64>,
 }
 
 impl FrictionCurve {
@@ -46,17 +52,25 @@ impl FrictionCurve {
             .filter(|velocity| (low..=high).contains(velocity))
             .collect();
         let load = Load::of(model);
-        let torque_at = |velocity: &f32| {
+        let mut torque_at = |velocity: &f32| {
             at[place] = *velocity;
             let effects = model.effects.iter().filter_map(|effect| of_velocity(effect, f64::from(*velocity), load));
             torque_per_unit * (f64::from(evaluate(model, &at)) + effects.sum::<f64>())
         };
-        let mut torque: Vec<f64> = velocities.iter().map(torque_at).collect();
+        let mut torque: Vec<f64> = velocities.iter().map(&mut torque_at).collect();
         let offset = common(&velocities, &torque);
         torque.iter_mut().for_each(|torque| *torque -= offset);
         let velocity: Vec<f64> = velocities.iter().map(|velocity| f64::from(*velocity)).collect();
         let risen = risen(&velocity, &torque);
-        Ok(Self { velocity, torque, offset, risen })
+        let mut table = vec![0.0; 2 * TABLE_VELOCITIES + 1];
+        for place in 1..=TABLE_VELOCITIES {
+            let speed = place as f32 / TABLE_VELOCITIES as f32 * fastest;
+            let forward = (speed <= high).then(|| torque_at(&speed) - offset);
+            let backward = (-speed >= low).then(|| torque_at(&-speed) - offset);
+            table[TABLE_VELOCITIES + place] = forward.or(backward.map(|torque| -torque)).unwrap_or(0.0);
+            table[TABLE_VELOCITIES - place] = backward.or(forward.map(|torque| -torque)).unwrap_or(0.0);
+        }
+        Ok(Self { velocity, torque, offset, risen, table })
     }
 
     /// Places above the speed at which the law has risen.

@@ -15,6 +15,8 @@ pub struct ModelFile<'a> {
     pub joint: &'a str,
     /// Inertia of its bodies about the joint, kg m2 (kg along a linear axis), where it is given.
     pub inertia_of_model: Option<f64>,
+    /// Gains of the controller that moves the joint, N m/rad and N m s/rad (N/m and N s/m), where they are given.
+    pub gains: Option<[f64; 2]>,
 }
 
 impl<'a> ModelFile<'a> {
@@ -26,6 +28,12 @@ impl<'a> ModelFile<'a> {
 
     /// The joint among `joints`.
     pub(super) fn find<'n, 'i: 'n>(&self, joints: impl Iterator<Item = Node<'n, 'i>> + Clone) -> Result<Node<'n, 'i>> {
+        if self.joint.is_empty() {
+            return Err(Error::new(
+                &codes::BAD_MODEL_FILE,
+                "`--joint-name` is empty: it has to be the name of a joint",
+            ));
+        }
         let found = joints.clone().find(|node| node.attribute("name") == Some(self.joint));
         found.ok_or_else(|| {
             let names: Vec<&str> = joints.filter_map(|node| node.attribute("name")).collect();

@@ -1,6 +1,7 @@
 //! Python code for simulators that are set up in Python: an actuator of Isaac Lab, and a force element of Drake.
 
 use super::content::Content;
+use crate::error::{Error, Result, codes};
 use crate::figures::digits;
 
 /// Widest line of a comment.
@@ -9,11 +10,20 @@ const WIDTH: usize = 110;
 /// Speeds of a table, each a share of the largest, thinner towards zero as friction needs it.
 const TABLE_ROWS: usize = 64;
 
+/// What the file of Isaac Lab says of how it was checked.
+const NOT_RUN: &str = " Isaac Lab was not run with this file.";
+
 /// An `ImplicitActuatorCfg` of Isaac Lab with the friction of PhysX, and the law as a table for an actuator of the user's own.
-pub(super) fn isaac(content: &Content) -> String {
+pub(super) fn isaac(content: &Content) -> Result<String> {
+    named(content)?;
     let (form, static_friction) = (content.coulomb_viscous, content.static_friction());
     let name = name(content);
     let (velocity, torque) = table(content);
+    let gains = content.actuator.and_then(|actuator| actuator.gains()).map(|gains| gains.map(|gain| gain as f32));
+    let limit = content.actuator.and_then(|actuator| actuator.limit);
+    let [stiffness, damping] =
+        gains.map_or_else(|| [(); 2].map(|()| "None".to_owned()), |gains| gains.map(|gain| gain.to_string()));
+    let limit = limit.map_or_else(String::new, |limit| format!("    effort_limit_sim={},\n", limit as f32));
     let armature = match content.inertia() {
         Some(inertia) => format!(
             "    armature=None,  # identified inertia {} with the link: what of it the bodies of the asset lack\n",
@@ -21,9 +31,9 @@ pub(super) fn isaac(content: &Content) -> String {
         ),
         None => String::new(),
     };
-    format!(
+    Ok(format!(
         "{}import torch\nfrom isaaclab.actuators import ImplicitActuatorCfg\n\n\
-         {name}_actuator = ImplicitActuatorCfg(\n    joint_names_expr=[\"{}\"],\n    stiffness=None,\n    damping=None,\n{armature}    \
+         {name}_actuator = ImplicitActuatorCfg(\n    joint_names_expr=[\"{}\"],\n    stiffness={stiffness},\n    damping={damping},\n{limit}{armature}    \
          friction={},\n    dynamic_friction={},\n    viscous_friction={},\n)\n\n\
          # The law itself, for an explicit actuator: subtract friction(joint_vel) from the computed effort and leave the three above at 0.\n\
          {name}_velocity = torch.tensor({velocity})\n{name}_torque = torch.tensor({torque})\n\n\n\
@@ -34,19 +44,32 @@ pub(super) fn isaac(content: &Content) -> String {
          v0, v1 = {name}_velocity[i - 1], {name}_velocity[i]\n    \
          t0, t1 = {name}_torque[i - 1], {name}_torque[i]\n    \
          return t0 + (t1 - t0) * (v - v0) / (v1 - v0)\n",
-        comment(content, &content.remark(&form, |_| false)),
+        comment(
+            content,
+            &(content.remark(&form, |_| false)
+                + &content.actuator.map_or_else(String::new, |of| of.told(false))
+                + NOT_RUN)
+        ),
         quoted(content.joint),
         static_friction as f32,
         form.coulomb as f32,
         form.damping[0] as f32,
-    )
+    ))
+}
+
+/// # Errors
+/// `FRK-U001` for a joint without a name, which Python code has to have.
+fn named(content: &Content) -> Result<()> {
+    let message = "the image has no name of its joint: give `--joint-name`, as the simulator has it";
+    if content.joint.is_empty() { Err(Error::new(&codes::USAGE, message)) } else { Ok(()) }
 }
 
 /// A function that puts the joint's rotor inertia and viscous damping into a plant of Drake, and a system with the rest of the law.
-pub(super) fn drake(content: &Content) -> String {
+pub(super) fn drake(content: &Content) -> Result<String> {
+    named(content)?;
     let (velocity, torque) = table(content);
     let inertia = content.inertia().map_or_else(|| "None".to_owned(), |inertia| (inertia as f32).to_string());
-    format!(
+    Ok(format!(
         "{}import numpy as np\nfrom pydrake.systems.framework import LeafSystem\n\n\
          JOINT = \"{}\"\nIDENTIFIED_INERTIA = {inertia}  # kg m2 or kg, link and rotor\n\
          VELOCITY = np.array({velocity})\nTORQUE = np.array({torque})\n\n\n\
@@ -63,7 +86,7 @@ pub(super) fn drake(content: &Content) -> String {
          output[0] = -np.interp(v, VELOCITY, TORQUE)\n",
         comment(content, &held_by_table(content)),
         quoted(content.joint),
-    )
+    ))
 }
 
 /// What a table of the law holds: everything over velocity.

@@ -61,7 +61,7 @@ fn values(content: &Content) -> Vec<(&'static str, f32)> {
 
 fn remark(content: &Content) -> String {
     let held = |effect: &Effect| matches!(effect, Effect::Spring { stiffness, .. } if *stiffness > 0.0);
-    let mut text = content.remark(&content.coulomb_viscous, held);
+    let mut text = content.remark(&content.coulomb_viscous, held) + " Gazebo was not run with this file.";
     if let Some(inertia) = content.inertia() {
         let _ = write!(
             text,

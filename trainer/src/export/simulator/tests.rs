@@ -8,7 +8,7 @@ use frikan_shared::model::{Input, Law, Model, Provenance, RigidBody};
 use frikan_shared::units::{Quantity, Unit};
 
 /// `coulomb tanh(1000 v) + viscous v` from -2 to 2 rad/s or m/s.
-fn image_of(coulomb: f64, viscous: f64, output_unit: Unit) -> Image<CELLS> {
+pub(super) fn image_of(coulomb: f64, viscous: f64, output_unit: Unit) -> Image<CELLS> {
     let times = |factor: f64, of: Formula| Formula::Constant(factor).join(Operator::Multiply, of);
     let sign = times(1000.0, Formula::Input(0)).apply(Function::Tanh);
     let law = times(coulomb, sign).join(Operator::Add, times(viscous, Formula::Input(0)));
@@ -27,7 +27,7 @@ fn image_of(coulomb: f64, viscous: f64, output_unit: Unit) -> Image<CELLS> {
 }
 
 /// Stribeck friction, and a ripple of 12 periods a turn.
-fn rich_image() -> Image<CELLS> {
+pub(super) fn rich_image() -> Image<CELLS> {
     let mut image = image_of(2.0, 1.2, Unit::NewtonMetre);
     let stribeck = Effect::Stribeck { amplitude: 1.0, velocity: 0.1, exponent: 2.0, smoothing_velocity: 0.001 };
     let line = Harmonic { order: 12.0, cosine: 0.0, sine: 0.3 };
@@ -37,26 +37,34 @@ fn rich_image() -> Image<CELLS> {
     image
 }
 
-const TITLE: &str = "Frikan friction image of joint \"a--b\"";
+pub(super) const REQUEST: Request = Request {
+    title: "Frikan friction image of joint \"a--b\"",
+    into: None,
+    torque_per_ampere: None,
+    joint: None,
+    release: None,
+    actuator: None,
+};
 
-fn written(image: &Image<CELLS>, simulator: Simulator, into: Option<(&str, &str)>) -> Result<String> {
-    let into = into.map(|(text, joint)| ModelFile { text, path: "robot.usda", joint, inertia_of_model: None });
-    write(image, simulator, &Request { title: TITLE, into, torque_per_ampere: None })
+pub(super) fn written(image: &Image<CELLS>, simulator: Simulator, into: Option<(&str, &str)>) -> Result<String> {
+    let into =
+        into.map(|(text, joint)| ModelFile { text, path: "robot.usda", joint, inertia_of_model: None, gains: None });
+    write(image, simulator, &Request { into, ..REQUEST })
 }
 
 /// The attributes of the only element of that name.
-fn attributes<const N: usize>(xml: &str, element: &str, names: [&str; N]) -> [String; N] {
+pub(super) fn attributes<const N: usize>(xml: &str, element: &str, names: [&str; N]) -> [String; N] {
     let document = roxmltree::Document::parse(xml).unwrap_or_else(|error| panic!("{error}: {xml}"));
     let mut found = document.descendants().filter(|node| node.has_tag_name(element) && node.has_attribute(names[0]));
     let node = found.next().unwrap_or_else(|| panic!("no {element}: {xml}"));
     names.map(|name| node.attribute(name).unwrap_or_else(|| panic!("no {name}: {xml}")).to_owned())
 }
 
-fn near(text: &str, value: f32) {
+pub(super) fn near(text: &str, value: f32) {
     assert!((text.parse::<f32>().unwrap() - value).abs() < 2e-3 * value.abs().max(1.0), "{text} is not {value}");
 }
 
-const MJCF: &str = r#"<mujoco>
+pub(super) const MJCF: &str = r#"<mujoco>
   <option timestep="0.001"/>
   <worldbody>
     <!-- the arm -->
@@ -100,7 +108,7 @@ fn without_a_file_every_format_gets_coulomb_and_viscous_friction() {
 #[test]
 fn what_a_simulator_cannot_hold_never_drives_the_joint() {
     let image = image_of(3.0, -0.7, Unit::NewtonMetre);
-    let content = Content::of(&image, TITLE, None).unwrap();
+    let content = Content::of(&image, &REQUEST).unwrap();
     let falling = content.coulomb_viscous;
     assert_eq!(falling.damping, [0.0; 3]);
     assert!((falling.coulomb - 2.3).abs() < 0.05, "the mean over the speeds: {falling:?}");
@@ -113,7 +121,7 @@ fn a_law_of_the_current_needs_the_constants_of_the_drive() {
     let image = image_of(3.0, 0.7, Unit::Ampere);
     let error = written(&image, Simulator::Mujoco, None).unwrap_err();
     assert!(error.to_string().contains("torque_constant_Nm_A"), "{error}");
-    let request = Request { title: TITLE, into: None, torque_per_ampere: Some(2.0) };
+    let request = Request { torque_per_ampere: Some(2.0), ..REQUEST };
     let xml = write(&image, Simulator::Mujoco, &request).unwrap();
     let [coulomb, viscous] = attributes(&xml, "joint", ["frictionloss", "damping"]);
     near(&coulomb, 6.0);
@@ -144,33 +152,6 @@ fn a_patch_changes_the_joint_and_nothing_else() {
     );
 }
 
-#[test]
-fn stribeck_friction_and_ripple_become_passive_motors() {
-    let image = rich_image();
-    let patched = written(&image, Simulator::Mujoco, Some((MJCF, "elbow"))).unwrap();
-    let [coulomb, viscous] = attributes(&patched, "joint", ["frictionloss", "damping"]);
-    assert_eq!(coulomb, "0");
-    near(&viscous, 1.2);
-    let [lugre, input] = attributes(&patched, "dcmotor", ["lugre", "input"]);
-    assert_eq!(input, "none");
-    let numbers: Vec<f32> = lugre.split(' ').map(|word| word.parse().unwrap()).collect();
-    assert!(
-        (numbers[2] - 2.0).abs() < 0.02 && (numbers[3] - 3.0).abs() < 0.1 && (numbers[4] - 0.1).abs() < 0.01,
-        "{lugre}"
-    );
-    let [cogging, gear] = attributes(&patched, "dcmotor", ["cogging", "gear"]);
-    near(&gear, 12.0);
-    near(cogging.split(' ').next().unwrap(), 0.3 / 12.0);
-    assert!(!patched.contains("Left out"), "{patched}");
-    let again = written(&image, Simulator::Mujoco, Some((&patched, "elbow"))).unwrap();
-    assert_eq!(again, patched, "once more is the same");
-    // Without them, the motors of before go.
-    let plain = written(&image_of(2.0, 1.2, Unit::NewtonMetre), Simulator::Mujoco, Some((&patched, "elbow"))).unwrap();
-    assert!(!plain.contains("dcmotor"), "{plain}");
-    let classic = written(&image, Simulator::MjcfPatch, Some((MJCF, "elbow"))).unwrap();
-    assert!(classic.contains("Left out: position ripple"), "{classic}");
-}
-
 /// A constant torque that the law has of both directions alike and the rigid body takes back is none, and a load that drives and is
 /// driven differently is inertia.
 #[test]
@@ -187,7 +168,7 @@ fn what_law_and_rigid_body_share_is_taken_together() {
         smoothing_velocity: 0.01,
     };
     image.model.effects = heapless::Vec::from_slice(&[lifted, load]).unwrap();
-    let content = Content::of(&image, TITLE, None).unwrap();
+    let content = Content::of(&image, &REQUEST).unwrap();
     assert!(content.body.offset.abs() < 1e-3, "{}", content.body.offset);
     assert!((content.coulomb_viscous.coulomb - 3.0).abs() < 2e-3, "{:?}", content.coulomb_viscous);
     assert!((content.inertia().unwrap() - 0.6).abs() < 1e-6);
@@ -261,9 +242,9 @@ fn urdf_sdf_and_usd_keep_the_file() {
 fn a_correction_of_a_given_rigid_body_is_the_armature() {
     let mut image = image_of(3.0, 0.7, Unit::NewtonMetre);
     image.model.rigid_body = RigidBody { inertia: 0.12, given_scale: 1.0, ..RigidBody::default() };
-    let content = Content::of(&image, TITLE, None).unwrap();
+    let content = Content::of(&image, &REQUEST).unwrap();
     assert_eq!(content.inertia(), None, "of link and rotor it says nothing");
-    assert!((content.armature(0.3).unwrap() - 0.12).abs() < 1e-6);
+    assert!((content.armature(0.3).unwrap().unwrap() - 0.12).abs() < 1e-6);
     let patched = written(&image, Simulator::MjcfPatch, Some((MJCF, "elbow"))).unwrap();
     let [armature] = attributes(&patched, "joint", ["armature"]);
     near(&armature, 0.12);

@@ -37,7 +37,8 @@ pub(super) fn patched(content: &Content, file: &ModelFile) -> Result<String> {
         }
         None => edits.append_child(joint, &dynamics(content)),
     }
-    edits.set_remark(joint, &remark(content, file.inertia_of_model));
+    let armature = file.inertia_of_model.map(|bodies| content.armature(bodies)).transpose()?.flatten();
+    edits.set_remark(joint, &remark(content, armature));
     Ok(edits.apply())
 }
 
@@ -51,15 +52,13 @@ fn dynamics(content: &Content) -> String {
     format!("<dynamics friction=\"{friction}\" damping=\"{damping}\"/>")
 }
 
-fn remark(content: &Content, inertia_of_model: Option<f64>) -> String {
+fn remark(content: &Content, lack: Option<f64>) -> String {
     let mut text = content.remark(&content.coulomb_viscous, |_| false);
     if let Some(inertia) = content.inertia() {
         let unit = content.inertia_unit();
         text += &format!(" Identified inertia {} {unit}, link and rotor", digits(inertia));
-        text += &match inertia_of_model {
-            Some(bodies) => {
-                format!(": the {} {unit} that the bodies lack have no place in this format.", digits(inertia - bodies))
-            }
+        text += &match lack {
+            Some(lack) => format!(": the {} {unit} that the bodies lack have no place in this format.", digits(lack)),
             None => ": what of it the bodies lack has no place in this format.".to_owned(),
         };
     }

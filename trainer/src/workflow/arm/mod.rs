@@ -81,9 +81,16 @@ impl FittedArm {
                 continue;
             }
             let image = from_bytes(&law.image)?;
-            let into = ModelFile { text: &text, path: "", joint: &joint.name, inertia_of_model: None };
+            let into = ModelFile { text: &text, path: "", joint: &joint.name, inertia_of_model: None, gains: None };
             let torque_per_ampere = joint.torque_constant.map(|constant| constant.value);
-            let request = Request { title: &joint.name, into: Some(into), torque_per_ampere };
+            let request = Request {
+                title: &joint.name,
+                into: Some(into),
+                torque_per_ampere,
+                joint: None,
+                release: None,
+                actuator: None,
+            };
             text = write(&image, Simulator::Urdf, &request)?;
         }
         Ok(text)
