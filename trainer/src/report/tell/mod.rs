@@ -1,6 +1,7 @@
 //! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
 
 mod certainty;
+mod discarded;
 pub mod evidence;
 pub mod measurement;
 pub mod recording_note;
@@ -16,6 +17,7 @@ use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
 use crate::report::tell::certainty::certainty;
+use discarded::{doubtful, listed, minor, negligible};
 use evidence::{parameter, parameters, sealed_sentence};
 use measurement::observation;
 
@@ -307,46 +309,6 @@ fn rollout(diagnosis: &Diagnosis, units: Units) -> String {
         pair(rollout.baseline_rmse, "->", rollout.improved_rmse, &unit),
         pair(rollout.baseline_max, "->", rollout.improved_max, &unit),
     )
-}
-
-fn minor(diagnosis: &Diagnosis) -> Option<String> {
-    let named = |(effect, share): &(EffectId, f64)| {
-        let percent = 100.0 * share;
-        let percent = if percent < 0.1 { "under 0.1".to_string() } else { format!("{percent:.1}") };
-        format!("{} ({percent} % of the removable error)", plain_name(*effect))
-    };
-    let names: Vec<String> = diagnosis.discarded.minor.iter().map(named).collect();
-    (!names.is_empty()).then(|| format!("Minor beside it, and not modelled: {}.", names.join(", ")))
-}
-
-fn doubtful(diagnosis: &Diagnosis, units: Units) -> Option<String> {
-    (!diagnosis.discarded.doubtful.is_empty()).then(|| {
-        format!(
-            "No larger than the errors of the law that was learned from the simulation, and so not taken for physics: {}. \
-             A simulation of the whole recorded motion would decide.",
-            explaining(&diagnosis.discarded.doubtful, units)
-        )
-    })
-}
-
-fn negligible(diagnosis: &Diagnosis, units: Units) -> Option<String> {
-    (!diagnosis.discarded.negligible.is_empty()).then(|| {
-        format!("Below the least effect, and not modelled: {}.", explaining(&diagnosis.discarded.negligible, units))
-    })
-}
-
-/// Effects with the root mean square of what each explains.
-fn explaining(effects: &[(EffectId, f64)], units: Units) -> String {
-    let named = |(effect, explained): &(EffectId, f64)| {
-        format!("{} ({})", plain_name(*effect), quantity(*explained, units.actuator))
-    };
-    effects.iter().map(named).collect::<Vec<_>>().join(", ")
-}
-
-/// What became of effects, with their names; `None` without any.
-fn listed(what: &str, effects: &[EffectId]) -> Option<String> {
-    let names: Vec<&str> = effects.iter().map(|effect| plain_name(*effect)).collect();
-    (!names.is_empty()).then(|| format!("{what}: {}.", names.join(", ")))
 }
 
 /// The three effects that would have been seen soonest, of those a user asks for first.
