@@ -36,6 +36,9 @@ fn every_command_prints_what_is_shown() {
     std::fs::create_dir(at.join("fixtures")).unwrap();
     for entry in std::fs::read_dir(folder()).unwrap() {
         let file = entry.unwrap();
+        if file.file_type().unwrap().is_dir() {
+            continue;
+        }
         std::fs::copy(file.path(), at.join("fixtures").join(file.file_name())).unwrap();
     }
     let text = std::fs::read_to_string(readme()).unwrap();

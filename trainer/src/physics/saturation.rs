@@ -7,8 +7,8 @@ use crate::numerics::statistics::quantile;
 pub(super) struct Saturation;
 
 /// Quantiles of the torque at which limits are tried; refined afterwards. Chosen by judgement: a limit below the median
-/// would be a wrong scale; denser to the top, where limits are usual and may be met for a moment only.
-const LIMIT_QUANTILES: [f64; 9] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99, 0.997, 0.999];
+/// would be a wrong scale; denser to the top, where limits are usual.
+const LIMIT_QUANTILES: [f64; 7] = [0.5, 0.7, 0.8, 0.88, 0.94, 0.97, 0.99];
 
 /// Variant in which the torque that the model needs goes beyond the limit.
 const NEEDED: f64 = 0.0;
