@@ -24,7 +24,7 @@ pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 /// Fits an arm.
 ///
 /// # Errors
-/// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`ArmFile::joints`], and whatever reading a recording reports.
+/// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`crate::joint::ArmFile::joints`], and whatever reading a recording reports.
 pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> Result<FittedArm> {
     let start = Instant::now();
     let mut chain = Chain::parse(of.urdf, &of.file.held)?;
@@ -72,7 +72,7 @@ impl FittedArm {
     /// The URDF with Coulomb and viscous friction of the joints whose laws may be relied upon, or of all where `force` says so.
     ///
     /// # Errors
-    /// As [`write`].
+    /// As [`write()`].
     pub fn patched(&self, urdf: &str, force: bool) -> Result<String> {
         let mut text = urdf.to_owned();
         for joint in &self.outcome.joints {
