@@ -6,6 +6,7 @@ pub mod arm;
 pub mod checks;
 pub mod commands;
 pub mod compile;
+mod csv_text;
 pub mod diagnose;
 mod did_you_mean;
 pub mod emulator;

@@ -86,7 +86,7 @@ impl core::error::Error for LayoutError {}
 const CHUNK: usize = 64;
 
 /// Largest program unit, bytes: the flash word of an STM32H7.
-const LARGEST_UNIT: u32 = 32;
+pub const LARGEST_UNIT: u32 = 32;
 
 impl Layout {
     /// Two slots of `slot_bytes` at two addresses, in flash of sectors that are erased as a whole, programmed in units of so many bytes, all

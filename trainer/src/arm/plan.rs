@@ -8,7 +8,7 @@ use super::base::Base;
 use super::chain::Chain;
 use super::identify::expected;
 use super::motion::{Columns, Motion, Run, TorqueConstant, torque_of};
-use super::system::{JointRows, System};
+use super::system::{Expected, JointRows, System};
 use crate::error::{Error, Result, codes};
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::regression::least_squares;
@@ -42,15 +42,16 @@ impl Plan {
     pub(super) fn of(chain: &Chain, base: &Base, runs: &[Run], given: &[Option<f64>]) -> Result<Self> {
         let all: Vec<&Recording> = runs.iter().flat_map(|run| &run.joints).collect();
         let candidates = Preparation::of_joints(&all)?;
+        let expected = expected(chain, base);
         let tried = candidates.par_iter().map(|preparation| {
             let mut motion = Motion::of(runs, preparation, TRIED_SAMPLES)?;
             let columns = motion.columns(chain, base);
-            let mut constants = constants(chain, base, &motion, &columns, given)?;
+            let mut constants = constants(chain, &expected.values, &motion, &columns, given)?;
             motion.scale(&constants);
             let rows: Vec<Vec<usize>> = motion.joints.iter().map(moving_rows).collect();
             let mut system = system(&motion, &columns, &rows);
-            agree(chain, base, &mut system, &mut constants)?;
-            Ok((cross_fitted(chain, base, &system)?, Self { preparation: *preparation, constants }))
+            agree(&mut system, &expected, &mut constants)?;
+            Ok((cross_fitted(&system, &expected)?, Self { preparation: *preparation, constants }))
         });
         let (mut best, mut failed) = (None, None);
         for trial in tried.collect::<Vec<Result<(f64, Self)>>>() {
@@ -91,28 +92,27 @@ fn system(motion: &Motion, columns: &Columns, rows: &[Vec<usize>]) -> System {
 }
 
 /// Bodies and friction of the blocks that count, with the weights that what they leave gives the joints.
-fn solved(chain: &Chain, base: &Base, system: &System, counts: &dyn Fn(usize) -> bool) -> Result<DVector<f64>> {
-    let expected = expected(chain, base);
+fn solved(system: &System, expected: &Expected, counts: &dyn Fn(usize) -> bool) -> Result<DVector<f64>> {
     let not_told = || {
         Error::new(&codes::NOT_IDENTIFIABLE, "bodies and friction of the joints cannot be told apart on this motion")
     };
-    let first = system.solve(&vec![1.0; chain.len()], &expected, counts).ok_or_else(not_told)?;
+    let first = system.solve(&vec![1.0; system.joints()], expected, counts).ok_or_else(not_told)?;
     let squares = system.left(&first, counts, false);
     let weights: Vec<f64> = squares.into_iter().map(|square| if square > 0.0 { square.recip() } else { 0.0 }).collect();
-    system.solve(&weights, &expected, counts).ok_or_else(not_told)
+    system.solve(&weights, expected, counts).ok_or_else(not_told)
 }
 
 /// Torque constants that were not given, so that the joints agree on the bodies that they share: bodies and constants are identified in
 /// turn. How large all of them are, the masses of the URDF say where no constant is given.
-fn agree(chain: &Chain, base: &Base, system: &mut System, constants: &mut [Option<TorqueConstant>]) -> Result<()> {
+fn agree(system: &mut System, expected: &Expected, constants: &mut [Option<TorqueConstant>]) -> Result<()> {
     let is_open = |constant: &Option<TorqueConstant>| constant.is_some_and(|constant| constant.ci95.is_some());
-    let open: Vec<usize> = (0..chain.len()).filter(|joint| is_open(&constants[*joint])).collect();
+    let open: Vec<usize> = (0..constants.len()).filter(|joint| is_open(&constants[*joint])).collect();
     for _ in 0..if open.is_empty() { 0 } else { TURNS } {
-        let bodies = solved(chain, base, system, &|_| true)?;
-        let share =
-            |joint: &usize| system.share_of(*joint, &bodies.as_slice()[..base.len()]).filter(|share| *share > 0.0);
+        let solution = solved(system, expected, &|_| true)?;
+        let bodies = &solution.as_slice()[..expected.values.len()];
+        let share = |joint: &usize| system.share_of(*joint, bodies).filter(|share| *share > 0.0);
         let mut factors: Vec<f64> = open.iter().map(|joint| share(joint).map_or(1.0, f64::recip)).collect();
-        if open.len() == chain.len() {
+        if open.len() == constants.len() {
             let mean = (factors.iter().map(|factor| factor.ln()).sum::<f64>() / factors.len() as f64).exp();
             factors.iter_mut().for_each(|factor| *factor /= mean);
         }
@@ -131,10 +131,10 @@ fn agree(chain: &Chain, base: &Base, system: &mut System, constants: &mut [Optio
 }
 
 /// Sum of the logarithms of what is left of the recorded torque of each joint, identified on other blocks than those that count.
-fn cross_fitted(chain: &Chain, base: &Base, system: &System) -> Result<f64> {
-    let mut left = vec![0.0; chain.len()];
+fn cross_fitted(system: &System, expected: &Expected) -> Result<f64> {
+    let mut left = vec![0.0; system.joints()];
     for held in 0..2 {
-        let solution = solved(chain, base, system, &|block| block % 2 != held)?;
+        let solution = solved(system, expected, &|block| block % 2 != held)?;
         let scored = system.left(&solution, &|block| block % 2 == held, true);
         left.iter_mut().zip(scored).for_each(|(sum, square)| *sum += square);
     }
@@ -144,12 +144,11 @@ fn cross_fitted(chain: &Chain, base: &Base, system: &System) -> Result<f64> {
 /// Torque constants of the joints that report a current: as given, or else by the bodies of the URDF, friction identified along with them.
 fn constants(
     chain: &Chain,
-    base: &Base,
+    nominal: &[f64],
     motion: &Motion,
     columns: &Columns,
     given: &[Option<f64>],
 ) -> Result<Vec<Option<TorqueConstant>>> {
-    let nominal = expected(chain, base).values;
     let of = |joint: usize| {
         let samples = &motion.joints[joint];
         if samples.actuator_unit != "A" {
@@ -161,7 +160,7 @@ fn constants(
         let rows = moving_rows(samples);
         let pick = |column: &[f64]| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
         let velocity = pick(samples.velocity.as_deref().unwrap_or_default());
-        let mut of_current = vec![pick(&torque_of(&columns[joint], &nominal, |_| true))];
+        let mut of_current = vec![pick(&torque_of(&columns[joint], nominal, |_| true))];
         of_current.extend(smooth_friction_columns(&velocity));
         let current = pick(samples.actuator.as_deref().unwrap_or_default());
         let fit = least_squares(&of_current, &current, &even_blocks(current.len(), ERROR_BLOCKS));

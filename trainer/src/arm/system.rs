@@ -88,6 +88,11 @@ impl System {
             .map(|found| found[0])
     }
 
+    /// Number of joints.
+    pub(super) fn joints(&self) -> usize {
+        self.products.len()
+    }
+
     /// Number of blocks.
     pub(super) fn blocks(&self) -> usize {
         self.products.first().map_or(0, Vec::len)

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::fit::{in_pool, line};
 use super::measurement::{Source, profile};
-use super::output::{Outputs, print, say};
+use super::output::{Outputs, print, refuse_unwritable, say};
 use super::progress::Reporter;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
@@ -59,11 +59,20 @@ pub struct Arm {
     pub quiet: bool,
 }
 
+impl Arm {
+    /// Files that are read.
+    fn inputs(&self) -> Vec<&Path> {
+        let recordings = self.recordings.iter().chain(&self.tests);
+        recordings.chain([&self.urdf]).chain(&self.joint).map(PathBuf::as_path).collect()
+    }
+}
+
 /// Runs the command; the exit status is 0 or, where the law of a joint may not be relied upon, 4.
 ///
 /// # Errors
 /// As [`arm`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Arm) -> Result<u8> {
+    refuse_unwritable(&arguments.json, &arguments.inputs())?;
     let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
     let in_file = |path: &Path| {
         let path = path.display().to_string();
@@ -94,12 +103,10 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         _ => error,
     })?;
     write(arguments, &fitted, &urdf)?;
-    let doubts = fitted.outcome.joints.iter().filter_map(joint_doubt).collect::<Vec<_>>();
+    let doubtful = fitted.outcome.joints.iter().filter_map(|joint| Some((&joint.name, joint_doubt(joint)?)));
+    let doubts: Vec<String> = doubtful.map(|(name, doubt)| format!("{name}: {doubt}")).collect();
     if !arguments.quiet {
-        let joints = fitted.outcome.joints.iter();
-        joints
-            .filter_map(|joint| Some((joint, joint_doubt(joint)?)))
-            .for_each(|(joint, doubt)| say(&format!("{}: {doubt}", joint.name)));
+        doubts.iter().for_each(|doubt| say(doubt));
     }
     Ok(if doubts.is_empty() { 0 } else { codes::NOT_IDENTIFIABLE.class.exit_status() })
 }
@@ -126,8 +133,7 @@ fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
     if let Some(path) = &arguments.json {
         outputs.add(path, json);
     }
-    let read = arguments.recordings.iter().chain(&arguments.tests).chain([&arguments.urdf]).chain(&arguments.joint);
-    outputs.refuse_overwriting(&read.map(PathBuf::as_path).collect::<Vec<_>>())?;
+    outputs.refuse_overwriting(&arguments.inputs())?;
     outputs.write()?;
     if arguments.json.as_deref() == Some(Path::new("-")) {
         return Ok(());

@@ -1,7 +1,7 @@
 //! A slot as the drive's own flash is written: header and image in program units of their own, the last one filled.
 
 use clap::Args;
-use frikan_runtime::slots::flash::Layout;
+use frikan_runtime::slots::flash::{LARGEST_UNIT, Layout};
 use frikan_runtime::slots::slot_header;
 
 use super::number::number;
@@ -33,7 +33,7 @@ impl FlashArguments {
         let erased = u8::try_from(self.erased.unwrap_or(0xFF)).map_err(|_| usage("`--erased` is a byte".to_owned()))?;
         let too_large = || Error::new(&codes::FILE_TOO_LARGE, "the image is too large for a slot");
         // Two slots one behind the other, each as long as it has to be.
-        let bytes = u32::try_from(image.len() + LARGEST_UNIT).map_err(|_| too_large())?;
+        let bytes = u32::try_from(image.len() + LARGEST_UNIT as usize).map_err(|_| too_large())?;
         let slot_bytes = bytes.checked_next_multiple_of(sector).filter(|bytes| *bytes < 1 << 31);
         let slot_bytes = slot_bytes.ok_or_else(|| usage("`--erase-size` is a number of bytes above 0".to_owned()))?;
         let layout = Layout::new([0, slot_bytes], slot_bytes, unit, sector, erased)
@@ -61,6 +61,3 @@ impl FlashArguments {
         Err(Error::new(&codes::USAGE, message))
     }
 }
-
-/// Largest program unit, bytes: that of [`Layout`].
-const LARGEST_UNIT: usize = 32;

@@ -16,8 +16,11 @@ const LONGEST_S: f64 = 0.03;
 const STEP_PERIODS: f64 = 0.125;
 /// Steps to both sides of the delay that reversals show. A limit of the computing time.
 const NEIGHBOURS: i32 = 3;
-/// Effects beside which a delay is sought at most.
+/// Effects beside which a delay is sought, at most. A limit of the computing time.
 const MEMBERS: usize = 3;
+
+/// Standard deviations by which a delay that is told is longer than the sampling's own: normal noise exceeds them once in seven hundred.
+const SHOWN_DEVIATIONS: f64 = 3.0;
 
 /// A delay with its uncertainty.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +32,6 @@ pub(crate) struct TorqueDelay {
     /// Log likelihood ratio against no delay, nats.
     pub gain_nats: f64,
 }
-
-/// Standard deviations of a delay by which it is longer than the sampling's own where it is told: one in a thousand.
-const SHOWN_DEVIATIONS: f64 = 3.0;
 
 impl TorqueDelay {
     /// By how much more than in a simulation.

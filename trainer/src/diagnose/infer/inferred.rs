@@ -21,10 +21,10 @@ const LEADING_SETS: usize = 6;
 const USEFUL_NATS: f64 = 15.0;
 /// Probability of a candidate from which its shape is refined.
 const REFINED_FROM: f64 = 0.01;
-/// Probability of a set from which its functions without a name are compared with refined effects.
-const INSTEAD_OF_FUNCTIONS_FROM: f64 = 0.2;
-/// Effects that are refined in the place of a function. A limit of the computing time.
-const INSTEAD_OF_FUNCTIONS: usize = 4;
+/// Probability of a set from which members that tell no cause are compared with refined effects.
+const INSTEAD_FROM: f64 = 0.2;
+/// Effects that are refined in the place of one of them. A limit of the computing time.
+const INSTEAD: usize = 4;
 
 /// What was inferred.
 pub(crate) struct Inferred {
@@ -102,8 +102,8 @@ pub(crate) fn infer(
     Inferred { candidates, posterior, sizes, friction, alone, noise, temper, price }
 }
 
-/// Sets with the member of each whose shape is refined: members of probable sets, and effects with a name in the place of a function
-/// without one, which has no shape to refine.
+/// Sets with the member of each whose shape is refined: members of probable sets, and effects with a cause in the place of a function or an
+/// event without one. A function has no shape to refine.
 fn to_refine(candidates: &Candidates, field: &Field, posterior: &Posterior) -> Vec<(Vec<Member>, Member)> {
     let tells_no_cause = |member: &Member| candidates.entries[member.candidate].tells_no_cause();
     let mut sets: Vec<(Vec<Member>, Member)> = Vec::new();
@@ -116,14 +116,14 @@ fn to_refine(candidates: &Candidates, field: &Field, posterior: &Posterior) -> V
     };
     for (set, probability) in posterior.sets.iter().take_while(|(_, probability)| *probability >= REFINED_FROM) {
         set.members.iter().for_each(|member| add(&set.members, *member));
-        if *probability < INSTEAD_OF_FUNCTIONS_FROM {
+        if *probability < INSTEAD_FROM {
             continue;
         }
-        for function in set.members.iter().filter(|member| tells_no_cause(member)) {
-            let others: Vec<Member> = set.members.iter().copied().filter(|other| other != function).collect();
+        for without_cause in set.members.iter().filter(|member| tells_no_cause(member)) {
+            let others: Vec<Member> = set.members.iter().copied().filter(|other| other != without_cause).collect();
             let instead =
                 field.extended(&others).into_iter().filter(|set| set.last().is_some_and(|m| !tells_no_cause(m)));
-            instead.take(INSTEAD_OF_FUNCTIONS).for_each(|set| set.last().into_iter().for_each(|m| add(&set, *m)));
+            instead.take(INSTEAD).for_each(|set| set.last().into_iter().for_each(|m| add(&set, *m)));
         }
     }
     sets

@@ -5,7 +5,7 @@ use roxmltree::{Document, Node};
 use crate::error::{Error, Result, codes};
 
 /// A model file of the user.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct ModelFile<'a> {
     /// Its text; empty where the format only refers to it.
     pub text: &'a str,

@@ -17,7 +17,7 @@ pub enum Release {
 }
 
 /// What is asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Request<'a> {
     /// What the image is, in half a line.
     pub title: &'a str,

@@ -1,5 +1,7 @@
 //! What a simulated drive hands over, and the truth behind it.
 
+use crate::csv_text::csv_text;
+
 /// A simulated recording: columns as a drive would log them, and the truth that only a simulator knows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRecording {
@@ -125,19 +127,8 @@ impl SimulatedRecording {
 }
 
 fn csv(columns: &[Column]) -> String {
-    use std::fmt::Write;
-    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-    let mut text = names.join(",") + "\n";
-    let rows = columns.first().map_or(0, |column| column.values.len());
-    for row in 0..rows {
-        for (i, column) in columns.iter().enumerate() {
-            let separator = if i == 0 { "" } else { "," };
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{separator}{}", column.values[row]);
-        }
-        text.push('\n');
-    }
-    text
+    let named: Vec<_> = columns.iter().map(|column| (column.name.to_owned(), &column.values[..])).collect();
+    csv_text(&named)
 }
 
 /// Root mean square; 0 for no values.

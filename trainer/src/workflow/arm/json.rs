@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::fitted::{FittedArm, beyond_trained, joint_doubt};
 use crate::arm::fit::{BaseEstimate, JointOutcome};
 use crate::fit::outcome::{Outcome, Score, SplitScore, Trace};
+use crate::workflow::fit::json::{score, with_split};
 use crate::workflow::recordings::Warning;
 
 /// The object that is written to `arm.json`.
@@ -46,12 +47,10 @@ fn test(law: &Outcome, trace: &Trace) -> Value {
     value
 }
 
-fn scores(score: Score, split: &SplitScore) -> Value {
-    let of = |score: Score| json!({"n": score.n, "r2": score.r2, "rmse": score.rmse, "relative_error": score.relative_error});
-    let mut value = of(score);
+fn scores(of_all: Score, split: &SplitScore) -> Value {
+    let mut value = with_split(score(of_all), split);
+    value["moving"] = score(split.moving);
     value["moving_relative_error"] = json!(split.moving.relative_error);
-    value["moving"] = of(split.moving);
-    value["rest"] = json!({"n": split.rest.n, "inside_breakaway": split.rest.inside_breakaway});
     value
 }
 

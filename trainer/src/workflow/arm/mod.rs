@@ -81,16 +81,9 @@ impl FittedArm {
                 continue;
             }
             let image = from_bytes(&law.image)?;
-            let into = ModelFile { text: &text, path: "", joint: &joint.name, inertia_of_model: None, gains: None };
+            let into = ModelFile { text: &text, joint: &joint.name, ..ModelFile::default() };
             let torque_per_ampere = joint.torque_constant.map(|constant| constant.value);
-            let request = Request {
-                title: &joint.name,
-                into: Some(into),
-                torque_per_ampere,
-                joint: None,
-                release: None,
-                actuator: None,
-            };
+            let request = Request { title: &joint.name, into: Some(into), torque_per_ampere, ..Request::default() };
             text = write(&image, Simulator::Urdf, &request)?;
         }
         Ok(text)

@@ -1,10 +1,10 @@
 //! Recordings of single joints of an arm as files.
 
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
 use super::fitted::file_name;
 use crate::arm::fit::JointOutcome;
+use crate::csv_text::csv_text;
 use crate::recording::{Channel, Recording};
 
 /// What `fit` and `diagnose` have to know to take the torque of the bodies as it is.
@@ -32,15 +32,8 @@ fn csv(recording: &Recording) -> String {
         let units = channel.quantity.map_or(&[][..], |quantity| quantity.units());
         units.iter().find(|unit| unit.si == channel.unit && unit.factor == 1.0).map_or("", |unit| unit.suffix)
     };
-    let names = recording.channels.iter().map(|channel| format!("{}_{}", channel.name, suffix(channel)));
-    let mut text = names.collect::<Vec<_>>().join(",") + "\n";
-    for row in 0..recording.len() {
-        for (index, channel) in recording.channels.iter().enumerate() {
-            let mark = if index == 0 { "" } else { "," };
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{mark}{}", channel.values[row]);
-        }
-        text.push('\n');
-    }
-    text
+    let columns = recording.channels.iter();
+    let named: Vec<_> =
+        columns.map(|channel| (format!("{}_{}", channel.name, suffix(channel)), &channel.values[..])).collect();
+    csv_text(&named)
 }

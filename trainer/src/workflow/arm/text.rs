@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::fitted::{FittedArm, beyond_trained, joint_doubt};
 use crate::fit::outcome::{Score, SplitScore};
 use crate::law::significant;
+use crate::workflow::fit::text::write_parameter;
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;
@@ -25,15 +26,7 @@ fn write_summary(out: &mut String, arm: &FittedArm, images: &[Option<String>]) -
         writeln!(out, "\n{}", joint.name)?;
         if let Ok(law) = &joint.law {
             writeln!(out, "  law         friction = {}", law.law.expression)?;
-            for parameter in &law.parameters {
-                let [low, high] = parameter.ci95.map(|end| significant(end, DIGITS));
-                let value = significant(parameter.value, DIGITS + 1);
-                writeln!(
-                    out,
-                    "    {:<26} {:<8} {value} {}  95 % in [{low}, {high}]",
-                    parameter.name, parameter.symbol, parameter.unit
-                )?;
-            }
+            law.parameters.iter().try_for_each(|parameter| write_parameter(out, parameter))?;
             write_score(out, "train", law.train_score, &law.train_split, law.unit)?;
             for test in &law.tests {
                 write_score(out, &format!("test {}", test.label), test.score, &test.split, law.unit)?;

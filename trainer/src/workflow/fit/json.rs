@@ -75,12 +75,12 @@ pub(super) fn summary(
     })
 }
 
-fn score(score: Score) -> Value {
+pub(in crate::workflow) fn score(score: Score) -> Value {
     json!({"n": score.n, "r2": score.r2, "rmse": score.rmse, "relative_error": score.relative_error})
 }
 
 /// Adds the scores of rows in motion and of rows at rest.
-fn with_split(mut value: Value, split: &SplitScore) -> Value {
+pub(in crate::workflow) fn with_split(mut value: Value, split: &SplitScore) -> Value {
     let moving = split.moving;
     value["moving"] = json!({"n": moving.n, "r2": moving.r2, "rmse": moving.rmse});
     value["rest"] = json!({"n": split.rest.n, "inside_breakaway": split.rest.inside_breakaway});

@@ -1,9 +1,9 @@
 //! From recordings to a law that tells itself.
 
-mod json;
+pub(super) mod json;
 mod servo;
 mod simulated;
-mod text;
+pub(super) mod text;
 
 use std::path::Path;
 use std::time::Instant;

@@ -89,7 +89,8 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: Option<&Path>, seco
     writeln!(out, "\n{seconds:.1} s, seed {}", outcome.seed)
 }
 
-fn write_parameter(out: &mut String, parameter: &Parameter) -> std::fmt::Result {
+/// A line for a parameter, in a list.
+pub(in crate::workflow) fn write_parameter(out: &mut String, parameter: &Parameter) -> std::fmt::Result {
     let [low, high] = parameter.ci95.map(|bound| significant(bound, DIGITS));
     let interval = match parameter.ci95 {
         [f64::NEG_INFINITY, f64::INFINITY] => "not told apart from others".to_owned(),
@@ -128,4 +129,28 @@ fn write_score(out: &mut String, kind: &str, trace: &Trace, unit: &str) -> std::
         rest.n,
         100.0 * rest.inside_breakaway,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_determined_has_no_interval() {
+        let line = |ci95| {
+            let parameter = Parameter {
+                name: "coulomb_torque".to_owned(),
+                symbol: "F_c".to_owned(),
+                value: 2.0,
+                unit: "N m".to_owned(),
+                ci95,
+            };
+            let mut text = String::new();
+            write_parameter(&mut text, &parameter).unwrap();
+            text
+        };
+        assert!(line([1.9, 2.1]).contains("95 % in [1.9, 2.1]"));
+        let open = line([f64::NEG_INFINITY, f64::INFINITY]);
+        assert!(open.contains("not told apart") && !open.contains("inf"), "{open}");
+    }
 }

@@ -20,7 +20,7 @@ use super::body::inertia_about;
 use super::content::Content;
 use super::edits::{Edits, comment_of};
 use super::model_file::{ModelFile, bad_file};
-use super::trial::{Controller, Left};
+use super::trial::{Controller, Left, MOST_WORSE};
 use crate::error::Result;
 use crate::figures::digits;
 use crate::markup::escape;
@@ -140,8 +140,9 @@ fn chosen(
     let lines: Vec<String> = left.iter().map(|left| line(left, torque)).collect();
     let _ = write!(
         told,
-        " {}. No trial at half and twice the time step was worse than Coulomb and viscous friction.",
-        lines.join("; ")
+        " {}. In no trial, at half and twice the time step neither, was it more than {:.0} % worse than Coulomb and viscous friction.",
+        lines.join("; "),
+        100.0 * (MOST_WORSE - 1.0),
     );
     Ok((candidate, told))
 }

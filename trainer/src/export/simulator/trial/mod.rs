@@ -16,8 +16,9 @@ use super::form::WORTH_IT;
 use crate::numerics::statistics::{mean, root_mean_square};
 use rayon::prelude::*;
 
-/// By how much a form may be worse than Coulomb and viscous friction in any trial, as a ratio: what two motions differ in.
-const MOST_WORSE: f64 = 1.05;
+/// By how much a form may be worse than Coulomb and viscous friction in any trial, as a ratio: what is asked of a patched file beside the
+/// true attributes.
+pub(super) const MOST_WORSE: f64 = 1.05;
 
 /// The motion and the time step of each trial, the step in units of the file's: every motion at that, and the steps that a user may
 /// change to next.
@@ -57,6 +58,15 @@ struct Case<'a> {
     plain: f64,
 }
 
+impl Case<'_> {
+    /// What a form leaves over what the best of the plain ones does. Where Coulomb and viscous friction diverge, so does everything: the
+    /// controller is too stiff for the step.
+    fn ratio(&self, left: f64) -> f64 {
+        let ratio = left / self.plain;
+        if ratio.is_nan() { 1.0 } else { ratio }
+    }
+}
+
 impl Trial {
     /// The place of the form that leaves the least of those that are in no trial, at half and twice the time step included, worse than
     /// the best of the first `plain` ones, which are Coulomb and viscous friction, and on average worth its parameters; and what it leaves.
@@ -69,17 +79,17 @@ impl Trial {
             .map(|(trial, controller)| self.case(controller, trial, &forms[..plain]))
             .collect();
         let at_file_step = MOTIONS.len() * self.controllers.len();
-        let ratios = |(place, form): (usize, &SimulatedJoint)| -> Vec<f64> {
-            let ratios = cases.iter().map(|case| {
-                let ratio = self.left(form, case) / case.plain;
-                // Where Coulomb and viscous friction diverge, so does everything: the controller is too stiff for the step.
-                if ratio.is_nan() { 1.0 } else { ratio }
-            });
-            ratios.take_while(|ratio| place < plain || *ratio <= MOST_WORSE).collect()
+        // Of what a form leaves, as far as it is in no case too much worse.
+        let lefts = |(place, form): (usize, &SimulatedJoint)| -> Vec<f64> {
+            let lefts = cases.iter().map(|case| (self.left(form, case), case));
+            lefts
+                .take_while(|(left, case)| place < plain || case.ratio(*left) <= MOST_WORSE)
+                .map(|(left, _)| left)
+                .collect()
         };
-        let ratios: Vec<Vec<f64>> = forms.par_iter().enumerate().map(ratios).collect();
+        let lefts: Vec<Vec<f64>> = forms.par_iter().enumerate().map(lefts).collect();
         let score = |place: &usize| {
-            let ratios = &ratios[*place];
+            let ratios: Vec<f64> = lefts[*place].iter().zip(&cases).map(|(left, case)| case.ratio(*left)).collect();
             let score = if ratios.len() == cases.len() { mean(&ratios[..at_file_step]) } else { f64::INFINITY };
             if *place < plain || score < WORTH_IT { score } else { f64::INFINITY }
         };
@@ -91,7 +101,7 @@ impl Trial {
                 controller: *controller,
                 torque: over(&|case| root_mean_square(&cases[case].wanted)),
                 plain: over(&|case| cases[case].plain),
-                chosen: over(&|case| self.left(&forms[place], &cases[case])),
+                chosen: over(&|case| lefts[place][case]),
             }
         };
         (place, self.controllers.iter().enumerate().map(left).collect())
