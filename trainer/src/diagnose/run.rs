@@ -15,7 +15,6 @@ use crate::diagnose::comparison::base::{Base, Delay};
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::delay::{delay_by_shifting, position_error_energy};
 use crate::diagnose::comparison::reference::Comparison;
-use crate::diagnose::comparison::sign_width::fit_sign_width;
 use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
 use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
@@ -256,8 +255,9 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     };
     let told = delay.filter(is_more_than_grain);
     let late_s = told.map_or(0.0, |late| late.delay_s);
-    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
-    let real = shifted(&Side::new(&prepared, &base), late_s);
+    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base).with_turn_over());
+    let real = Side::new(&prepared, &base);
+    let real = shifted(&if side.is_some() { real.with_turn_over() } else { real }, late_s);
     let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
     let inferred = infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), options.settings.seed);
     let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;
@@ -283,15 +283,12 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
 /// Friction of the joint turns over as softly as that of its simulation, which has no noise: where this is Coulomb and viscous friction
 /// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction.
 fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
-    let Some(simulation) = comparison.simulation.as_deref() else { return };
-    let alone = Comparison::from(simulation.signals.clone());
-    let mut prepared = Prepared::at_cut_off(&alone.signals, real.filter.cut_off_hz, alone.known(), Lock::Nothing);
-    let lead_s = comparison.reference.as_ref().map_or(0.0, |law| law.sign_lead_s);
-    let least = real.state.sign_velocity;
-    (prepared.state.sign_lead_s, real.state.sign_lead_s) = (lead_s, lead_s);
-    prepared.state.turn_over_within(least);
-    fit_sign_width(&mut prepared, &alone, BaseKind::CoulombViscous);
-    real.state.turn_over_within(prepared.state.sign_velocity.max(least));
+    if comparison.simulation.is_none() {
+        return;
+    }
+    let Some(law) = &comparison.reference else { return };
+    real.state.sign_lead_s = law.sign_lead_s;
+    real.state.turn_over_within(law.sign_width.max(real.state.sign_velocity));
 }
 
 /// Adds a wrong friction level of the reference to the findings; the figures before are then those of the reference as given.

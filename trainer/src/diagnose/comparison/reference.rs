@@ -30,6 +30,8 @@ pub struct Reference {
     pub friction: Vec<(f64, f64)>,
     /// Time by which its friction turns over before the velocity, s.
     pub sign_lead_s: f64,
+    /// Velocity below which its friction turns over.
+    pub sign_width: f64,
 }
 
 /// Where a law is asked for more than it was fitted on: there it holds its last value, and the difference is its own.

@@ -1,6 +1,5 @@
 //! Every candidate with the columns of its shapes at the states of both sides, and its priors.
 
-use crate::diagnose::comparison::relaxation;
 use crate::diagnose::hypotheses::function_form::Form;
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::hypotheses::unnamed::{Generic, generic_rivals};
@@ -19,23 +18,6 @@ const EXPECTED_SHARE: f64 = 0.3;
 /// Length scales of an unnamed function over the range of its channel, and the strength that stands for each where it is refitted:
 /// from a broad function to a narrow feature (Matern 3/2; Solin and Sarkka 2020).
 const LENGTH_SCALES: [(f64, f64); 3] = [(0.5, 20.0), (0.2, 200.0), (0.08, 2000.0)];
-
-/// Relaxation times of a solver's friction beside that of the simulation, as ratios: how far ahead of the velocity friction turns over
-/// depends on inertia, friction level and load, in which recording and simulation differ.
-const RELAXATION_RATIOS: [f64; 3] = [0.5, 1.0, 2.0];
-/// By how much the friction that turns over at one of these times may differ between recording and simulation, over all of it: their
-/// inertias and levels are within some per cent of each other once the simulation is fitted to the joint.
-const RELAXATION_CHANGE: f64 = 0.05;
-
-/// Filtered columns of friction that turns over at another instant than the simulation's; none where that turns over with the velocity.
-fn relaxations_of(real: &Side) -> Vec<Vec<f64>> {
-    let state = &real.prepared.state;
-    if state.sign_lead_s == 0.0 {
-        return Vec::new();
-    }
-    let column = |ratio: f64| relaxation::column(state, state.sign_velocity, ratio * state.sign_lead_s);
-    real.prepared.filtered_all(&RELAXATION_RATIOS.map(column))
-}
 
 /// A shape of a candidate: its columns among all, and the relative prior variance of each.
 #[derive(Clone, Debug)]
@@ -77,12 +59,6 @@ pub(crate) struct Candidates {
     pub real: Vec<Vec<f64>>,
     /// The same at the rows of the simulation.
     pub simulated: Vec<Vec<f64>>,
-    /// Columns of what a solver of constraints does near rest: of no candidate, but in every simulation that has it.
-    solver: Range<usize>,
-    /// The same of the recording alone, where it is the simulated recording of another solver or state.
-    solver_of_recording: Range<usize>,
-    /// Root mean square of each of these for a unit of Coulomb friction.
-    solver_sizes: Vec<f64>,
 }
 
 impl Candidates {
@@ -90,19 +66,6 @@ impl Candidates {
     pub fn new(hypotheses: &[Box<dyn Hypothesis + Send>], real: &Side, simulated: Option<&Side>) -> Self {
         let state = &real.prepared.state;
         let mut candidates = Self::default();
-        if simulated.is_some() {
-            let lead = |side: &Side| {
-                let state = &side.prepared.state;
-                let column = |time: &f64| relaxation::column(state, real.prepared.state.sign_velocity, *time);
-                side.prepared.filtered_all(&relaxation::TRIED_S.iter().map(column).collect::<Vec<_>>())
-            };
-            candidates.solver =
-                candidates.add_columns(real, simulated, lead(real), simulated.map(lead).unwrap_or_default());
-            let of_recording = relaxations_of(real);
-            let size = |column: &Vec<f64>| root_mean_square(&real.on_rows(column));
-            candidates.solver_sizes = of_recording.iter().map(size).collect();
-            candidates.solver_of_recording = candidates.add_columns(real, simulated, of_recording, Vec::new());
-        }
         // A delay of the torque shifts every column: it is a parameter of the whole model.
         for hypothesis in hypotheses.iter().filter(|h| h.id() != EffectId::TimeMisalignment) {
             let shapes = hypothesis.shapes(state);
@@ -279,9 +242,6 @@ impl Candidates {
             });
             begin..begin + columns.len()
         };
-        kept.solver = take(&mut kept, &self.solver);
-        kept.solver_of_recording = take(&mut kept, &self.solver_of_recording);
-        kept.solver_sizes.clone_from(&self.solver_sizes);
         for (candidate, entry) in self.entries.iter().enumerate() {
             let stays = |variant: usize| entry.is_function() || keep(Member { candidate, variant });
             let shapes = entry.shapes.iter().enumerate().filter(|(variant, _)| stays(*variant));
@@ -293,16 +253,10 @@ impl Candidates {
         kept
     }
 
-    /// What recording and simulation may share, as random effects: smooth functions, the errors of a solver and the given shapes (places
+    /// What recording and simulation may share, as random effects: smooth functions and the given shapes (places
     /// of candidate and shape); places of their columns, with the prior precision of each.
     pub fn shared(&self, friction: f64, shown: &[Member]) -> (Vec<usize>, Vec<f64>) {
         let (mut places, mut precision): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
-        places.extend(self.solver.clone());
-        let even = vec![1.0; self.solver.len()];
-        precision.extend(Self::variance(friction, &even).into_iter().map(f64::recip));
-        places.extend(self.solver_of_recording.clone());
-        let of_recording = |size: &f64| (RELAXATION_CHANGE * friction * size).powi(2).max(f64::MIN_POSITIVE).recip();
-        precision.extend(self.solver_sizes.iter().map(of_recording));
         for member in shown {
             let shaped = &self.entries[member.candidate].shapes[member.variant];
             let variance = Self::variance(friction, &shaped.relative_variance);

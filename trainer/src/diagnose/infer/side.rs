@@ -8,6 +8,12 @@ use crate::physics::{Hypothesis, JointState};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Change of the time at which friction turns over, each way, by which its column is differenced, s: short beside any filter here, so
+/// that the column does not depend on it.
+const TURN_OVER_STEP_S: f64 = 0.0005;
+/// Ratio of the widths by which the column of a softer turn is differenced: small, so that it is the tangent.
+const TURN_OVER_WIDTH_RATIO: f64 = 1.2;
+
 /// A prepared recording or simulation with what it is compared with.
 #[derive(Clone)]
 pub(crate) struct Side<'a> {
@@ -38,6 +44,22 @@ impl<'a> Side<'a> {
         let mut side = Self::without_delay(prepared, base);
         side.columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.predicted)));
         side
+    }
+
+    /// The same where friction may turn over a little earlier or later, and more or less sharply, than the fitted smoothed sign: solvers
+    /// evaluate it at the begin of a step, and the width of a soft constraint depends on inertia and level, which differ a little.
+    #[must_use]
+    pub fn with_turn_over(mut self) -> Self {
+        let state = &self.prepared.state;
+        let sign = |later_s: f64, ratio: f64| {
+            state.averaged_sign(&state.led_velocity(state.sign_lead_s - later_s), ratio * state.sign_velocity)
+        };
+        let change = |from: Vec<f64>, to: Vec<f64>| state.map(|i| to[i] - from[i]);
+        let later = change(sign(-TURN_OVER_STEP_S, 1.0), sign(TURN_OVER_STEP_S, 1.0));
+        let softer = change(sign(0.0, 1.0), sign(0.0, TURN_OVER_WIDTH_RATIO));
+        let columns = self.prepared.filtered_all(&[later, softer]);
+        self.columns.extend(columns);
+        self
     }
 
     /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.

@@ -7,6 +7,7 @@ mod relaxation_tests;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
+mod turn_over;
 #[cfg(test)]
 mod tests;
 
@@ -91,10 +92,10 @@ pub struct InverseLaw {
 pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let law = learn_with(None, &prepared, given, 0.0)?;
+    let law = learn_with(None, &prepared, given, None)?;
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
-    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given, 0.0).unwrap_or(law) };
+    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given, None).unwrap_or(law) };
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
     law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
@@ -108,11 +109,9 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
 pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let law = learn_with(None, &prepared, given, 0.0)?;
-    match law.relaxation_s {
-        Some(lead_s) => learn_with(None, &prepared, given, lead_s),
-        None => Ok(law),
-    }
+    let unfitted = learn_with(None, &prepared, given, None)?;
+    let turn_over = turn_over::turn_over(&InverseLaw { knots: KNOTS[0], relaxation_s: None, ..unfitted }, &prepared);
+    learn_with(None, &prepared, given, Some(turn_over))
 }
 
 /// The law with given effects in it.
@@ -120,7 +119,7 @@ fn learn_with(
     simulated: Option<SimulatedEffects>,
     prepared: &Prepared,
     given: bool,
-    lead_s: f64,
+    turn_over: Option<(f64, f64)>,
 ) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
@@ -128,11 +127,11 @@ fn learn_with(
         return Err(Unlearnable::Rest { rows });
     }
     let mut unfitted = InverseLaw {
-        sign_velocity: state.sign_velocity,
+        sign_velocity: turn_over.map_or(state.sign_velocity, |(_, width)| width),
         top_speed: state.top_speed(),
         resolved_speed: state.resolved_speed(),
         relaxation_s: None,
-        lead_s,
+        lead_s: turn_over.map_or(0.0, |(lead_s, _)| lead_s),
         knots: KNOTS[KNOTS.len() - 1],
         gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
         given,
@@ -144,7 +143,7 @@ fn learn_with(
         rmse: 0.0,
     };
     let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
-    if lead_s == 0.0 {
+    if turn_over.is_none() {
         unfitted.relaxation_s =
             relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
     }
@@ -325,6 +324,7 @@ impl InverseLaw {
             is_fitted: false,
             friction: self.friction_curve(),
             sign_lead_s: self.lead_s,
+            sign_width: self.sign_velocity,
         }
     }
 }
