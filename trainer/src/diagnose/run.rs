@@ -255,9 +255,8 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     };
     let told = delay.filter(is_more_than_grain);
     let late_s = told.map_or(0.0, |late| late.delay_s);
-    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base).with_turn_over());
-    let real = Side::new(&prepared, &base);
-    let real = shifted(&if side.is_some() { real.with_turn_over() } else { real }, late_s);
+    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
+    let real = shifted(&Side::new(&prepared, &base), late_s);
     let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
     let inferred = infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), options.settings.seed);
     let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;

@@ -58,6 +58,18 @@ impl<'r> Model<'r> {
         let mean = self.whole.mean()?;
         Some(self.whole.places.iter().copied().zip(mean.iter().copied()).collect())
     }
+
+    /// Posterior standard deviation of a sum of coefficients (place, weight).
+    pub fn deviation(&self, sum: &[(usize, f64)]) -> f64 {
+        let mut direction = DVector::zeros(self.whole.places.len());
+        for (place, weight) in sum {
+            if let Some(at) = self.whole.places.iter().position(|of| of == place) {
+                direction[at] = *weight;
+            }
+        }
+        self.whole.factor.l_dirty().solve_lower_triangular_mut(&mut direction);
+        direction.norm()
+    }
 }
 
 /// A variant beside nothing, factored once for many targets.

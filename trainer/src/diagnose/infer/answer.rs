@@ -47,14 +47,14 @@ impl Inferred {
         sets
     }
 
-    /// The members of the likeliest set of which something is more likely than not to be missing; and effects that are smaller than the
-    /// share `least` of the friction, with their torque (root mean square).
+    /// The members of the likeliest set of which something is more likely than not to be missing; and effects that do not exceed the share
+    /// `least` of the friction with 95 %, with their torque (root mean square).
     pub fn accepted(&self, least: f64) -> (Vec<Accepted>, Vec<(EffectId, f64)>) {
         let Some(set) = self.posterior.likeliest() else { return (Vec::new(), Vec::new()) };
         let told =
             set.members.iter().zip(&self.sizes).filter_map(|(m, size)| self.told(*m, set).map(|told| (told, *size)));
-        let (large, small): (Vec<_>, Vec<_>) = told.partition(|(_, size)| *size >= least * self.friction);
-        let small = small.into_iter().map(|(accepted, size)| (accepted.effect(), size)).collect();
+        let (large, small): (Vec<_>, Vec<_>) = told.partition(|(_, size)| size.least >= least * self.friction);
+        let small = small.into_iter().map(|(accepted, size)| (accepted.effect(), size.torque)).collect();
         (large.into_iter().map(|(accepted, _)| accepted).collect(), small)
     }
 

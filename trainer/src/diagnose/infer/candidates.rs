@@ -253,8 +253,8 @@ impl Candidates {
         kept
     }
 
-    /// What recording and simulation may share, as random effects: smooth functions and the given shapes (places
-    /// of candidate and shape); places of their columns, with the prior precision of each.
+    /// What recording and simulation may share, as random effects: smooth functions and the given shapes (places of candidate and shape);
+    /// places of their columns, with the prior precision of each.
     pub fn shared(&self, friction: f64, shown: &[Member]) -> (Vec<usize>, Vec<f64>) {
         let (mut places, mut precision): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
         for member in shown {

@@ -4,13 +4,12 @@ use crate::diagnose::infer::candidates::Candidates;
 use crate::diagnose::infer::predicted_blocks::temper_of;
 use crate::diagnose::infer::refined::refined;
 use crate::diagnose::infer::side::Side;
+use crate::diagnose::infer::size::{Size, Sizing};
 use crate::diagnose::infer::weighing::{FIRST_PRICE, Weighing, friction_of};
 use crate::diagnose::noise::autoregression::Noise;
 use crate::inference::evidence::Model;
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
-use crate::numerics::least_squares::{fit_residual, weighted};
-use crate::numerics::statistics::root_mean_square;
 use crate::physics::Hypothesis;
 
 /// Rounds of noise, sets and refined shapes: the second has the noise of what the first found. A limit of the computing time.
@@ -30,8 +29,8 @@ const INSTEAD: usize = 4;
 pub(crate) struct Inferred {
     pub candidates: Candidates,
     pub posterior: Posterior,
-    /// Torque of each member of the likeliest set beyond what base and common columns could take, root mean square over the weighed rows.
-    pub sizes: Vec<f64>,
+    /// Torque of each member of the likeliest set beyond what base and common columns could take.
+    pub sizes: Vec<Size>,
     /// Friction of the base, root mean square over the same rows.
     pub friction: f64,
     /// Log evidence (nats, tempered) of each candidate alone.
@@ -91,13 +90,8 @@ pub(crate) fn infer(
         })
         .collect();
     let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
-        let own = weighing.own(&weighed, &likeliest.members);
-        let of_member = |member: &Member| {
-            let columns = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
-            let torque = weighted(&candidates.real[columns.clone()], &own[columns]);
-            root_mean_square(&real.on_rows(&fit_residual(&real.columns, &torque, &real.runs).unwrap_or(torque)))
-        };
-        likeliest.members.iter().map(of_member).collect()
+        let sizing = Sizing { candidates: &candidates, real, temper };
+        sizing.of(&weighing, &weighed, &likeliest.members)
     });
     Inferred { candidates, posterior, sizes, friction, alone, noise, temper, price }
 }

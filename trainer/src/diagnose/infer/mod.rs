@@ -10,4 +10,5 @@ pub(crate) mod inferred;
 pub(crate) mod predicted_blocks;
 pub(crate) mod refined;
 pub(crate) mod side;
+mod size;
 pub(crate) mod weighing;

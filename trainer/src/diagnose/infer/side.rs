@@ -11,8 +11,16 @@ use std::ops::Range;
 /// Change of the time at which friction turns over, each way, by which its column is differenced, s: short beside any filter here, so
 /// that the column does not depend on it.
 const TURN_OVER_STEP_S: f64 = 0.0005;
-/// Ratio of the widths by which the column of a softer turn is differenced: small, so that it is the tangent.
-const TURN_OVER_WIDTH_RATIO: f64 = 1.2;
+
+/// Filtered torque of friction that turns over earlier before the velocity, for each unit of Coulomb friction: a solver of constraints
+/// evaluates friction at the begin of a step, and the steps of recording and simulation may differ. `None` where it turns over with it.
+fn earlier_turn_over(prepared: &Prepared) -> Option<Vec<f64>> {
+    let state = &prepared.state;
+    let sign = |lead_s: f64| state.averaged_sign(&state.led_velocity(lead_s), state.sign_velocity);
+    let lead_s = Some(state.sign_lead_s).filter(|lead_s| *lead_s > 0.0)?;
+    let (from, to) = (sign(lead_s - TURN_OVER_STEP_S), sign(lead_s + TURN_OVER_STEP_S));
+    Some(prepared.filtered(&state.map(|i| to[i] - from[i])))
+}
 
 /// A prepared recording or simulation with what it is compared with.
 #[derive(Clone)]
@@ -43,23 +51,8 @@ impl<'a> Side<'a> {
     pub fn new(prepared: &'a Prepared, base: &Base) -> Self {
         let mut side = Self::without_delay(prepared, base);
         side.columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.predicted)));
+        side.columns.extend(earlier_turn_over(prepared));
         side
-    }
-
-    /// The same where friction may turn over a little earlier or later, and more or less sharply, than the fitted smoothed sign: solvers
-    /// evaluate it at the begin of a step, and the width of a soft constraint depends on inertia and level, which differ a little.
-    #[must_use]
-    pub fn with_turn_over(mut self) -> Self {
-        let state = &self.prepared.state;
-        let sign = |later_s: f64, ratio: f64| {
-            state.averaged_sign(&state.led_velocity(state.sign_lead_s - later_s), ratio * state.sign_velocity)
-        };
-        let change = |from: Vec<f64>, to: Vec<f64>| state.map(|i| to[i] - from[i]);
-        let later = change(sign(-TURN_OVER_STEP_S, 1.0), sign(TURN_OVER_STEP_S, 1.0));
-        let softer = change(sign(0.0, 1.0), sign(0.0, TURN_OVER_WIDTH_RATIO));
-        let columns = self.prepared.filtered_all(&[later, softer]);
-        self.columns.extend(columns);
-        self
     }
 
     /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.

@@ -173,9 +173,14 @@ impl Weighing {
 
     /// Place and coefficient of each own and shared column of some members.
     fn of_members(&self, weighed: &[Candidate], members: &[Member]) -> Vec<(usize, f64)> {
+        self.model(weighed, members).and_then(|model| model.coefficients()).unwrap_or_default()
+    }
+
+    /// Base, common columns and some members; `None` where that is singular to working precision.
+    pub fn model(&self, weighed: &[Candidate], members: &[Member]) -> Option<Model<'_>> {
         let variants: Vec<&Variant> =
             members.iter().map(|member| &weighed[member.candidate].variants[member.variant]).collect();
-        Model::new(&self.reduced, &variants).and_then(|model| model.coefficients()).unwrap_or_default()
+        Model::new(&self.reduced, &variants)
     }
 
     /// What base, common columns and members leave at every row of the recording, by a plain fit of the base.

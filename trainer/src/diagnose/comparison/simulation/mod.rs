@@ -7,9 +7,9 @@ mod relaxation_tests;
 mod replay;
 mod residual_noise;
 mod simulated_effects;
-mod turn_over;
 #[cfg(test)]
 mod tests;
+mod turn_over;
 
 use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
@@ -28,6 +28,7 @@ use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
 use simulated_effects::{SimulatedEffects, simulated_effects};
+use turn_over::TurnOver;
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -62,7 +63,8 @@ pub enum Unlearnable {
 pub struct InverseLaw {
     sign_velocity: f64,
     top_speed: f64,
-    /// Speed that the joint passes within a sample where it turns round: no row tells friction below it.
+    /// Speed that the joint passes within a sample where it turns round, or within which the sign of friction does: no row tells friction
+    /// below it from the sign.
     resolved_speed: f64,
     /// Time by which friction turns over before the velocity, s; `None` where it does not.
     relaxation_s: Option<f64>,
@@ -110,7 +112,7 @@ pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, 
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
     let unfitted = learn_with(None, &prepared, given, None)?;
-    let turn_over = turn_over::turn_over(&InverseLaw { knots: KNOTS[0], relaxation_s: None, ..unfitted }, &prepared);
+    let turn_over = TurnOver::of(&InverseLaw { knots: KNOTS[0], relaxation_s: None, ..unfitted }, &prepared);
     learn_with(None, &prepared, given, Some(turn_over))
 }
 
@@ -119,7 +121,7 @@ fn learn_with(
     simulated: Option<SimulatedEffects>,
     prepared: &Prepared,
     given: bool,
-    turn_over: Option<(f64, f64)>,
+    turn_over: Option<TurnOver>,
 ) -> Result<InverseLaw, Unlearnable> {
     let state = &prepared.state;
     let rows = prepared.rows.len();
@@ -127,11 +129,11 @@ fn learn_with(
         return Err(Unlearnable::Rest { rows });
     }
     let mut unfitted = InverseLaw {
-        sign_velocity: turn_over.map_or(state.sign_velocity, |(_, width)| width),
+        sign_velocity: turn_over.map_or(state.sign_velocity, |of| of.width),
         top_speed: state.top_speed(),
-        resolved_speed: state.resolved_speed(),
+        resolved_speed: state.resolved_speed().max(turn_over.map_or(0.0, |of| of.width)),
         relaxation_s: None,
-        lead_s: turn_over.map_or(0.0, |(lead_s, _)| lead_s),
+        lead_s: turn_over.map_or(0.0, |of| of.lead_s),
         knots: KNOTS[KNOTS.len() - 1],
         gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
         given,

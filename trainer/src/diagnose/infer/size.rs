@@ -1,0 +1,59 @@
+//! How large an effect is beyond what base and common columns could take, and how sure that is.
+
+use crate::diagnose::infer::candidates::Candidates;
+use crate::diagnose::infer::side::Side;
+use crate::diagnose::infer::weighing::Weighing;
+use crate::inference::evidence::Candidate;
+use crate::inference::sets::Member;
+use crate::numerics::least_squares::{fit_residual, weighted};
+use crate::numerics::statistics::root_mean_square;
+
+/// Standard deviations below its mean that a normal variable exceeds with 95 %.
+const EXCEEDED_WITH_95: f64 = 1.645;
+
+/// Torque of an effect, root mean square over the weighed rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    pub torque: f64,
+    /// What it exceeds with 95 %.
+    pub least: f64,
+}
+
+/// What sizes are taken from.
+pub(crate) struct Sizing<'a> {
+    pub candidates: &'a Candidates,
+    pub real: &'a Side<'a>,
+    /// Exponent of the evidence, which is that of the precision of a coefficient.
+    pub temper: f64,
+}
+
+impl Sizing<'_> {
+    /// Sizes of the members of a set.
+    pub fn of(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member]) -> Vec<Size> {
+        let own = weighing.own(weighed, members);
+        let model = weighing.model(weighed, members);
+        let of_member = |member: &Member| {
+            let places = self.candidates.places(std::slice::from_ref(member));
+            let beyond: Vec<Vec<f64>> = places.iter().map(|&place| self.beyond_base(place)).collect();
+            let coefficients: Vec<f64> = places.iter().map(|&place| own[place]).collect();
+            let torque = weighted(&beyond, &coefficients);
+            let size = root_mean_square(&torque);
+            // Change of the size with each coefficient.
+            let slope = |column: &Vec<f64>| {
+                let product: f64 = column.iter().zip(&torque).map(|(a, b)| a * b).sum();
+                product / (torque.len() as f64 * size).max(f64::MIN_POSITIVE)
+            };
+            let slopes: Vec<(usize, f64)> = places.iter().copied().zip(beyond.iter().map(slope)).collect();
+            let deviation = model.as_ref().map_or(f64::INFINITY, |model| model.deviation(&slopes) / self.temper.sqrt());
+            Size { torque: size, least: size - EXCEEDED_WITH_95 * deviation }
+        };
+        members.iter().map(of_member).collect()
+    }
+
+    /// A column at the weighed rows, less what the base takes of it.
+    fn beyond_base(&self, place: usize) -> Vec<f64> {
+        let column = &self.candidates.real[place];
+        let left = fit_residual(&self.real.columns, column, &self.real.runs);
+        self.real.on_rows(left.as_ref().unwrap_or(column))
+    }
+}
