@@ -76,11 +76,11 @@ fn put_right(pair: &str, joint: &str) -> Option<PutRight> {
 }
 
 /// In files of other time steps, integrators and controllers the export is never worse than true attributes nor than `mjcf-patch`, and
-/// leaves what it says: one setting of two joints, or all ten of `mujoco_settings.py` of all.
+/// leaves what it says: one setting of the elbow, or all ten of `mujoco_settings.py` of all joints.
 fn holds_in_other_settings(python: &Path, folder: &Path, (pair, joint): (&str, &str)) {
     let count = match (exhaustive(), pair) {
         (true, _) => "10",
-        (false, "elbow" | "servo") => "1",
+        (false, "elbow") => "1",
         (false, _) => return,
     };
     let at = folder.to_str().expect("a temporary folder has a plain name");

@@ -85,7 +85,7 @@ fn fit_once(
     let trials = turn::trials(&turns, &material.turns, &material)?;
     let first = turns.first().ok_or_else(no_image)?;
     tell(Stage::Comparing);
-    let classical = classical(&material, &data);
+    let classical = classical(&material, &data, &first.found);
 
     tell(Stage::Compiling);
     let (found, of_the_sign) = first.found.on_all(&data)?;

@@ -21,6 +21,8 @@ pub use model::program::expression_of;
 pub use model::structure::{Layout, Modulation, Nonlinear, Shape, SignForm, Structure, Term};
 pub use render::{Language, latex, render, significant};
 pub use search::discover::{Discovery, SearchOptions, discover};
-pub use search::known_forms::{FormFit, KnownForm, Remainder, fit_form, fit_structure, rank_forms, remainder, settle};
+pub use search::known_forms::{
+    FormFit, KnownForm, Remainder, fit_form, fit_structure, rank_forms, refit_structure, remainder, settle,
+};
 pub use search::matching::{Function, Match, matches};
 pub use search::proposals::{Activation, Start, proposals};

@@ -12,7 +12,7 @@ use crate::fit::data::turns;
 use crate::fit::outcome::{ClassicalLaw, FrontLaw, LawSummary};
 use crate::law::{
     self, Channel, ChannelRole, Discovery, Expr, FormFit, Interval, KnownForm, Language, LawData, LawError, Nuisance,
-    Remainder, SearchOptions, Start, Structure, Unary, discover, fit_form, remainder, render, settle,
+    Remainder, SearchOptions, Start, Structure, Unary, discover, fit_form, refit_structure, remainder, render, settle,
 };
 use crate::parameter::Parameter;
 use crate::samples;
@@ -34,6 +34,8 @@ pub(in crate::fit) struct Found {
     pub(in crate::fit) open: FormFit,
     /// Its non-linear constants, where other rows start from.
     constants: Vec<f64>,
+    /// The non-linear constants of the classical laws, likewise.
+    classical: Vec<Option<Vec<f64>>>,
 }
 
 /// Rows as the law room takes them: averages over their states.
@@ -83,7 +85,7 @@ fn law_states(states: &samples::states::States, inputs: &[ChosenInput]) -> law::
 /// front or a classical one that describes those better, its constants paid for, takes its place.
 pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, starts: Vec<Start>) -> Result<Found> {
     let open = turns::open(split);
-    let options = SearchOptions { starts, ..SearchOptions::default() };
+    let options = SearchOptions { starts, intervals: Interval::Linearised, ..SearchOptions::default() };
     let discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
     let open_data = data.select(&open);
     let few = thinned(&open_data, MOST_CLASSICAL_SAMPLES);
@@ -98,18 +100,22 @@ pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, st
     };
     let limit = criterion(&own, &law.structure) - BIC_DIFFERENCE_THRESHOLD;
     let front = discovery.front.iter().filter(|entry| entry.nodes <= options.max_nodes);
-    let front = front.map(|entry| (entry.structure.clone(), Some(entry.constants.as_slice())));
-    let rivals: Vec<_> = front.chain(KnownForm::ALL.map(|form| (form.structure(), None))).collect();
-    let judged = |(structure, constants): &(Structure, Option<&[f64]>)| {
-        let left = remainder(structure, &few, *constants).ok().filter(|left| left.converged)?;
-        Some((criterion(&left, structure), structure.clone(), left.constants))
+    let classical = KnownForm::ALL.map(KnownForm::structure);
+    let front = front.map(|entry| (&entry.structure, Some(&entry.constants)));
+    // What the search has fitted already is not looked for again.
+    let rivals = classical.iter().map(|structure| (structure, discovery.explored.get(structure))).chain(front);
+    let judged = |(structure, constants): &(&Structure, Option<&Vec<f64>>)| {
+        let left = remainder(structure, &few, constants.map(Vec::as_slice)).ok().filter(|left| left.converged)?;
+        Some((criterion(&left, structure), (*structure).clone(), left.constants))
     };
-    let judged: Vec<_> = rivals.par_iter().map(judged).collect();
+    let judged: Vec<_> = rivals.collect::<Vec<_>>().par_iter().map(judged).collect();
+    let constants_of = |judged: &Option<(f64, Structure, Vec<f64>)>| judged.as_ref().map(|(.., c)| c.clone());
+    let of_classical = judged.iter().take(classical.len()).map(constants_of).collect();
     let better = judged.into_iter().flatten().filter(|(value, ..)| *value < limit);
     let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
     let (structure, constants) = best.map_or((law.structure.clone(), own.constants), |(_, s, c)| (s, c));
     let (open, _) = settled((&structure, &constants), &open_data, Interval::Linearised)?;
-    Ok(Found { open, constants, discovery })
+    Ok(Found { open, constants, classical: of_classical, discovery })
 }
 
 /// A law fitted from constants that some of the rows gave it, and what is to be said of its sign.
@@ -134,17 +140,22 @@ pub(in crate::fit) fn thinned(data: &LawData, most: usize) -> LawData {
     data.select(&(0..data.rows()).step_by(stride).collect::<Vec<_>>())
 }
 
-/// The laws of the literature on the same samples, those that can be fitted.
-pub(in crate::fit) fn classical(material: &Material, data: &LawData) -> Vec<ClassicalLaw> {
+/// The laws of the literature on the same samples, those that can be fitted, each from where the search left it.
+pub(in crate::fit) fn classical(material: &Material, data: &LawData, found: &Found) -> Vec<ClassicalLaw> {
     let mut over_velocity = thinned(data, MOST_CLASSICAL_SAMPLES);
     over_velocity.channels.truncate(1);
-    let fit = |form: &KnownForm| {
-        let fit = fit_form(*form, &over_velocity, None).ok()?;
+    let fit = |(form, constants): (&KnownForm, &Option<Vec<f64>>)| {
+        let structure = form.structure();
+        let fit = match constants {
+            Some(constants) => refit_structure(&structure, constants, &over_velocity, Interval::Linearised),
+            None => fit_form(*form, &over_velocity, None),
+        };
+        let fit = fit.ok()?;
         let mut parameters = law_parameters(&fit.law.parameters);
         parameters.extend(rigid::parameters(material, &fit.uncertainty.nuisance));
         Some(ClassicalLaw { name: form.name(), rmse: fit.rmse, bic: fit.bic, parameters })
     };
-    KnownForm::ALL.par_iter().map(fit).collect::<Vec<_>>().into_iter().flatten().collect()
+    KnownForm::ALL.par_iter().zip(&found.classical).map(fit).collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
 /// Constants of a law as results carry them.
@@ -175,7 +186,7 @@ pub(in crate::fit) fn summary(found: &Found, fit: &FormFit, inputs: &[ChosenInpu
         nodes: expression.node_count(),
         rmse: fit.rmse,
         front: front.collect(),
-        explored: found.discovery.explored,
+        explored: found.discovery.explored.len(),
     }
 }
 

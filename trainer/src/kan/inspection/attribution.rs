@@ -78,10 +78,10 @@ fn spreads(network: &Network, dataset: &Dataset, rows: &[Range<usize>]) -> Vec<S
             ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; layer.inputs],
         })
         .collect();
-    let chunk = |range: Range<usize>| {
+    let chunk = |rows: &[Range<usize>]| {
         let mut trace = Trace::new(network);
         let mut spreads = empty.clone();
-        for row in range {
+        for row in rows.iter().cloned().flatten() {
             trace.forward(network, |i| network.inputs[i].normalise(dataset.inputs[i][row]));
             for (index, (spread, layer)) in spreads.iter_mut().zip(network.layers()).enumerate() {
                 for (position, sums) in spread.edges.iter_mut().enumerate() {

@@ -54,7 +54,7 @@ impl Network {
             _ => (x, 1.0),
         };
         let gain_out = if layer + 1 == self.layers.len() { self.output.width } else { 1.0 };
-        let trace = EdgeTrace::at(edge, &self.parameters, x, false);
+        let trace = EdgeTrace::at(edge, &self.parameters, x, edge.basis.at(x), false);
         (trace.value * gain_out, trace.slope * gain_in * gain_out)
     }
 }

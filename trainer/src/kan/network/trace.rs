@@ -13,9 +13,9 @@ pub(in crate::kan) struct EdgeTrace {
 }
 
 impl EdgeTrace {
+    /// What an edge does with `x`, where its basis is `local`.
     #[inline]
-    pub(in crate::kan) fn at(edge: &Edge, parameters: &[f64], x: f64, with_base: bool) -> Self {
-        let local = edge.basis.at(x);
+    pub(in crate::kan) fn at(edge: &Edge, parameters: &[f64], x: f64, local: LocalBasis, with_base: bool) -> Self {
         let coefficients = &parameters[edge.coefficients()][local.first..=local.first + edge.basis.order()];
         let (mut spline, mut spline_slope) = (0.0, 0.0);
         for ((c, value), slope) in coefficients.iter().zip(&local.value).zip(&local.slope) {
@@ -38,6 +38,8 @@ impl EdgeTrace {
 #[derive(Clone, Debug)]
 struct LayerTrace {
     inputs: Vec<f64>,
+    /// For each edge an earlier one from the same node with the same basis, where there is one: its functions are worked out once.
+    twins: Vec<Option<usize>>,
     edges: Vec<EdgeTrace>,
     /// What the edges add up to, before tanh.
     sums: Vec<f64>,
@@ -60,6 +62,7 @@ impl Trace {
     pub(in crate::kan) fn new(network: &Network) -> Self {
         let layers = network.layers.iter().map(|layer| LayerTrace {
             inputs: vec![0.0; layer.inputs],
+            twins: (0..layer.edges.len()).map(|position| twin(layer, position)).collect(),
             edges: vec![EdgeTrace::default(); layer.edges.len()],
             sums: vec![0.0; layer.nodes.terminals()],
             terminals: vec![0.0; layer.nodes.terminals()],
@@ -143,9 +146,14 @@ impl LayerTrace {
             let mut sum = 0.0;
             for (from, edge) in edges.iter().enumerate() {
                 if edge.active {
-                    let trace = EdgeTrace::at(edge, parameters, self.inputs[from], with_base);
+                    let (position, x) = (to * layer.inputs + from, self.inputs[from]);
+                    let local = match self.twins[position] {
+                        Some(twin) => self.edges[twin].local,
+                        None => edge.basis.at(x),
+                    };
+                    let trace = EdgeTrace::at(edge, parameters, x, local, with_base);
                     sum += trace.value;
-                    self.edges[to * layer.inputs + from] = trace;
+                    self.edges[position] = trace;
                 }
             }
             self.sums[to] = sum;
@@ -167,6 +175,13 @@ impl LayerTrace {
             }
         }
     }
+}
+
+/// The first active edge from the same node whose basis an edge shares, where that is not itself.
+fn twin(layer: &Layer, position: usize) -> Option<usize> {
+    let grid = |edge: usize| (layer.edges[edge].basis.order(), layer.edges[edge].basis.breaks());
+    let mut others = (position % layer.inputs..position).step_by(layer.inputs);
+    others.find(|&other| layer.edges[other].active && grid(other) == grid(position))
 }
 
 /// Node values from terminals: sums pass, products multiply their two.

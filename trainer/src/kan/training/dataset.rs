@@ -102,24 +102,40 @@ pub(in crate::kan) fn row_count(rows: &[Range<usize>]) -> usize {
 pub(in crate::kan) fn fold_chunks<T: Send, A>(
     rows: &[Range<usize>],
     start: A,
-    map: impl Fn(Range<usize>) -> T + Sync,
+    map: impl Fn(&[Range<usize>]) -> T + Sync,
     mut fold: impl FnMut(A, T) -> A,
 ) -> A {
-    let chunks: Vec<Range<usize>> = rows
-        .iter()
-        .flat_map(|range| range.clone().step_by(CHUNK_ROWS).map(|first| first..range.end.min(first + CHUNK_ROWS)))
-        .collect();
     let mut accumulated = start;
-    for batch in chunks.chunks(CHUNKS_IN_FLIGHT) {
+    for batch in chunks(rows).chunks(CHUNKS_IN_FLIGHT) {
         let parts: Vec<T> = match batch {
-            [only] => vec![map(only.clone())],
-            many => many.par_iter().cloned().map(&map).collect(),
+            [only] => vec![map(only)],
+            many => many.par_iter().map(|chunk| map(chunk)).collect(),
         };
         for part in parts {
             accumulated = fold(accumulated, part);
         }
     }
     accumulated
+}
+
+/// The same rows, however many ranges they come in, as chunks of [`CHUNK_ROWS`]; the last may have fewer.
+fn chunks(rows: &[Range<usize>]) -> Vec<Vec<Range<usize>>> {
+    let mut chunks: Vec<Vec<Range<usize>>> = Vec::new();
+    let mut room = 0;
+    for range in rows {
+        let mut begin = range.start;
+        while begin < range.end {
+            if room == 0 {
+                chunks.push(Vec::new());
+                room = CHUNK_ROWS;
+            }
+            let end = range.end.min(begin + room);
+            chunks.last_mut().expect("one has room").push(begin..end);
+            room -= end - begin;
+            begin = end;
+        }
+    }
+    chunks
 }
 
 #[cfg(test)]
@@ -132,7 +148,7 @@ mod tests {
         let seen = fold_chunks(
             &rows,
             Vec::new(),
-            |range| range.collect::<Vec<_>>(),
+            |chunk| chunk.iter().cloned().flatten().collect::<Vec<_>>(),
             |mut all, part| {
                 all.extend(part);
                 all
@@ -141,6 +157,8 @@ mod tests {
         let expected: Vec<usize> = rows.iter().cloned().flatten().collect();
         assert_eq!(seen, expected);
         assert_eq!(row_count(&rows), expected.len());
+        let sizes: Vec<usize> = chunks(&rows).iter().map(|chunk| row_count(chunk)).collect();
+        assert_eq!(sizes, [CHUNK_ROWS, CHUNK_ROWS, CHUNK_ROWS, 8]);
     }
 
     #[test]

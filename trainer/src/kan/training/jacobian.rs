@@ -60,11 +60,11 @@ impl NormalEquations {
     }
 
     pub(in crate::kan) fn of(model: &Model, unknowns: &Unknowns, dataset: &Dataset, rows: &[Range<usize>]) -> Self {
-        let chunk = |range: Range<usize>| {
+        let chunk = |rows: &[Range<usize>]| {
             let mut sums = Self::zeros(unknowns.len());
             let mut trace = Trace::for_training(&model.network, unknowns.with_base);
             let mut jacobian_row = Row::default();
-            for row in range {
+            for row in rows.iter().cloned().flatten() {
                 let residual = jacobian_row.fill(model, unknowns, dataset, row, &mut trace);
                 sums.add(&jacobian_row, residual);
             }
@@ -126,11 +126,11 @@ pub(in crate::kan) fn residual_sum_and_gradient(
     dataset: &Dataset,
     rows: &[Range<usize>],
 ) -> (f64, Vec<f64>) {
-    let chunk = |range: Range<usize>| {
+    let chunk = |rows: &[Range<usize>]| {
         let mut trace = Trace::for_training(&model.network, unknowns.with_base);
         let mut jacobian_row = Row::default();
         let (mut sum, mut gradient) = (0.0, vec![0.0; unknowns.len()]);
-        for row in range {
+        for row in rows.iter().cloned().flatten() {
             let residual = jacobian_row.fill(model, unknowns, dataset, row, &mut trace);
             sum += residual * residual;
             let indices = jacobian_row.runs.iter().cloned().flatten();

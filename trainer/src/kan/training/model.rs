@@ -57,9 +57,9 @@ impl Model {
 
     /// Sum of squared normalised residuals.
     pub(in crate::kan) fn residual_sum(&self, dataset: &Dataset, rows: &[Range<usize>]) -> f64 {
-        let chunk = |range: Range<usize>| {
+        let chunk = |rows: &[Range<usize>]| {
             let mut trace = Trace::new(&self.network);
-            range.map(|row| self.residual(dataset, row, &mut trace).powi(2)).sum::<f64>()
+            rows.iter().cloned().flatten().map(|row| self.residual(dataset, row, &mut trace).powi(2)).sum::<f64>()
         };
         fold_chunks(rows, 0.0, chunk, |sum, part| sum + part)
     }

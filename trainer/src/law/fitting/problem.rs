@@ -1,7 +1,8 @@
 //! Least squares for one structure: variable projection over the linear coefficients (Golub & Pereyra 1973, in the
-//! approximation of Kaufman 1975), Levenberg-Marquardt over the few non-linear constants.
+//! approximation of Kaufman 1975), a descent over the few non-linear constants.
 
-mod grid;
+mod descent;
+pub mod grid;
 mod values;
 
 use super::projection::{Basis, dot};
@@ -51,15 +52,18 @@ pub struct Held<'a> {
 pub struct Effort {
     /// Most iterations.
     pub iterations: usize,
-    /// Stops when a step reduces the sum of squares by a smaller share.
+    /// Stops where less than so many variances of the residuals are left to be taken off the sum of squares; a standard error is what
+    /// raises it by one.
     pub tolerance: f64,
 }
 
 impl Effort {
     /// Enough to rank structures.
-    pub const SEARCH: Self = Self { iterations: 25, tolerance: 1e-6 };
-    /// Until rounding stops it.
-    pub const FINAL: Self = Self { iterations: 200, tolerance: 1e-15 };
+    pub const SEARCH: Self = Self { iterations: 25, tolerance: 1e-3 };
+    /// Enough to compare structures by what they leave.
+    pub const COMPARISON: Self = Self { iterations: 200, tolerance: 1e-3 };
+    /// To a thousandth of the standard errors.
+    pub const FINAL: Self = Self { iterations: 200, tolerance: 1e-6 };
 }
 
 /// Expressions evaluated for every sample: at its channels, or averaged over its states.
@@ -71,7 +75,7 @@ pub struct RowTape<'a> {
 
 impl RowTape<'_> {
     /// As [`Tape::run`].
-    pub fn run(&self, params: &[f64], slopes: bool) -> Columns {
+    pub fn run(&self, params: &[f64], slopes: &[usize]) -> Columns {
         let mut columns = self.tape.run(params, slopes);
         if let Some(averages) = self.averages {
             let of_slopes = columns.slopes.iter_mut().flatten().flatten();
@@ -81,11 +85,13 @@ impl RowTape<'_> {
     }
 }
 
+/// What is left of the target where the non-linear constants have certain values, the coefficients being the best for them.
 struct Point {
     rss: f64,
     residual: Vec<f64>,
     coefficients: Vec<f64>,
     independent: Vec<bool>,
+    /// Of the residual, for each constant that was asked for.
     jacobian: Vec<Vec<f64>>,
 }
 
@@ -118,25 +124,25 @@ impl<'a> Problem<'a> {
         dot(&self.target, &self.target)
     }
 
-    /// The fit optimised until rounding stops it, the constants in `held` being left where they are.
+    /// The fit optimised as far as the samples can tell, the constants in `held` being left where they are.
     pub fn polish(&self, fit: &Fit, held: &[Nonlinear]) -> Fit {
-        let psi = &fit.params[..fit.structure.nonlinear().len()];
-        self.fit_from(&fit.structure, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL)
+        self.fit_from(&fit.structure, fit.constants(), Held { nonlinear: held, coefficient: None }, Effort::FINAL)
     }
 
     fn tape(&self, structure: &Structure) -> RowTape<'_> {
-        self.tape_of(&structure.columns(self.extents.layout()), structure.nonlinear().len())
+        self.tape_of(&structure.columns(self.extents.layout()))
     }
 
     /// Expressions of the channels that are evaluated for every sample.
-    pub fn tape_of(&self, outputs: &[Expr], params: usize) -> RowTape<'_> {
+    pub fn tape_of(&self, outputs: &[Expr]) -> RowTape<'_> {
         let averages = self.data.states.as_ref().map(|states| &states.averages);
         let places = self.channels.first().map_or(0, |channel| channel.len());
-        RowTape { tape: Tape::new(outputs, params, &self.channels, places), averages }
+        RowTape { tape: Tape::new(outputs, &self.channels, places), averages }
     }
 
-    fn at(&self, tape: &RowTape<'_>, psi: &[f64], pinned: Option<(usize, f64)>, jacobian: bool) -> Point {
-        let mut columns = tape.run(psi, jacobian);
+    /// What is left at `psi`, and how that changes with the non-linear constants in `slopes`.
+    fn at(&self, tape: &RowTape<'_>, psi: &[f64], pinned: Option<(usize, f64)>, slopes: &[usize]) -> Point {
+        let mut columns = tape.run(psi, slopes);
         let mut basis = Basis::default();
         let mut residual = self.target.clone();
         for (j, column) in columns.values.iter_mut().enumerate() {
@@ -157,27 +163,19 @@ impl<'a> Problem<'a> {
         if let Some((j, value)) = pinned {
             coefficients[j] = value;
         }
-        let mut derivatives = Vec::new();
-        if jacobian {
-            for k in 0..psi.len() {
-                let mut d = vec![0.0; self.rows()];
-                for (slopes, &c) in columns.slopes.iter().zip(&coefficients) {
-                    if let Some(slope) = &slopes[k] {
-                        d.iter_mut().zip(slope).for_each(|(d, s)| *d -= c * s);
-                    }
+        let derivative = |i: usize| {
+            let mut d = vec![0.0; self.rows()];
+            for (slopes, &c) in columns.slopes.iter().zip(&coefficients) {
+                if let Some(slope) = &slopes[i] {
+                    d.iter_mut().zip(slope).for_each(|(d, s)| *d -= c * s);
                 }
-                self.nuisance.remove_from(&mut d);
-                basis.remove_from(&mut d);
-                derivatives.push(d);
             }
-        }
-        Point {
-            rss: dot(&residual, &residual),
-            residual,
-            coefficients,
-            independent: basis.independent(),
-            jacobian: derivatives,
-        }
+            self.nuisance.remove_from(&mut d);
+            basis.remove_from(&mut d);
+            d
+        };
+        let jacobian = (0..slopes.len()).map(derivative).collect();
+        Point { rss: dot(&residual, &residual), residual, coefficients, independent: basis.independent(), jacobian }
     }
 
     /// Ranges of the non-linear constants of a structure.
@@ -185,103 +183,10 @@ impl<'a> Problem<'a> {
         structure.nonlinear().into_iter().map(|n| self.extents.range(n, structure.sign())).collect()
     }
 
-    /// Fits from the non-linear constants `psi`; what is `held` stays where it is.
-    pub fn fit_from(&self, structure: &Structure, psi: &[f64], held: Held<'_>, effort: Effort) -> Fit {
+    /// Sums of squares of a structure with its non-linear constants held.
+    pub fn sums(&self, structure: &Structure) -> impl Fn(&[f64]) -> f64 {
         let tape = self.tape(structure);
-        let ranges = self.ranges(structure);
-        let free: Vec<usize> = structure
-            .nonlinear()
-            .iter()
-            .enumerate()
-            .filter(|(_, n)| !held.nonlinear.contains(n))
-            .map(|(k, _)| k)
-            .collect();
-        let mut psi = psi.to_vec();
-        let mut point = self.at(&tape, &psi, held.coefficient, true);
-        let mut damping = 1e-3;
-        let mut converged = free.is_empty();
-        let floor = 1e-30 * self.total();
-        for _ in 0..effort.iterations {
-            if converged || point.rss <= floor {
-                converged = true;
-                break;
-            }
-            let Some((trial, tried, reduction)) =
-                self.step(&tape, (&ranges, &free, held.coefficient), &psi, &point, &mut damping)
-            else {
-                // No damping gave a descent: a minimum to rounding.
-                converged = true;
-                break;
-            };
-            psi = trial;
-            point = tried;
-            converged = reduction < effort.tolerance;
-        }
-        let dependent = point.independent.iter().map(|i| !i).collect();
-        let params = psi.iter().chain(&point.coefficients).copied().collect();
-        Fit { structure: structure.clone(), params, rss: point.rss, converged, dependent }
-    }
-
-    /// One accepted step: the new constants, the point there and the share by which the sum of squares fell.
-    fn step(
-        &self,
-        tape: &RowTape<'_>,
-        (ranges, free, pinned): (&[Range], &[usize], Option<(usize, f64)>),
-        psi: &[f64],
-        point: &Point,
-        damping: &mut f64,
-    ) -> Option<(Vec<f64>, Point, f64)> {
-        let scale = |k: usize| if ranges[k].logarithmic { psi[k] } else { 1.0 };
-        let n = free.len();
-        let mut normal = nalgebra::DMatrix::zeros(n, n);
-        let mut gradient = nalgebra::DVector::zeros(n);
-        for (i, &k) in free.iter().enumerate() {
-            gradient[i] = scale(k) * dot(&point.jacobian[k], &point.residual);
-            for (j, &l) in free.iter().enumerate().take(i + 1) {
-                normal[(i, j)] = scale(k) * scale(l) * dot(&point.jacobian[k], &point.jacobian[l]);
-                normal[(j, i)] = normal[(i, j)];
-            }
-        }
-        let largest = (0..n).map(|i| normal[(i, i)]).fold(0.0, f64::max);
-        if largest.is_nan() || largest <= 0.0 {
-            return None;
-        }
-        while *damping < 1e12 {
-            let mut damped = normal.clone();
-            for i in 0..n {
-                damped[(i, i)] += *damping * normal[(i, i)].max(1e-12 * largest);
-            }
-            let step = damped.cholesky().map(|c| c.solve(&gradient));
-            if let Some(step) = step {
-                let mut trial = psi.to_vec();
-                for (i, &k) in free.iter().enumerate() {
-                    let range = &ranges[k];
-                    let moved = if range.logarithmic {
-                        psi[k] * libm::exp((-step[i]).clamp(-1.5, 1.5))
-                    } else {
-                        psi[k] - step[i]
-                    };
-                    trial[k] = moved.clamp(range.lower, range.upper);
-                }
-                if trial == psi {
-                    return None;
-                }
-                let tried = self.at(tape, &trial, pinned, true);
-                if tried.rss < point.rss {
-                    *damping = (*damping * 0.1).max(1e-12);
-                    let reduction = (point.rss - tried.rss) / point.rss;
-                    return Some((trial, tried, reduction));
-                }
-            }
-            *damping *= 8.0;
-        }
-        *damping = 1.0;
-        None
-    }
-
-    /// Sum of squares with the non-linear constants held at `psi`.
-    pub fn rss_at(&self, structure: &Structure, psi: &[f64]) -> f64 {
-        self.at(&self.tape(structure), psi, None, false).rss
+        move |psi| self.at(&tape, psi, None, &[]).rss
     }
 }
 
@@ -289,6 +194,11 @@ impl Fit {
     /// The non-linear constants with their values.
     pub fn nonlinear(&self) -> Vec<(Nonlinear, f64)> {
         self.structure.nonlinear().into_iter().zip(self.params.iter().copied()).collect()
+    }
+
+    /// The values of the non-linear constants.
+    pub fn constants(&self) -> &[f64] {
+        &self.params[..self.params.len() - self.structure.terms().len()]
     }
 
     /// The coefficients of the terms.

@@ -123,7 +123,7 @@ pub(in crate::law) fn front(candidates: &[Candidate]) -> Vec<FrontEntry> {
     });
     let entry = |c: &Candidate| FrontEntry {
         structure: c.fit.structure.clone(),
-        constants: c.fit.params[..c.fit.structure.nonlinear().len()].to_vec(),
+        constants: c.fit.constants().to_vec(),
         expression: c.expression.clone(),
         nodes: c.nodes,
         rmse: c.rmse,
@@ -150,8 +150,7 @@ pub(in crate::law) fn held_out_mean_square(problem: &Problem<'_>, fit: &Fit, hel
         let (test, train): (Vec<usize>, Vec<usize>) = (0..data.rows()).partition(|&r| fold_of(data.blocks[r]) == fold);
         let (train, test) = (data.select(&train), data.select(&test));
         let problem = Problem::new(&train, extents);
-        let psi = &fit.params[..fit.structure.nonlinear().len()];
-        let refit = problem.fit_from(&fit.structure, psi, held, Effort::FINAL);
+        let refit = problem.fit_from(&fit.structure, fit.constants(), held, Effort::COMPARISON);
         let beta = problem.nuisance_coefficients(&refit);
         let law = Problem::new(&test, extents).law_values(&refit);
         for (row, f) in law.iter().enumerate() {

@@ -16,7 +16,7 @@ const MULTISTART_RELATIVE_ERROR: f64 = 0.15;
 const MULTISTART_VALUES: usize = 24;
 
 /// How hard the refits of an interval try.
-const REFIT_EFFORT: Effort = Effort { iterations: 12, tolerance: 1e-5 };
+const REFIT_EFFORT: Effort = Effort { iterations: 12, tolerance: 1e-2 };
 
 /// What the data say about the constants of a law, in the order of its parameters: non-linear ones, then the coefficients of the terms.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ pub fn analyse(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], kind: Inter
     let free: Vec<usize> = (0..count).filter(|&k| names.get(k).is_none_or(|n| !held.contains(n))).collect();
     let rows = problem.rows();
     let template = fit.structure.template(problem.extents().layout());
-    let mut columns = problem.tape_of(&[template], count).run(&fit.params, true);
+    let mut columns = problem.tape_of(&[template]).run(&fit.params, &(0..count).collect::<Vec<_>>());
     let slopes = columns.slopes.swap_remove(0);
     let nuisance = &problem.data().nuisance;
     let jacobian: Vec<&[f64]> = nuisance
@@ -193,7 +193,7 @@ fn other_optima(
     let range = &problem.ranges(&fit.structure)[k];
     let mut kept = held.to_vec();
     kept.push(names[k]);
-    let mut psi = fit.params[..names.len()].to_vec();
+    let mut psi = fit.constants().to_vec();
     for i in 0..MULTISTART_VALUES {
         let share = (i as f64 + 0.5) / MULTISTART_VALUES as f64;
         psi[k] = if range.logarithmic {
@@ -238,7 +238,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, (se, 
         let mut distance = first;
         let mut inside = 0.0;
         let mut outside = f64::INFINITY;
-        let mut psi = fit.params[..names.len()].to_vec();
+        let mut psi = fit.constants().to_vec();
         for _ in 0..10 {
             let mut value = best + direction * distance;
             if let Some((lower, upper)) = limits {
@@ -253,7 +253,7 @@ fn profile(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], k: usize, (se, 
             let rise = ((tried.rss - fit.rss).max(0.0)).sqrt() / (spread * NORMAL_95);
             if rise <= 1.0 {
                 inside = distance;
-                psi = tried.params[..names.len()].to_vec();
+                psi = tried.constants().to_vec();
                 if let Some((lower, upper)) = limits
                     && (value >= upper || value <= lower * 1.02)
                 {

@@ -64,7 +64,7 @@ pub(in crate::law) fn fix_smoothing(
     let held = vec![Nonlinear::Smoothing];
     let rows = problem.rows() as f64;
     let with_width = |width: f64| -> (Fit, f64) {
-        let mut psi = fit.params[..names.len()].to_vec();
+        let mut psi = fit.constants().to_vec();
         psi[at] = sign.from_width(width);
         let fixed =
             problem.fit_from(&fit.structure, &psi, Held { nonlinear: &held, coefficient: None }, Effort::SEARCH);
@@ -114,8 +114,7 @@ pub(in crate::law) fn allow_for_viscous(
     }
     let viscous = Term::plain(Shape::Viscous);
     let wider = fit.structure.with(viscous);
-    let psi = &fit.params[..fit.structure.nonlinear().len()];
-    let refit = problem.fit_from(&wider, psi, Held { nonlinear: held, coefficient: None }, Effort::FINAL);
+    let refit = problem.fit_from(&wider, fit.constants(), Held { nonlinear: held, coefficient: None }, Effort::FINAL);
     let more = analyse(problem, &refit, held, Interval::Profile);
     let added = wider.nonlinear().len() + wider.terms().iter().position(|t| *t == viscous).unwrap_or(0);
     let names = name_all(&wider, problem.data(), problem.extents().layout(), &refit.params);

@@ -1,18 +1,22 @@
 //! Several expressions evaluated together over whole columns, common parts once, with forward derivatives with respect
-//! to the parameters.
-
-use std::borrow::Cow;
+//! to the parameters. A few rows at a time go through all operations, so that nothing between input and output leaves the cache.
 
 use super::expression::{Expr, Unary};
+
+/// Rows that go through all operations together: registers of a law and of its derivatives then stay in the fastest caches.
+const ROWS_AT_ONCE: usize = 128;
+
+/// A value for each of the rows at hand.
+type Register = [f64; ROWS_AT_ONCE];
 
 /// Expressions compiled for column-wise evaluation.
 #[derive(Clone, Debug)]
 pub struct Tape {
     ops: Vec<Op>,
+    reads: Vec<Reads>,
     outputs: Vec<usize>,
-    params: usize,
-    /// Values that depend on no parameter, computed once; in the order of `ops`.
-    given: Vec<Option<Column>>,
+    /// Values that depend on rows and on no parameter, computed once; empty for the others. In the order of `ops`.
+    given: Vec<Vec<f64>>,
     rows: usize,
 }
 
@@ -30,36 +34,11 @@ enum Op {
     Unary(Unary, usize),
 }
 
-/// A value per sample, or one for all of them.
-#[derive(Clone, Debug)]
-enum Column {
-    Same(f64),
-    Each(Vec<f64>),
-}
-
-impl Column {
-    fn map(&self, f: impl Fn(f64) -> f64) -> Self {
-        match self {
-            Self::Same(c) => Self::Same(f(*c)),
-            Self::Each(values) => Self::Each(values.iter().map(|&x| f(x)).collect()),
-        }
-    }
-
-    fn zip(&self, other: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        match (self, other) {
-            (Self::Same(a), Self::Same(b)) => Self::Same(f(*a, *b)),
-            (Self::Same(a), Self::Each(b)) => Self::Each(b.iter().map(|&b| f(*a, b)).collect()),
-            (Self::Each(a), Self::Same(b)) => Self::Each(a.iter().map(|&a| f(a, *b)).collect()),
-            (Self::Each(a), Self::Each(b)) => Self::Each(a.iter().zip(b).map(|(&a, &b)| f(a, b)).collect()),
-        }
-    }
-
-    fn into_rows(self, rows: usize) -> Vec<f64> {
-        match self {
-            Self::Same(c) => vec![c; rows],
-            Self::Each(values) => values,
-        }
-    }
+/// What the value of an operation depends on.
+#[derive(Clone, Copy, Debug)]
+struct Reads {
+    parameters: bool,
+    rows: bool,
 }
 
 /// Values of the outputs over all samples, and where asked for their derivatives.
@@ -67,24 +46,31 @@ impl Column {
 pub struct Columns {
     /// `values[output][row]`.
     pub values: Vec<Vec<f64>>,
-    /// `slopes[output][parameter]`, `None` where the output does not depend on the parameter; empty when not asked for.
+    /// `slopes[output][i]`, with respect to the `i`-th parameter that was asked for; `None` where the output does not depend on it.
     pub slopes: Vec<Vec<Option<Vec<f64>>>>,
 }
 
 impl Tape {
-    /// Compiles `outputs`, which may use parameters `0..params`, for `channels[i][row]`.
+    /// Compiles `outputs` for `channels[i][row]`.
     ///
     /// # Panics
     /// When an input index is out of range or a channel has fewer than `rows` values.
-    pub fn new(outputs: &[Expr], params: usize, channels: &[&[f64]], rows: usize) -> Self {
-        let mut tape = Self { ops: Vec::new(), outputs: Vec::new(), params, given: Vec::new(), rows };
+    pub fn new(outputs: &[Expr], channels: &[&[f64]], rows: usize) -> Self {
+        let mut tape = Self { ops: Vec::new(), reads: Vec::new(), outputs: Vec::new(), given: Vec::new(), rows };
         tape.outputs = outputs.iter().map(|e| tape.add(e)).collect();
-        for op in &tape.ops {
-            let column = match op {
-                Op::Input(i) => Some(Column::Each(channels[*i][..rows].to_vec())),
-                _ => op.value(&tape.given, &[]),
-            };
-            tape.given.push(column);
+        tape.given = vec![Vec::new(); tape.ops.len()];
+        let mut registers = vec![[0.0; ROWS_AT_ONCE]; tape.ops.len()];
+        for begin in (0..rows).step_by(ROWS_AT_ONCE) {
+            let end = rows.min(begin + ROWS_AT_ONCE);
+            for place in (0..tape.ops.len()).filter(|&place| !tape.reads[place].parameters) {
+                match tape.ops[place] {
+                    Op::Input(i) => registers[place][..end - begin].copy_from_slice(&channels[i][begin..end]),
+                    _ => tape.value(place, &[], &mut registers),
+                }
+                if tape.reads[place].rows {
+                    tape.given[place].extend_from_slice(&registers[place][..end - begin]);
+                }
+            }
         }
         tape
     }
@@ -112,49 +98,98 @@ impl Tape {
         if let Some(found) = self.ops.iter().position(|known| *known == op) {
             return found;
         }
+        let reads = |of: fn(&Reads) -> bool| op.operands().any(|place| of(&self.reads[place]));
+        self.reads.push(Reads {
+            parameters: matches!(op, Op::Param(_)) || reads(|reads| reads.parameters),
+            rows: matches!(op, Op::Input(_)) || reads(|reads| reads.rows),
+        });
         self.ops.push(op);
         self.ops.len() - 1
     }
 
-    /// Values of every output, with derivatives with respect to all parameters when `slopes`.
+    /// Works out the register of an operation from those before it.
+    fn value(&self, place: usize, params: &[f64], registers: &mut [Register]) {
+        let (before, rest) = registers.split_at_mut(place);
+        self.ops[place].value(before, params, &mut rest[0]);
+    }
+
+    /// Values of every output, with derivatives with respect to the parameters in `slopes`.
     ///
     /// # Panics
     /// When a parameter index is out of range.
-    pub fn run(&self, params: &[f64], slopes: bool) -> Columns {
-        let mut values: Vec<Cow<'_, Column>> = Vec::with_capacity(self.ops.len());
-        let mut tangents: Vec<Vec<Option<Column>>> = Vec::with_capacity(self.ops.len());
-        for (op, given) in self.ops.iter().zip(&self.given) {
-            let value = match given {
-                Some(column) => Cow::Borrowed(column),
-                None => Cow::Owned(op.value_with(&values, params)),
-            };
-            if slopes {
-                let all = 0..self.params;
-                tangents.push(match given {
-                    Some(_) => vec![None; self.params],
-                    None => all.map(|k| tangent(op, k, &values, &value, &tangents)).collect(),
-                });
-            }
-            values.push(value);
-        }
-        let slopes = if slopes {
-            self.outputs
-                .iter()
-                .map(|&o| tangents[o].iter().map(|t| t.clone().map(|t| t.into_rows(self.rows))).collect())
-                .collect()
-        } else {
-            Vec::new()
+    pub fn run(&self, params: &[f64], slopes: &[usize]) -> Columns {
+        let count = slopes.len();
+        let mut registers = vec![[0.0; ROWS_AT_ONCE]; self.ops.len()];
+        // Of each operation one for each parameter, where it depends on that.
+        let mut tangents = vec![[0.0; ROWS_AT_ONCE]; self.ops.len() * count];
+        let depends = self.dependence(slopes);
+        let column = || Vec::with_capacity(self.rows);
+        let slopes_of = |&output: &usize| (0..count).map(|i| depends[output * count + i].then(column)).collect();
+        let mut columns = Columns {
+            values: self.outputs.iter().map(|_| column()).collect(),
+            slopes: self.outputs.iter().map(slopes_of).collect(),
         };
-        Columns {
-            values: self.outputs.iter().map(|&o| values[o].clone().into_owned().into_rows(self.rows)).collect(),
-            slopes,
+        for begin in (0..self.rows).step_by(ROWS_AT_ONCE) {
+            let rows = ROWS_AT_ONCE.min(self.rows - begin);
+            for (place, reads) in self.reads.iter().enumerate() {
+                if reads.rows && !reads.parameters {
+                    registers[place][..rows].copy_from_slice(&self.given[place][begin..begin + rows]);
+                    continue;
+                }
+                // Without rows the registers of the first hold for all.
+                if reads.rows || begin == 0 {
+                    self.value(place, params, &mut registers);
+                    for i in (0..count).filter(|i| depends[place * count + i]) {
+                        let (before, rest) = tangents.split_at_mut(place * count + i);
+                        let of = |operand: usize| {
+                            let at = operand * count + i;
+                            depends[at].then(|| &before[at])
+                        };
+                        self.ops[place].tangent(&registers, &registers[place], of, &mut rest[0]);
+                    }
+                }
+            }
+            for (output, &place) in self.outputs.iter().enumerate() {
+                columns.values[output].extend_from_slice(&registers[place][..rows]);
+                for (i, slope) in columns.slopes[output].iter_mut().enumerate() {
+                    if let Some(slope) = slope {
+                        slope.extend_from_slice(&tangents[place * count + i][..rows]);
+                    }
+                }
+            }
         }
+        columns
+    }
+
+    /// Whether each operation depends on each of the parameters, operation after operation.
+    fn dependence(&self, parameters: &[usize]) -> Vec<bool> {
+        let count = parameters.len();
+        let mut depends = vec![false; self.ops.len() * count];
+        for (place, op) in self.ops.iter().enumerate() {
+            for (i, parameter) in parameters.iter().enumerate() {
+                depends[place * count + i] =
+                    *op == Op::Param(*parameter) || op.operands().any(|operand| depends[operand * count + i]);
+            }
+        }
+        depends
+    }
+}
+
+/// Each element of a register from that of another.
+fn map(x: &Register, out: &mut Register, f: impl Fn(f64) -> f64) {
+    out.iter_mut().zip(x).for_each(|(out, x)| *out = f(*x));
+}
+
+/// Each element of a register from those of two others.
+fn zip(a: &Register, b: &Register, out: &mut Register, f: impl Fn(f64, f64) -> f64) {
+    for row in 0..ROWS_AT_ONCE {
+        out[row] = f(a[row], b[row]);
     }
 }
 
 impl Op {
-    /// Operands.
-    fn needs(&self) -> impl Iterator<Item = usize> {
+    /// Places of the operands.
+    fn operands(&self) -> impl Iterator<Item = usize> + use<> {
         let (a, b) = match *self {
             Self::Const(_) | Self::Param(_) | Self::Input(_) => (None, None),
             Self::Unary(_, x) => (Some(x), None),
@@ -165,71 +200,83 @@ impl Op {
         a.into_iter().chain(b)
     }
 
-    /// The value where no parameter is needed.
-    fn value(&self, given: &[Option<Column>], params: &[f64]) -> Option<Column> {
-        let known = !matches!(self, Self::Param(_)) && self.needs().all(|i| given[i].is_some());
-        known.then(|| {
-            let empty = Column::Same(0.0);
-            let all: Vec<Cow<'_, Column>> = given.iter().map(|c| Cow::Borrowed(c.as_ref().unwrap_or(&empty))).collect();
-            self.value_with(&all, params)
-        })
-    }
-
-    fn value_with(&self, values: &[Cow<'_, Column>], params: &[f64]) -> Column {
-        match self {
-            Self::Const(c) => Column::Same(*c),
-            Self::Param(k) => Column::Same(params[*k]),
+    fn value(&self, of: &[Register], params: &[f64], out: &mut Register) {
+        match *self {
+            Self::Const(c) => out.fill(c),
+            Self::Param(k) => out.fill(params[k]),
             Self::Input(_) => unreachable!("inputs are given"),
-            Self::Add(a, b) => values[*a].zip(&values[*b], |a, b| a + b),
-            Self::Sub(a, b) => values[*a].zip(&values[*b], |a, b| a - b),
-            Self::Mul(a, b) => values[*a].zip(&values[*b], |a, b| a * b),
-            Self::Div(a, b) => values[*a].zip(&values[*b], |a, b| a / b),
-            Self::Pow(_, b, log) => values[*log].zip(&values[*b], power_of_log),
-            Self::Unary(f, x) => values[*x].map(|x| f.apply(x)),
+            Self::Add(a, b) => zip(&of[a], &of[b], out, |a, b| a + b),
+            Self::Sub(a, b) => zip(&of[a], &of[b], out, |a, b| a - b),
+            Self::Mul(a, b) => zip(&of[a], &of[b], out, |a, b| a * b),
+            Self::Div(a, b) => zip(&of[a], &of[b], out, |a, b| a / b),
+            // Minus infinity stands for the logarithm of zero.
+            Self::Pow(_, b, log) => zip(&of[log], &of[b], out, |log, power| libm::exp(power * log)),
+            // A loop for each, which knows its function.
+            Self::Unary(f, x) => match f {
+                Unary::Neg => map(&of[x], out, |x| Unary::Neg.apply(x)),
+                Unary::Abs => map(&of[x], out, |x| Unary::Abs.apply(x)),
+                Unary::Square => map(&of[x], out, |x| Unary::Square.apply(x)),
+                Unary::Exp => map(&of[x], out, |x| Unary::Exp.apply(x)),
+                Unary::Tanh => map(&of[x], out, |x| Unary::Tanh.apply(x)),
+                other => map(&of[x], out, |x| other.apply(x)),
+            },
         }
     }
-}
 
-/// `exp(p l)`, where `l = -∞` stands for the logarithm of zero.
-fn power_of_log(l: f64, p: f64) -> f64 {
-    libm::exp(p * l)
-}
-
-/// Derivative of one operation with respect to parameter `k`; `None` is zero.
-fn tangent(
-    op: &Op,
-    k: usize,
-    values: &[Cow<'_, Column>],
-    value: &Column,
-    tangents: &[Vec<Option<Column>>],
-) -> Option<Column> {
-    let of = |i: usize| tangents[i][k].as_ref();
-    let scaled = |t: &Column, by: &Column| t.zip(by, |t, c| t * c);
-    match op {
-        Op::Const(_) | Op::Input(_) => None,
-        Op::Param(p) => (*p == k).then_some(Column::Same(1.0)),
-        Op::Add(a, b) => sum(of(*a).cloned(), of(*b).cloned()),
-        Op::Sub(a, b) => sum(of(*a).cloned(), of(*b).map(|t| t.map(|t| -t))),
-        Op::Mul(a, b) => sum(of(*a).map(|t| scaled(t, &values[*b])), of(*b).map(|t| scaled(t, &values[*a]))),
-        Op::Div(a, b) => sum(
-            of(*a).map(|t| t.zip(&values[*b], |t, b| t / b)),
-            of(*b).map(|t| t.zip(value, |t, y| -t * y).zip(&values[*b], |n, b| n / b)),
-        ),
-        Op::Pow(a, b, log) => sum(
-            of(*a).map(|t| {
-                let ratio = value.zip(&values[*a], |y, x| if x == 0.0 { 0.0 } else { y / x });
-                scaled(t, &ratio.zip(&values[*b], |r, p| r * p))
-            }),
-            of(*b).map(|t| scaled(t, &value.zip(&values[*log], |y, l| if y == 0.0 { 0.0 } else { y * l }))),
-        ),
-        Op::Unary(f, x) => of(*x).map(|t| scaled(t, &values[*x].zip(value, |x, y| f.slope(x, y)))),
-    }
-}
-
-fn sum(a: Option<Column>, b: Option<Column>) -> Option<Column> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a.zip(&b, |a, b| a + b)),
-        (a, b) => a.or(b),
+    /// Derivative with respect to a parameter that the operation depends on, from the registers, its own `value`, and the derivatives of
+    /// the operands, of which `None` is zero.
+    fn tangent<'a>(
+        &self,
+        of: &[Register],
+        value: &Register,
+        slope: impl Fn(usize) -> Option<&'a Register>,
+        out: &mut Register,
+    ) {
+        out.fill(0.0);
+        let mut chain = |operand: usize, factor: &dyn Fn(&mut Register)| {
+            let Some(slope) = slope(operand) else { return };
+            let mut by = [0.0; ROWS_AT_ONCE];
+            factor(&mut by);
+            for row in 0..ROWS_AT_ONCE {
+                out[row] += slope[row] * by[row];
+            }
+        };
+        match *self {
+            Self::Const(_) | Self::Input(_) => {}
+            Self::Param(_) => out.fill(1.0),
+            Self::Add(a, b) => {
+                chain(a, &|by| by.fill(1.0));
+                chain(b, &|by| by.fill(1.0));
+            }
+            Self::Sub(a, b) => {
+                chain(a, &|by| by.fill(1.0));
+                chain(b, &|by| by.fill(-1.0));
+            }
+            Self::Mul(a, b) => {
+                chain(a, &|by| *by = of[b]);
+                chain(b, &|by| *by = of[a]);
+            }
+            Self::Div(a, b) => {
+                chain(a, &|by| map(&of[b], by, |b| 1.0 / b));
+                chain(b, &|by| zip(value, &of[b], by, |y, b| -y / b));
+            }
+            Self::Pow(a, b, log) => {
+                chain(a, &|by| {
+                    let mut ratio = [0.0; ROWS_AT_ONCE];
+                    zip(value, &of[a], &mut ratio, |y, x| if x == 0.0 { 0.0 } else { y / x });
+                    zip(&ratio, &of[b], by, |ratio, power| ratio * power);
+                });
+                chain(b, &|by| zip(value, &of[log], by, |y, log| if y == 0.0 { 0.0 } else { y * log }));
+            }
+            Self::Unary(f, x) => match f {
+                Unary::Neg => chain(x, &|by| by.fill(-1.0)),
+                Unary::Abs => chain(x, &|by| zip(&of[x], value, by, |x, y| Unary::Abs.slope(x, y))),
+                Unary::Square => chain(x, &|by| zip(&of[x], value, by, |x, y| Unary::Square.slope(x, y))),
+                Unary::Exp => chain(x, &|by| zip(&of[x], value, by, |x, y| Unary::Exp.slope(x, y))),
+                Unary::Tanh => chain(x, &|by| zip(&of[x], value, by, |x, y| Unary::Tanh.slope(x, y))),
+                other => chain(x, &|by| zip(&of[x], value, by, |x, y| other.slope(x, y))),
+            },
+        }
     }
 }
 
@@ -255,7 +302,7 @@ mod tests {
         ) {
             let e = everything();
             let (vs, qs) = ([v], [q]);
-            let columns = Tape::new(std::slice::from_ref(&e), 4, &[&vs, &qs], 1).run(&p, true);
+            let columns = Tape::new(std::slice::from_ref(&e), &[&vs, &qs], 1).run(&p, &[0, 1, 2, 3]);
             prop_assert!((columns.values[0][0] - e.value(&[v, q], &p)).abs() < 1e-12);
             for k in 0..4 {
                 let step = 1e-6;
@@ -265,6 +312,29 @@ mod tests {
                 let expected = (e.value(&[v, q], &up) - e.value(&[v, q], &down)) / (2.0 * step);
                 let got = columns.slopes[0][k].as_ref().map_or(0.0, |s| s[0]);
                 prop_assert!((got - expected).abs() < 1e-6 * (1.0 + expected.abs()), "{k}: {got} {expected}");
+            }
+        }
+    }
+
+    /// A column is worked out a few rows at a time: none is left out, and constants hold for all of them.
+    #[test]
+    fn rows_do_not_know_which_others_there_are() {
+        let p = [0.7, 1.3, 2.1, 0.4];
+        let expressions = [everything(), Expr::Const(2.0) * Expr::Param(1), Expr::Const(3.0), Expr::Input(1).abs()];
+        let of = |rows: usize| -> [Vec<f64>; 2] {
+            [0.013, -0.37].map(|step| (0..rows).map(|row| (step * (row as f64 + 0.5)).sin()).collect())
+        };
+        let all = of(2 * ROWS_AT_ONCE + 5);
+        let together = Tape::new(&expressions, &[&all[0], &all[1]], all[0].len()).run(&p, &[1, 3]);
+        assert!(together.slopes[1][1].is_none() && together.slopes[2][0].is_none());
+        for row in [0, ROWS_AT_ONCE - 1, ROWS_AT_ONCE, 2 * ROWS_AT_ONCE + 4] {
+            let one = Tape::new(&expressions, &[&all[0][row..=row], &all[1][row..=row]], 1).run(&p, &[1, 3]);
+            for (output, values) in together.values.iter().enumerate() {
+                assert_eq!(values.len(), all[0].len());
+                assert_eq!(values[row].to_bits(), one.values[output][0].to_bits(), "{output} {row}");
+                for (slope, alone) in together.slopes[output].iter().zip(&one.slopes[output]) {
+                    assert_eq!(slope.as_ref().map(|s| s[row].to_bits()), alone.as_ref().map(|s| s[0].to_bits()));
+                }
             }
         }
     }

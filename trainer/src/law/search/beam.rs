@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::library::{self, Move};
 use super::proposals::Start;
+use crate::law::fitting::problem::grid::Ground;
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::judge::choice::{Explored, best};
 use crate::law::judge::criterion::Evidence;
@@ -100,6 +101,8 @@ fn promising(
 ) -> Vec<Child> {
     let mut sure = Vec::new();
     let mut screened = Vec::new();
+    // Many terms are put in the place of the same ones.
+    let mut grounds: Vec<(Vec<Term>, Ground)> = Vec::new();
     for change in library::moves(&parent.structure, library) {
         let structure = change.apply(&parent.structure);
         let mut start = change.carry_over(parent);
@@ -108,8 +111,11 @@ fn promising(
             sure.push(Child { structure, start, rss });
             continue;
         }
-        let base = reduced(parent, &change);
-        let (found, rss) = problem.screen(&base, &change.added);
+        if !grounds.iter().any(|(removed, _)| *removed == change.removed) {
+            grounds.push((change.removed.clone(), problem.ground(&reduced(parent, &change))));
+        }
+        let ground = grounds.iter().find(|(removed, _)| *removed == change.removed);
+        let (found, rss) = problem.screen(&ground.expect("it was put there").1, &change.added);
         start.extend(found.into_iter().filter(|(n, _)| parent.nonlinear().iter().all(|(k, _)| k != n)));
         let cost = structure.constants() as f64;
         let score = evidence.misfit(rss / problem.rows() as f64) + 0.5 * libm::log(evidence.effective) * cost;
@@ -124,9 +130,8 @@ fn promising(
 fn complete(problem: &Problem<'_>, structure: &Structure, start: &mut Vec<(Nonlinear, f64)>) -> f64 {
     let known = |n: &Nonlinear, start: &[(Nonlinear, f64)]| start.iter().find(|(k, _)| k == n).map(|(_, x)| *x);
     let names = structure.nonlinear();
-    let rss = |start: &[(Nonlinear, f64)]| {
-        problem.rss_at(structure, &names.iter().filter_map(|n| known(n, start)).collect::<Vec<_>>())
-    };
+    let sum = problem.sums(structure);
+    let rss = |start: &[(Nonlinear, f64)]| sum(&names.iter().filter_map(|n| known(n, start)).collect::<Vec<_>>());
     let Some(open) = names.iter().position(|n| known(n, start).is_none()) else { return rss(start) };
     let tried = problem.ranges(structure)[open].starts.clone().into_iter().map(|value| {
         let mut trial = start.clone();

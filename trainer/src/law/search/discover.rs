@@ -1,6 +1,7 @@
 //! From samples to a named law: search, choice on held-out blocks, polish, uncertainty, names.
 
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 use super::beam::{Beam, explore};
 use super::proposals::Start;
@@ -13,6 +14,7 @@ use crate::law::judge::uncertainty::{Interval, analyse};
 use crate::law::judge::undetermined::{allow_for_viscous, drop_undetermined, fix_smoothing};
 use crate::law::model::data::{LawData, LawError};
 use crate::law::model::ranges::Extents;
+use crate::law::model::structure::Structure;
 
 /// How to search, and which law is simple enough.
 #[derive(Clone, Debug)]
@@ -29,11 +31,21 @@ pub struct SearchOptions {
     pub max_nodes: usize,
     /// Where to start besides the usual structures, for instance what the activations of a pruned network suggest.
     pub starts: Vec<Start>,
+    /// Which intervals the chosen law is given.
+    pub intervals: Interval,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { beam_width: 6, rounds: 8, search_samples: 2000, folds: 5, max_nodes: 20, starts: Vec::new() }
+        Self {
+            beam_width: 6,
+            rounds: 8,
+            search_samples: 2000,
+            folds: 5,
+            max_nodes: 20,
+            starts: Vec::new(),
+            intervals: Interval::Profile,
+        }
     }
 }
 
@@ -52,8 +64,8 @@ pub struct Discovery {
     pub rmse: f64,
     /// Share of the target's variance (after the nuisance columns) that the law explains.
     pub r2: f64,
-    /// Structures fitted.
-    pub explored: usize,
+    /// Structures fitted, each with its non-linear constants on the samples that structures were ranked on.
+    pub explored: BTreeMap<Structure, Vec<f64>>,
 }
 
 /// Looks for the law.
@@ -81,7 +93,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
     let mut remarks = Vec::new();
     let chosen = drop_undetermined(&problem, chosen, evidence, &mut remarks);
     let (fit, held) = fix_smoothing(&problem, chosen, evidence, &mut Vec::new());
-    let mut uncertainty = analyse(&problem, &fit, &held, Interval::Profile);
+    let mut uncertainty = analyse(&problem, &fit, &held, options.intervals);
     allow_for_viscous(&problem, &fit, &held, &mut uncertainty, &mut remarks);
     let fit = rounded(&problem, &fit, &uncertainty);
     let law = describe(&problem, &fit, &uncertainty, &held);
@@ -93,7 +105,7 @@ pub fn discover(data: &LawData, options: &SearchOptions) -> Result<Discovery, La
         nuisance,
         rmse: (fit.rss / data.rows() as f64).sqrt(),
         r2: 1.0 - fit.rss / problem.total().max(f64::MIN_POSITIVE),
-        explored: explored.len(),
+        explored: explored.into_iter().map(|(structure, fit)| (structure, fit.constants().to_vec())).collect(),
     })
 }
 

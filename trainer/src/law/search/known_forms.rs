@@ -15,6 +15,8 @@ use crate::law::model::structure::{Nonlinear, Shape, SignForm, Structure, Term};
 
 /// Parts into which the blocks are grouped for holding out.
 const FOLDS: usize = 5;
+/// Places of a grid that are gone on from.
+const GRID_STARTS: usize = 3;
 
 /// A friction law of the literature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,8 +117,6 @@ pub struct FormFit {
     pub nuisance: Vec<NuisanceCoefficient>,
     /// Root mean square of the residuals, unit of the target.
     pub rmse: f64,
-    /// The same over samples predicted from constants that were fitted without their blocks.
-    pub held_out_rmse: f64,
     /// Bayesian information criterion (Schwarz 1978) with the effective number of samples; lower is better.
     pub bic: f64,
     /// Whether the optimiser ended at a minimum.
@@ -140,8 +140,24 @@ pub fn fit_structure(structure: &Structure, data: &LawData, smoothing: Option<f6
     let extents = Extents::new(data)?;
     let problem = check(structure, data, &extents)?;
     let held: Vec<Nonlinear> = smoothing.map(|_| Nonlinear::Smoothing).into_iter().collect();
-    let fit = from_grid(&problem, structure, smoothing);
+    let fit = from_grid(&problem, structure, smoothing, Effort::FINAL);
     Ok(described(&problem, &fit, &held, Interval::Profile))
+}
+
+/// Fits a structure from non-linear constants that other samples of the same joint gave it.
+///
+/// # Errors
+/// When the data cannot be fitted at all, see [`LawError`].
+pub fn refit_structure(
+    structure: &Structure,
+    constants: &[f64],
+    data: &LawData,
+    intervals: Interval,
+) -> Result<FormFit, LawError> {
+    let extents = Extents::new(data)?;
+    let problem = check(structure, data, &extents)?;
+    let fit = problem.fit_from(structure, constants, Held::default(), Effort::FINAL);
+    Ok(described(&problem, &fit, &[], intervals))
 }
 
 /// What the best fit of a structure leaves.
@@ -166,14 +182,14 @@ pub fn remainder(structure: &Structure, data: &LawData, constants: Option<&[f64]
     let extents = Extents::new(data)?;
     let problem = check(structure, data, &extents)?;
     let fit = match constants {
-        Some(constants) => problem.fit_from(structure, constants, Held::default(), Effort::FINAL),
-        None => from_grid(&problem, structure, None),
+        Some(constants) => problem.fit_from(structure, constants, Held::default(), Effort::COMPARISON),
+        None => from_grid(&problem, structure, None, Effort::COMPARISON),
     };
     Ok(Remainder {
         mean_square: fit.rss / data.rows() as f64,
         correlation_length: correlation_length(&problem.residuals(&fit)),
         converged: fit.converged,
-        constants: fit.params[..structure.nonlinear().len()].to_vec(),
+        constants: fit.constants().to_vec(),
     })
 }
 
@@ -207,11 +223,12 @@ fn check<'a>(structure: &Structure, data: &'a LawData, extents: &'a Extents) -> 
 }
 
 /// The best fit from a grid of starts.
-fn from_grid(problem: &Problem<'_>, structure: &Structure, smoothing: Option<f64>) -> Fit {
+fn from_grid(problem: &Problem<'_>, structure: &Structure, smoothing: Option<f64>, effort: Effort) -> Fit {
     let known: Vec<(Nonlinear, f64)> = smoothing.map(|k| (Nonlinear::Smoothing, k)).into_iter().collect();
     let held: Vec<Nonlinear> = known.iter().map(|(n, _)| *n).collect();
     let holding = Held { nonlinear: &held, coefficient: None };
-    problem.polish(&problem.fit_grid(structure, &known, holding, 3, Effort::SEARCH), &held)
+    let rough = problem.fit_grid(structure, &known, holding, GRID_STARTS, Effort::SEARCH);
+    problem.fit_from(structure, rough.constants(), holding, effort)
 }
 
 /// A fit with names, intervals and scores, constants in `held` being given.
@@ -222,12 +239,10 @@ fn described(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], intervals: In
     let effective = rows / uncertainty.correlation_length;
     let free = fit.structure.constants() - held.len() + problem.data().nuisance.len();
     let mean_square = fit.rss / rows;
-    let holding = Held { nonlinear: held, coefficient: None };
     FormFit {
         law: describe(problem, &fit, &uncertainty, held),
         nuisance: nuisance_coefficients(problem, &fit, &uncertainty),
         rmse: mean_square.sqrt(),
-        held_out_rmse: held_out_mean_square(problem, &fit, holding, FOLDS).sqrt(),
         bic: effective * libm::log(mean_square.max(f64::MIN_POSITIVE)) + libm::log(effective) * free as f64,
         converged: fit.converged,
         uncertainty,
@@ -240,17 +255,23 @@ fn described(problem: &Problem<'_>, fit: &Fit, held: &[Nonlinear], intervals: In
 /// # Errors
 /// When the data cannot be fitted at all, see [`LawError`].
 pub fn rank_forms(data: &LawData) -> Result<Vec<(KnownForm, FormFit)>, LawError> {
-    let fits: Vec<(KnownForm, FormFit)> = KnownForm::ALL
-        .par_iter()
-        .map(|form| Ok((*form, fit_form(*form, data, None)?)))
-        .collect::<Result<_, LawError>>()?;
-    let length = fits.iter().map(|(_, f)| f.uncertainty.correlation_length).fold(f64::INFINITY, f64::min);
+    let extents = Extents::new(data)?;
+    let fitted = |form: &KnownForm| {
+        let problem = check(&form.structure(), data, &extents)?;
+        let fit = from_grid(&problem, &form.structure(), None, Effort::FINAL);
+        let held_out = held_out_mean_square(&problem, &fit, Held::default(), FOLDS);
+        Ok((*form, described(&problem, &fit, &[], Interval::Profile), held_out))
+    };
+    let fits: Vec<(KnownForm, FormFit, f64)> =
+        KnownForm::ALL.par_iter().map(fitted).collect::<Result<_, LawError>>()?;
+    let length = fits.iter().map(|(_, fit, _)| fit.uncertainty.correlation_length).fold(f64::INFINITY, f64::min);
     let effective = data.rows() as f64 / length;
     let each = (0.5 * libm::log(effective) - 1.0).max(0.0);
-    let score = |(form, fit): &(KnownForm, FormFit)| {
-        effective * libm::log(fit.held_out_rmse.max(f64::MIN_POSITIVE)) + each * form.structure().constants() as f64
+    let score = |form: KnownForm, held_out: f64| {
+        0.5 * effective * libm::log(held_out.max(f64::MIN_POSITIVE)) + each * form.structure().constants() as f64
     };
-    let mut ranked: Vec<(f64, (KnownForm, FormFit))> = fits.into_iter().map(|f| (score(&f), f)).collect();
+    let mut ranked: Vec<(f64, (KnownForm, FormFit))> =
+        fits.into_iter().map(|(form, fit, held_out)| (score(form, held_out), (form, fit))).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(ranked.into_iter().map(|(_, f)| f).collect())
 }

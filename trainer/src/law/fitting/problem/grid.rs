@@ -2,34 +2,44 @@
 
 use super::{Effort, Fit, Held, Problem};
 use crate::law::fitting::projection::{Basis, dot};
-use crate::law::model::structure::{Nonlinear, Structure, Term};
+use crate::law::model::structure::{Nonlinear, SignForm, Structure, Term};
+
+/// What a fitted law leaves and what it holds already, for terms that may be added to it.
+pub struct Ground {
+    sign: SignForm,
+    known: Vec<(Nonlinear, f64)>,
+    basis: Basis,
+    residual: Vec<f64>,
+}
 
 impl Problem<'_> {
-    /// Adds terms to a fitted law without moving its constants: the values of the newly needed constants that serve best
-    /// among their starts, and the sum of squares then.
-    pub fn screen(&self, parent: &Fit, added: &[Term]) -> (Vec<(Nonlinear, f64)>, f64) {
-        let layout = self.extents.layout();
-        let known = parent.nonlinear();
-        let tape = self.tape(&parent.structure);
-        let columns = tape.run(&parent.params, false);
+    /// A fitted law that terms are to be added to.
+    pub fn ground(&self, parent: &Fit) -> Ground {
         let mut basis = self.nuisance.clone();
-        columns.values.iter().for_each(|c| {
-            basis.push(c);
+        self.tape(&parent.structure).run(&parent.params, &[]).values.iter().for_each(|column| {
+            basis.push(column);
         });
         let mut residual = self.target.clone();
         basis.remove_from(&mut residual);
-        let before = dot(&residual, &residual);
+        Ground { sign: parent.structure.sign(), known: parent.nonlinear(), basis, residual }
+    }
 
-        let child = Structure::new(parent.structure.sign(), added.iter().copied());
+    /// Adds terms to a fitted law without moving its constants: the values of the newly needed constants that serve best
+    /// among their starts, and the sum of squares then.
+    pub fn screen(&self, ground: &Ground, added: &[Term]) -> (Vec<(Nonlinear, f64)>, f64) {
+        let layout = self.extents.layout();
+        let Ground { sign, known, basis, residual } = ground;
+        let before = dot(residual, residual);
+        let child = Structure::new(*sign, added.iter().copied());
         let names = child.nonlinear();
         let axes: Vec<Vec<f64>> = names
             .iter()
             .map(|n| match known.iter().find(|(k, _)| k == n) {
                 Some((_, value)) => vec![*value],
-                None => self.extents.range(*n, parent.structure.sign()).starts,
+                None => self.extents.range(*n, *sign).starts,
             })
             .collect();
-        let tape = self.tape_of(&child.columns(layout), names.len());
+        let tape = self.tape_of(&child.columns(layout));
         let mut best = (f64::INFINITY, Vec::new());
         for index in 0..axes.iter().map(Vec::len).product() {
             let mut rest = index;
@@ -42,7 +52,7 @@ impl Problem<'_> {
                 })
                 .collect();
             let mut extra = Basis::default();
-            for mut column in tape.run(&psi, false).values {
+            for mut column in tape.run(&psi, &[]).values {
                 let size = dot(&column, &column);
                 basis.remove_from(&mut column);
                 if dot(&column, &column) > 1e-16 * size {
@@ -94,7 +104,7 @@ impl Problem<'_> {
         let mut ranked: Vec<(f64, Vec<usize>)> = (0..total)
             .map(|index| {
                 let place = place(index);
-                let rss = if total == 1 { 0.0 } else { self.at(&tape, &value(&place), held.coefficient, false).rss };
+                let rss = if total == 1 { 0.0 } else { self.at(&tape, &value(&place), held.coefficient, &[]).rss };
                 (if rss.is_nan() { f64::INFINITY } else { rss }, place)
             })
             .collect();

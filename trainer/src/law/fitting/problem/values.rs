@@ -16,7 +16,7 @@ impl Problem<'_> {
     pub fn coefficient_errors(&self, fit: &Fit) -> Vec<f64> {
         let tape = self.tape(&fit.structure);
         let mut basis = Basis::default();
-        for mut column in tape.run(&fit.params, false).values {
+        for mut column in tape.run(&fit.params, &[]).values {
             self.nuisance.remove_from(&mut column);
             basis.push(&column);
         }
@@ -26,7 +26,7 @@ impl Problem<'_> {
     /// The law at every sample, without the nuisance columns.
     pub fn law_values(&self, fit: &Fit) -> Vec<f64> {
         let template = fit.structure.template(self.extents.layout());
-        self.tape_of(&[template], fit.params.len()).run(&fit.params, false).values.remove(0)
+        self.tape_of(&[template]).run(&fit.params, &[]).values.remove(0)
     }
 
     /// Residuals of law and nuisance columns together.
