@@ -47,14 +47,9 @@ impl LinearFit {
 #[must_use]
 pub fn least_squares(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize>]) -> LinearFit {
     let width = columns.len();
-    // A column of zeros has no direction: its coefficient and its covariances are 0.
-    let scales: Vec<f64> =
-        columns.iter().map(|column| Some(norm(column)).filter(|n| *n > 0.0).unwrap_or(1.0)).collect();
-    let gram = DMatrix::from_fn(width, width, |i, j| dot(&columns[i], &columns[j]) / (scales[i] * scales[j]));
-    let moment = DVector::from_fn(width, |i, _| dot(&columns[i], target) / scales[i]);
-    let (inverse, rank_deficiency) = pseudo_inverse(gram);
-    let solution = &inverse * moment;
-    let coefficients: Vec<f64> = solution.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
+    let columns_only = Columns::of(columns);
+    let coefficients = columns_only.coefficients(target);
+    let Columns { scales, inverse, rank_deficiency, .. } = columns_only;
 
     let residuals = residual(columns, target, &coefficients);
     let rmse = norm(&residuals) / (target.len().max(1) as f64).sqrt();
@@ -73,6 +68,40 @@ pub fn least_squares(columns: &[Vec<f64>], target: &[f64], blocks: &[Range<usize
         }
     }
     LinearFit { coefficients, covariance, residuals, rmse, rank_deficiency }
+}
+
+/// Columns that one target after the other is fitted on.
+pub(crate) struct Columns<'a> {
+    columns: &'a [Vec<f64>],
+    /// Norms of the columns.
+    scales: Vec<f64>,
+    /// Pseudo-inverse of the Gram matrix of the scaled columns.
+    inverse: DMatrix<f64>,
+    rank_deficiency: usize,
+}
+
+impl<'a> Columns<'a> {
+    /// Columns of one length.
+    pub(crate) fn of(columns: &'a [Vec<f64>]) -> Self {
+        let width = columns.len();
+        // A column of zeros has no direction: its coefficient and its covariances are 0.
+        let scales: Vec<f64> =
+            columns.iter().map(|column| Some(norm(column)).filter(|n| *n > 0.0).unwrap_or(1.0)).collect();
+        let gram = DMatrix::from_fn(width, width, |i, j| dot(&columns[i], &columns[j]) / (scales[i] * scales[j]));
+        let (inverse, rank_deficiency) = pseudo_inverse(gram);
+        Self { columns, scales, inverse, rank_deficiency }
+    }
+
+    fn coefficients(&self, target: &[f64]) -> Vec<f64> {
+        let moment = DVector::from_fn(self.columns.len(), |i, _| dot(&self.columns[i], target) / self.scales[i]);
+        let solution = &self.inverse * moment;
+        solution.iter().zip(&self.scales).map(|(x, scale)| x / scale).collect()
+    }
+
+    /// What least squares leave of a target.
+    pub(crate) fn residuals(&self, target: &[f64]) -> Vec<f64> {
+        residual(self.columns, target, &self.coefficients(target))
+    }
 }
 
 fn pseudo_inverse(gram: DMatrix<f64>) -> (DMatrix<f64>, usize) {

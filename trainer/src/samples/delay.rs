@@ -4,14 +4,14 @@
 use std::ops::Range;
 
 use super::bending::BendingLaw;
-use super::prepare::prepare;
+use super::prepare::{prepare, prepare_actuator};
 use super::rigid_body::{given_torque, terms};
 use super::{Preparation, SLIDING_SPEED_SHARE, Samples, top_speed};
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::numerics::jackknife::even_blocks;
 use crate::numerics::products::dot;
-use crate::numerics::regression::least_squares;
+use crate::numerics::regression::Columns;
 use crate::numerics::statistics::t_statistic;
 use crate::recording::Recording;
 
@@ -33,10 +33,17 @@ pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation
     if preparation.sigma_s.is_none() || !period.is_finite() {
         return 0.0;
     }
-    let left = |samples: f64| {
-        left_where_sliding(recordings, joint, &Preparation { torque_delay_s: samples * period, ..*preparation })
+    let in_samples = |sliding: &Sliding| {
+        let columns = Columns::of(&sliding.columns);
+        let left = |samples: f64| {
+            let torque =
+                sliding.torque(recordings, &Preparation { torque_delay_s: samples * period, ..*preparation })?;
+            Ok(columns.residuals(&torque))
+        };
+        put_back(&left)
     };
-    put_back(&left).map_or(0.0, |samples| samples * period)
+    let sliding = Sliding::of(recordings, joint, preparation).ok();
+    sliding.as_ref().and_then(in_samples).map_or(0.0, |samples| samples * period)
 }
 
 /// The delay in samples, where the parts of what is left show one of the sampling.
@@ -62,21 +69,36 @@ fn put_back(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<f64> {
     (t_statistic(&gains) > LEAST_T_STATISTIC).then_some(samples)
 }
 
-/// What rigid body and friction, identified where the joint slides, leave of the torque there.
-fn left_where_sliding(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> Result<Vec<f64>> {
-    let parts = recordings.iter().map(|recording| prepare(recording, preparation)).collect::<Result<Vec<_>>>()?;
-    let samples = Samples::join(parts)?;
-    let velocity = samples.require_velocity()?;
-    let sliding = SLIDING_SPEED_SHARE * top_speed(velocity);
-    let rows: Vec<usize> = (0..velocity.len()).filter(|&i| velocity[i].abs() > sliding).collect();
-    let pick = |column: &[f64]| rows.iter().map(|&i| column[i]).collect::<Vec<f64>>();
-    let velocity = pick(velocity);
-    let mut columns: Vec<Vec<f64>> = terms(&samples, joint).iter().map(|term| pick(&term.column)).collect();
-    columns.extend(BendingLaw::over(&velocity)?.columns(&velocity));
-    let torque = pick(samples.actuator.as_deref().unwrap_or_default());
-    let given = pick(&given_torque(&samples, joint)?);
-    let target: Vec<f64> = torque.iter().zip(&given).map(|(torque, given)| torque - given).collect();
-    Ok(least_squares(&columns, &target, &even_blocks(target.len(), PARTS)).residuals)
+/// The samples at which the joint slides, with what does not depend on the delay of the torque.
+struct Sliding {
+    rows: Vec<usize>,
+    /// Columns of rigid body and friction.
+    columns: Vec<Vec<f64>>,
+    /// Torque of the rigid body that is given.
+    given: Vec<f64>,
+}
+
+impl Sliding {
+    fn of(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> Result<Self> {
+        let parts = recordings.iter().map(|recording| prepare(recording, preparation)).collect::<Result<Vec<_>>>()?;
+        let samples = Samples::join(parts)?;
+        let velocity = samples.require_velocity()?;
+        let sliding = SLIDING_SPEED_SHARE * top_speed(velocity);
+        let rows: Vec<usize> = (0..velocity.len()).filter(|&i| velocity[i].abs() > sliding).collect();
+        let pick = |column: &[f64]| rows.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        let velocity = pick(velocity);
+        let mut columns: Vec<Vec<f64>> = terms(&samples, joint).iter().map(|term| pick(&term.column)).collect();
+        columns.extend(BendingLaw::over(&velocity)?.columns(&velocity));
+        let given = pick(&given_torque(&samples, joint)?);
+        Ok(Self { columns, given, rows })
+    }
+
+    /// The torque that they have to explain, delayed as prepared.
+    fn torque(&self, recordings: &[&Recording], preparation: &Preparation) -> Result<Vec<f64>> {
+        let parts = recordings.iter().map(|recording| prepare_actuator(recording, preparation));
+        let torque = parts.collect::<Result<Vec<_>>>()?.concat();
+        Ok(self.rows.iter().zip(&self.given).map(|(&row, given)| torque[row] - given).collect())
+    }
 }
 
 #[cfg(test)]

@@ -52,6 +52,21 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
     Ok(samples)
 }
 
+/// The torque, force or current alone, as [`prepare`] filters it; nothing where a recording has none.
+///
+/// # Errors
+/// `FRK-D009` without a clock.
+pub(super) fn prepare_actuator(recording: &Recording, preparation: &Preparation) -> Result<Vec<f64>> {
+    let Some(channel) = recording.actuator() else { return Ok(Vec::new()) };
+    let Some(sigma_s) = preparation.sigma_s else { return Ok(channel.values.clone()) };
+    let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
+    let grid = Grid::of(recording, time);
+    let filter = GaussianFilter::new(sigma_s, grid.period_s);
+    let (stride, torque_filter) = (preparation.stride(grid.period_s), filter.advanced_by(preparation.torque_delay_s));
+    let filtered = |segment| torque_filter.apply(&grid.values(segment, time, &channel.values), Order::Smooth, stride);
+    Ok(usable(&grid, &filter).into_iter().flat_map(filtered).collect())
+}
+
 /// Segments that are as long as the filter.
 pub(super) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Segment> {
     grid.segments.iter().filter(|segment| segment.points > 2 * filter.half_width()).collect()
