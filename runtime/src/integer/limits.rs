@@ -56,7 +56,6 @@ const LARGEST_CHANGE: i32 = 2 * LARGEST_TORQUE_COUNTS;
 /// A number of at most `2^30` held to `[-limit, limit]`, `limit` being at least 0 and at most `2^17`, without a comparison.
 #[inline(always)]
 fn within(number: i32, limit: i32) -> i32 {
-    let above = positive_part(number.wrapping_sub(limit));
-    let below = positive_part(number.wrapping_add(limit).wrapping_neg());
-    number.wrapping_sub(above).wrapping_add(below)
+    let above_least = positive_part(number.wrapping_add(limit));
+    limit.wrapping_sub(positive_part(limit.wrapping_add(limit).wrapping_sub(above_least)))
 }

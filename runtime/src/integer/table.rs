@@ -37,10 +37,13 @@ pub struct IntegerTableInPlace<'a> {
     starts: [u16; SEGMENTS],
     /// Cells by which those of negative velocities lie further on; 0 where the signs share.
     negative_offset: u16,
-    /// Bits by which a value of the table is shifted to the right to become counts.
-    output_bits: u8,
-    /// Bits by which a count is shifted to the left, then to the right, to become steps of the table; one of them is 0.
-    input_bits: [u8; 2],
+    /// Steps of the table for a count, as far as a count has more than one.
+    steps_a_count: u32,
+    /// Bits by which these are shifted to the right, as far as a step has more than one count.
+    input_bits: u32,
+    /// Half a count in values of the table, and the bits by which these are shifted to the right to become counts.
+    half: i32,
+    output_bits: u32,
     /// Counts up to which the table is looked up, for positive and for negative velocities.
     reach: [i32; 2],
     /// All ones where a negative velocity turns the sign of the friction, else 0.
@@ -91,8 +94,10 @@ impl<'a> IntegerTableInPlace<'a> {
             segments,
             starts: image.starts,
             negative_offset: if symmetry == Symmetry::Sided { image.side } else { 0 },
-            output_bits: output_bits as u8,
-            input_bits: [left as u8, right as u8],
+            steps_a_count: 1 << left,
+            input_bits: right.cast_unsigned(),
+            half: (1 << output_bits) >> 1,
+            output_bits: output_bits.cast_unsigned(),
             reach,
             sign_mask: if symmetry == Symmetry::Odd { -1 } else { 0 },
         })
@@ -104,11 +109,10 @@ impl<'a> IntegerTableInPlace<'a> {
     pub fn friction(&self, velocity: i32) -> i32 {
         let negative = sign(velocity);
         let reach = self.reach[(velocity as u32 >> 31) as usize];
-        // The magnitude of `i32::MIN` is `2^31`, whose difference is negative again.
-        let short = positive_part(reach.wrapping_sub(velocity.wrapping_abs()));
-        let held = reach.wrapping_sub(short) as u32;
-        let [left, right] = self.input_bits.map(u32::from);
-        let steps = held.wrapping_shl(left).wrapping_shr(right);
+        // The negative of the magnitude, which even `i32::MIN` has; behind a black box, or the compiler goes around all that follows at rest.
+        let below = black_box(velocity.wrapping_abs().wrapping_neg());
+        let held = reach.wrapping_sub(positive_part(reach.wrapping_add(below))) as u32;
+        let steps = held.wrapping_mul(self.steps_a_count).wrapping_shr(self.input_bits);
         let segment = (steps >> SEGMENT_BITS) as usize & (SEGMENTS - 1);
         // In cells, the way through them in the lower bits.
         let way = (steps & WITHIN_SEGMENT).wrapping_mul(u32::from(self.segments[segment]));
@@ -119,18 +123,17 @@ impl<'a> IntegerTableInPlace<'a> {
         // Every cell is one of the table, which was proved to lie within the image.
         let Some(cell) = self.cells.get(cell as usize) else { return 0 };
         let value = cubic(coefficients(cell), x, negative & self.sign_mask);
-        let output_bits = u32::from(self.output_bits);
-        let half = 1i32.wrapping_shl(output_bits) >> 1;
         // At rest there is no friction of it.
-        let moves = sign(black_box(velocity | velocity.wrapping_neg()));
-        value.wrapping_add(half).wrapping_shr(output_bits) & moves
+        value.wrapping_add(self.half).wrapping_shr(self.output_bits) & sign(below)
     }
 
     /// CRC-32 of what is evaluated, as it is now in memory and flash.
     pub(super) fn checksum(&self) -> u32 {
         let [positive, negative] = self.reach.map(i32::to_le_bytes);
         let words = self.starts.iter().fold(Checksum::new(), |sum, start| sum.over(&start.to_le_bytes()));
-        let sum = words.over(&positive).over(&negative).over(&self.input_bits).over(&[self.output_bits]);
+        let numbers = [self.steps_a_count, self.input_bits, self.half.cast_unsigned(), self.output_bits];
+        let sum =
+            numbers.into_iter().fold(words.over(&positive).over(&negative), |sum, word| sum.over(&word.to_le_bytes()));
         sum.over(self.segments).over(self.cells.as_flattened()).value()
     }
 }
