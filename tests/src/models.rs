@@ -155,7 +155,7 @@ fn table_in_integers(friction: impl Fn(f64) -> f64, symmetry: Symmetry) -> TestM
     let side = |sign: f64| -> Vec<Cell> {
         let steps = |position: f64| friction(sign * position * f64::from(step)) / 1e-3;
         let cell = |start: f64, width: f64| {
-            Cell::from_integers(hermite(&steps, start, start + width).map(|coefficient| coefficient.round() as i32))
+            Cell::from_integers(hermite(steps, start, start + width).map(|coefficient| coefficient.round() as i32))
         };
         let of_segment = |(segment, count): (u32, u8)| {
             let width = f64::from(1 << SEGMENT_BITS) / f64::from(count);

@@ -1,7 +1,7 @@
 //! Limits of the firmware, in counts.
 
+use super::table::LARGEST_TORQUE_COUNTS;
 use crate::compensator::LimitError;
-use crate::integer::LARGEST_TORQUE_COUNTS;
 use crate::laws::integer_table::positive_part;
 
 /// Gain of one: gains are whole numbers of `2^-15`.
