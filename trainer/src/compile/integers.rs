@@ -19,6 +19,7 @@ use frikan_shared::table::{Cell, Symmetry};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use self::steps::beside_zero;
 use super::cells::{Cubic, fit_cell, sampled_error};
 use super::formula::{Parity, Sampled};
 use super::host_model::CELLS;
@@ -244,13 +245,16 @@ impl Expected {
         let Ok(pool) = Pool::<CELLS>::from_slice(cells) else {
             return CountedError { largest: f64::INFINITY, ..error };
         };
-        let values_a_count = torque_count / f64::from(table.shape().output_step);
+        let shape = table.shape();
+        let values_a_count = torque_count / f64::from(shape.output_step);
         let mut squares = 0.0;
         for (values, sign) in self.0.iter().zip(SIGNS) {
             for (count, value) in (0..).zip(values).skip(1) {
-                // A step of 0 on the negative side is the start of its first cell.
-                let steps = sign * scale.steps(count).max(i32::from(sign < 0));
-                let counts = (f64::from(evaluate_integer(table, &pool, steps)) / values_a_count + 0.5).floor();
+                let value_there = match (sign, scale.steps(count)) {
+                    (-1, 0) => beside_zero(&shape, cells),
+                    (_, steps) => evaluate_integer(table, &pool, sign * steps),
+                };
+                let counts = (f64::from(value_there) / values_a_count + 0.5).floor();
                 let difference = (counts * torque_count - value).abs();
                 error.counts += 1;
                 squares += difference * difference;

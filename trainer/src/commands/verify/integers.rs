@@ -72,7 +72,7 @@ pub(super) fn compare(place: Place<'_>, image: &[u8], model: &HostModel, drive: 
             let cost = Cost {
                 instructions: answer.instruction_range(),
                 flash_bytes: drive.flash_bytes + image.len() as u64,
-                ram_bytes: drive.ram_bytes + size_of::<IntegerCompensator<'_>>() as u64,
+                ram_bytes: drive.ram_bytes + u64::from(answer.model_bytes),
                 stack_bytes: u64::from(answer.decode_stack_bytes.max(answer.evaluate_stack_bytes)),
             };
             (answer.outputs.iter().map(|output| output.to_bits().cast_signed()).collect(), cost)

@@ -150,7 +150,7 @@ impl<'a> IntegerReference<'a> {
 }
 
 /// The value of a table at 0 as the end of the negative side, which [`integer_value`] has as that of the positive.
-fn beside_zero(shape: &IntegerShape, cells: &[Cell]) -> i32 {
+pub(super) fn beside_zero(shape: &IntegerShape, cells: &[Cell]) -> i32 {
     let side: usize = shape.cells.iter().copied().map(usize::from).sum();
     let cell = usize::from(shape.first_cell) + if shape.symmetry == Symmetry::Sided { side } else { 0 };
     let [value, ..] = cells[cell].integers();
