@@ -8,6 +8,7 @@
 //! | feature | what it links in |
 //! |---|---|
 //! | `table` | tables of the velocity, read from the image where it lies ([`in_place`]): the smallest drive |
+//! | `integer` | integer tables of the velocity, read where they lie, and a compensator that counts ([`integer`]): the drive without floating-point unit |
 //! | `expression`, `network`, `effects` | formulas, networks and correction terms, in images that are decoded to memory |
 //! | `supervised` | the supervisor |
 //! | `slots` | two slots in flash |
@@ -38,6 +39,8 @@ pub mod effects;
 pub mod friction;
 #[cfg(feature = "table")]
 pub mod in_place;
+#[cfg(feature = "integer")]
+pub mod integer;
 #[cfg(feature = "nalgebra")]
 pub mod joints;
 pub mod laws;
@@ -54,6 +57,8 @@ pub mod usable;
 mod test_models;
 
 pub use frikan_shared as shared;
+#[cfg(any(feature = "models", feature = "integer"))]
+pub use laws::integer_table;
 pub use laws::table;
 #[cfg(feature = "models")]
-pub use laws::{evaluate, expression, integer_table, network};
+pub use laws::{evaluate, expression, network};

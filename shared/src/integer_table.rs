@@ -12,6 +12,9 @@
 //!
 //! Sums of coefficients of at most `2^15` keep every product within an `i32`.
 
+use core::hint::black_box;
+
+#[cfg(feature = "models")]
 use serde::{Deserialize, Serialize};
 
 use crate::table::Symmetry;
@@ -31,11 +34,16 @@ pub const WAY_BITS: u32 = 16;
 /// Largest magnitude of a sum of `c1`, `c2` and `c3`.
 pub const MAX_COEFFICIENT: i32 = 1 << 15;
 
+/// Largest magnitude of `c0`.
+#[cfg(feature = "models")]
+pub(crate) const MAX_CONSTANT: u32 = 1 << 29;
+
 /// Most cells of a segment.
 pub const MAX_SEGMENT_CELLS: u8 = 128;
 
 /// What the image says of an integer table; everything else of [`IntegerTable`] follows from it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize))]
 pub struct IntegerShape {
     /// Index in the pool of the first cell for positive inputs.
     pub first_cell: u16,
@@ -49,6 +57,31 @@ pub struct IntegerShape {
     pub output_step: f32,
 }
 
+/// The first cell of each segment, and the one behind all; none where a segment does not have what is documented.
+#[inline(always)]
+pub(crate) fn segment_starts(segments: &[u8; SEGMENTS], first_cell: u16) -> Option<([u16; SEGMENTS], u32)> {
+    let (mut starts, mut end, mut hold, mut index) = ([0; SEGMENTS], u32::from(first_cell), true, 0);
+    while index < SEGMENTS {
+        let inside = index & (SEGMENTS - 1);
+        let cells = u32::from(segments[inside]);
+        hold &= cells.wrapping_sub(1) < u32::from(MAX_SEGMENT_CELLS);
+        starts[inside] = end as u16;
+        end += cells;
+        // Behind a black box the loop stays as short as it is written.
+        index = black_box(index + 1);
+    }
+    hold.then_some((starts, end))
+}
+
+/// The largest magnitude of a cubic's value: the sum of its coefficients, and a step for each shift. None where one of the partial sums of an evaluation
+/// could be too large for its product: each is at most the sum of the magnitudes behind it.
+pub(crate) fn largest_value(coefficients: [i32; 4]) -> Option<u32> {
+    let limit = MAX_COEFFICIENT.unsigned_abs();
+    let [c0, c1, c2, c3] = coefficients.map(i32::unsigned_abs);
+    let sum = c1.wrapping_add(c2).wrapping_add(c3).wrapping_add(3);
+    ((c1 | c2 | c3) <= limit && sum <= limit).then_some(c0.wrapping_add(sum))
+}
+
 /// The line of a segment, modulo `2^32`: `last - short * factor` is cell and way, `short` steps before the last one of the reach.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Segment {
@@ -60,8 +93,8 @@ pub struct Segment {
 
 /// An integer table, ready to evaluate. What an evaluation reads comes first in memory, within short offsets of a load.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "IntegerShape", into = "IntegerShape")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "models", derive(Serialize, Deserialize), serde(from = "IntegerShape", into = "IntegerShape"))]
 pub struct IntegerTable {
     /// Added to cell and way for a negative input: the cells of one side, or 0 where the signs share.
     pub negative_offset: u32,

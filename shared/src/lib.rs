@@ -17,7 +17,6 @@ pub mod elementary;
 pub mod expression;
 pub mod image;
 pub mod input;
-#[cfg(feature = "models")]
 pub mod integer_table;
 pub mod invalid;
 #[cfg(feature = "models")]

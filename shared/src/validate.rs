@@ -4,7 +4,7 @@
 mod network;
 
 use crate::effect::{Effect, Kind};
-use crate::integer_table::{IntegerTable, MAX_COEFFICIENT, MAX_SEGMENT_CELLS};
+use crate::integer_table::{IntegerTable, MAX_CONSTANT, largest_value, segment_starts};
 pub use crate::invalid::InvalidModel;
 use crate::invalid::{bounded, ensure, scale};
 use crate::model::{Input, Law, Model, RigidBody};
@@ -98,18 +98,15 @@ fn rows(cells: &[Cell], first: u32, count: u32, columns: usize) -> Result<&[Cell
 
 fn check_integer_table(table: &IntegerTable, cells: &[Cell]) -> Result<(), InvalidModel> {
     let shape = table.shape();
-    let shape_holds = shape.cells.iter().all(|cells| (1..=MAX_SEGMENT_CELLS).contains(cells))
-        && scale(shape.input_step)
-        && scale(shape.output_step);
+    let steps = [shape.input_step, shape.output_step];
+    let shape_holds = segment_starts(&shape.cells, 0).is_some() && steps.into_iter().all(scale);
     ensure(shape_holds, InvalidModel::TableShape)?;
     let cells = rows(cells, u32::from(shape.first_cell), table.cells(), 1)?;
-    let usable = |cell: &Cell| {
-        let [c0, c1, c2, c3] = cell.integers().map(|coefficient| i64::from(coefficient).abs());
-        let limit = i64::from(MAX_COEFFICIENT);
-        // Each partial sum of the evaluation is at most the sum of the magnitudes behind it, and a step for each shift.
-        c0 <= limit * limit / 2 && c1 + c2 + c3 + 3 <= limit
+    let usable = |coefficients: [i32; 4]| {
+        let [constant, ..] = coefficients;
+        constant.unsigned_abs() <= MAX_CONSTANT && largest_value(coefficients).is_some()
     };
-    ensure(cells.iter().all(usable), InvalidModel::Coefficient)
+    ensure(cells.iter().all(|cell| usable(cell.integers())), InvalidModel::Coefficient)
 }
 
 /// Whether the effect reads the velocity.

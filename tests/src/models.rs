@@ -146,25 +146,38 @@ pub fn stribeck_expression() -> TestModel {
     model(&[2.0], Law::Expression(Program { operations: operations.into_iter().collect() }), &[])
 }
 
-/// Symmetric friction in an integer table: 2^-17 rad/s a step in, 1/1000 N m a step out.
-#[must_use]
-pub fn integer_table() -> TestModel {
+/// Friction in an integer table: 2^-17 rad/s a step in, 1/1000 N m a step out.
+fn table_in_integers(friction: impl Fn(f64) -> f64, symmetry: Symmetry) -> TestModel {
     let step = 1.0 / 131_072.0;
     let mut cells = [1; SEGMENTS];
     cells[..3].copy_from_slice(&[16, 4, 2]);
-    let shape = IntegerShape { first_cell: 0, cells, symmetry: Symmetry::Odd, input_step: step, output_step: 1e-3 };
-    let steps = |position: f64| stribeck_friction(position * f64::from(step)) / 1e-3;
-    let pool: Vec<_> = (0u32..)
-        .zip(cells)
-        .flat_map(|(segment, count)| {
-            let width = f64::from(1 << SEGMENT_BITS) / f64::from(count);
-            (0..count).map(move |cell| (f64::from(segment << SEGMENT_BITS) + width * f64::from(cell), width))
-        })
-        .map(|(start, width)| {
+    let shape = IntegerShape { first_cell: 0, cells, symmetry, input_step: step, output_step: 1e-3 };
+    let side = |sign: f64| -> Vec<Cell> {
+        let steps = |position: f64| friction(sign * position * f64::from(step)) / 1e-3;
+        let cell = |start: f64, width: f64| {
             Cell::from_integers(hermite(steps, start, start + width).map(|coefficient| coefficient.round() as i32))
-        })
-        .collect();
-    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &pool)
+        };
+        let of_segment = |(segment, count): (u32, u8)| {
+            let width = f64::from(1 << SEGMENT_BITS) / f64::from(count);
+            let start = f64::from(segment << SEGMENT_BITS);
+            (0..count).map(|index| cell(start + width * f64::from(index), width)).collect::<Vec<_>>()
+        };
+        (0u32..).zip(cells).flat_map(of_segment).collect()
+    };
+    let sides = if symmetry == Symmetry::Sided { [side(1.0), side(-1.0)].concat() } else { side(1.0) };
+    model(&[2.0], Law::IntegerTable(IntegerTable::new(shape)), &sides)
+}
+
+/// Symmetric friction in an integer table.
+#[must_use]
+pub fn integer_table() -> TestModel {
+    table_in_integers(stribeck_friction, Symmetry::Odd)
+}
+
+/// Asymmetric friction in an integer table.
+#[must_use]
+pub fn sided_integer_table() -> TestModel {
+    table_in_integers(asymmetric_friction, Symmetry::Sided)
 }
 
 /// A program that uses every operation, and makes a NaN of its own where the input is 0.

@@ -17,6 +17,7 @@ fn every_feature_compiles_alone() {
     let target = firmware.target("cortex-m4f").unwrap();
     let runtime = [
         "table",
+        "integer",
         "expression",
         "network",
         "effects",

@@ -5,7 +5,7 @@ use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::model::Law;
 use frikan_tests::cost::{count, count_integer, count_steps};
 use frikan_tests::models;
-use frikan_trainer::compile::cost::instructions;
+use frikan_trainer::compile::cost::{float_step, instructions};
 use frikan_trainer::emulator::{Emulator, Firmware};
 
 /// Every law, constant; those named in `budgets` within their budget.
@@ -97,6 +97,21 @@ fn the_integer_table_is_constant_on_riscv32imac() {
 #[test]
 fn the_integer_table_is_constant_on_riscv32imc() {
     integer_table_is_constant_on("riscv32imc", 45);
+}
+
+/// What `fit` says of the float path of a drive without floating-point unit is what the page has.
+#[test]
+fn the_documented_float_steps_are_those_of_the_page() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/drive-cost.md")).unwrap();
+    for target in ["cortex-m0plus", "riscv32imac", "riscv32imc"] {
+        let section = page.split("\n## ").find(|section| section.starts_with(&format!("{target}\n"))).unwrap();
+        for (_, model) in models::every_kind() {
+            let step = float_step(target, &model.law).unwrap();
+            let row = section.lines().find_map(|line| line.strip_prefix(&format!("| {} | ", step.row))).unwrap();
+            let [least, most] = step.instructions;
+            assert!(row.starts_with(&format!("{least}-{most} |")), "{target}, {}: {row}", step.row);
+        }
+    }
 }
 
 /// Without a floating-point unit the float table does take its time by the input: the count sees the difference.

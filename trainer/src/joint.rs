@@ -164,6 +164,8 @@ impl Joint {
             ("drive.counts_per_turn", drive.counts_per_turn),
             ("drive.torque_limit_Nm", drive.torque_limit_nm),
             ("drive.rate_Hz", drive.rate_hz),
+            ("drive.velocity_count_rad_s", drive.velocity_count_rad_s),
+            ("drive.torque_count_Nm", drive.torque_count_nm),
         ];
         let finite = [
             ("rigid_body.gravity_torque_Nm", self.rigid_body.gravity_torque_nm),
@@ -245,6 +247,8 @@ mod tests {
             counts_per_turn = 8192
             torque_limit_Nm = 50
             rate_Hz = 1000
+            velocity_count_rad_s = 0.001
+            torque_count_Nm = 0.05
             [limits]
             lowest_position_rad = -1.5
             highest_position_rad = 2.0
@@ -274,6 +278,8 @@ mod tests {
         for text in [
             "[drive]\ncounts_per_turn = 0",
             "[drive]\ngear_ratio = nan",
+            "[drive]\nvelocity_count_m_s = 0",
+            "[drive]\ntorque_count_A = -1",
             "[rigid_body]\ninertia_kgm2 = -1",
             "[limits]\nlowest_position_rad = 1\nhighest_position_rad = 0",
             "[simulation.columns]\nposition = { name = \"q\", scale = 0 }",

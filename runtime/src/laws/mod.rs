@@ -4,7 +4,7 @@
 pub mod evaluate;
 #[cfg(feature = "models")]
 pub mod expression;
-#[cfg(feature = "models")]
+#[cfg(any(feature = "models", feature = "integer"))]
 pub mod integer_table;
 #[cfg(feature = "models")]
 pub mod network;

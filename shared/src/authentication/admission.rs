@@ -6,7 +6,7 @@ use core::hint::black_box;
 use crate::authentication::Trust;
 #[cfg(feature = "models")]
 use crate::image::{Image, decode};
-use crate::image::{ImageError, TableImage};
+use crate::image::{ImageError, IntegerTableImage, TableImage};
 use crate::units::Unit;
 #[cfg(feature = "models")]
 use crate::{model::Model, units::Quantity};
@@ -136,6 +136,17 @@ impl Admission<'_> {
         self.demands.met_by(&table.facts(release)).map(|()| table)
     }
 
+    /// The integer table of exactly one image that is admitted, to be read where it lies.
+    ///
+    /// # Errors
+    /// Those of [`Trust::released`], [`IntegerTableImage::read`] and [`Demands::met_by`].
+    #[inline(always)]
+    pub fn integer_table<'b>(&self, bytes: &'b [u8]) -> Result<IntegerTableImage<'b>, ImageError> {
+        let (image, release) = self.trust.released(bytes)?;
+        let table = IntegerTableImage::read(image)?;
+        self.demands.met_by(&table.facts(release)).map(|()| table)
+    }
+
     /// Decodes exactly one image that is admitted.
     ///
     /// # Errors
@@ -149,6 +160,14 @@ impl Admission<'_> {
 }
 
 impl<'a> TableImage<'a> {
+    /// What the image says of itself.
+    #[must_use]
+    pub fn facts(&self, release: u32) -> Facts<'a> {
+        Facts { joint: self.joint, output_unit: self.output_unit, channels: Channels::VELOCITY, release }
+    }
+}
+
+impl<'a> IntegerTableImage<'a> {
     /// What the image says of itself.
     #[must_use]
     pub fn facts(&self, release: u32) -> Facts<'a> {

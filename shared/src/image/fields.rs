@@ -53,8 +53,14 @@ impl<'a> Fields<'a> {
     }
 
     /// A float.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn float(&mut self) -> f32 {
-        self.bytes(4).first_chunk().copied().map_or(0.0, f32::from_le_bytes)
+        f32::from_bits(self.word())
+    }
+
+    /// A number of 32 bits.
+    #[inline(never)]
+    pub(super) fn word(&mut self) -> u32 {
+        self.bytes(4).first_chunk().copied().map_or(0, u32::from_le_bytes)
     }
 }

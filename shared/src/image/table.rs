@@ -2,14 +2,12 @@
 
 use core::hint::black_box;
 
+use super::around_law::{BeforeLaw, BehindLaw, Cells, symmetry};
 use super::fields::Fields;
-use super::header::{Header, ImageError, LAW_ERROR_SINCE, RIGID_BODY_ERROR_SINCE, header, verified, verified_payload};
+use super::header::{Header, ImageError, header, verified, verified_payload};
 use crate::invalid::{InvalidModel, ensure};
-use crate::table::{Geometric, GeometricShape, Symmetry, is_usable};
+use crate::table::{Geometric, GeometricShape, is_usable};
 use crate::units::Unit;
-
-/// Cells as they lie in an image, aligned to nothing.
-pub type Cells<'a> = &'a [[u8; 16]];
 
 /// The table of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,61 +48,28 @@ impl<'a> TableImage<'a> {
 
     #[inline(always)]
     fn of_payload(header: &Header, payload: &'a [u8]) -> Result<Self, ImageError> {
-        let mut fields = Fields::new(payload);
-        let [joint, _version]: [&[u8]; PROVENANCE_NAMES] = core::array::from_fn(|_| fields.name());
-        for _ in 0..PROVENANCE_NUMBERS {
-            fields.number();
-        }
-        let floats = if header.version >= RIGID_BODY_ERROR_SINCE { RIGID_BODY_ERROR_FLOATS } else { 0 };
-        let floats = if header.version >= LAW_ERROR_SINCE { floats + LAW_ERROR_FLOATS } else { 0 };
-        fields.bytes(4 * floats);
-        let law = fields.number();
+        let fields = &mut Fields::new(payload);
+        let before = BeforeLaw::read(header, fields);
         let shape = GeometricShape {
             first_cell: fields.number() as u16,
             offset_exponent: fields.byte() as i8,
             octave_cells_log2: fields.byte(),
-            symmetry: match fields.number() {
-                0 => Symmetry::Odd,
-                1 => Symmetry::Even,
-                _ => Symmetry::Sided,
-            },
+            symmetry: symmetry(fields),
             reach: fields.float(),
             reach_negative: fields.float(),
         };
-        let count = fields.number();
-        let (cells, _) = fields.bytes(16 * usize::from(header.cells)).as_chunks();
-        let (inputs, quantity) = (fields.number(), fields.number());
-        fields.bytes(INPUT_BYTES);
-        let output_unit = Unit::ALL.get(fields.number() as usize).copied().unwrap_or(Unit::One);
-        fields.bytes(4 * (LIMIT_FLOATS + BODY_FLOATS));
-        let effects = fields.number();
-        if law != GEOMETRIC || inputs != 1 || quantity != VELOCITY || effects != 0 {
-            return Err(ImageError::NotBuiltIn);
-        }
-        if !fields.are_all() || count != u32::from(header.cells) {
-            return Err(ImageError::Malformed);
-        }
+        let behind = BehindLaw::read(header, fields);
+        behind.check(before.law == GEOMETRIC, header, fields)?;
         ensure(shape.is_within_range(), InvalidModel::TableShape)?;
         let layout = Geometric::new(shape);
         ensure(layout.fits(), InvalidModel::TableShape)?;
-        let first = usize::from(shape.first_cell);
-        let column = cells.get(first..).and_then(|cells| cells.get(..layout.cells() as usize));
+        let column = behind.column(shape.first_cell, layout.cells())?;
         // Behind a black box the loop stays as short as it is written.
-        let words = black_box(column.ok_or(InvalidModel::CellOutOfPool)?.as_flattened().as_chunks().0);
+        let words = black_box(column.as_flattened().as_chunks().0);
         ensure(words.iter().all(|word| is_usable(u32::from_le_bytes(*word))), InvalidModel::Coefficient)?;
-        Ok(Self { layout, cells, output_unit, joint })
+        Ok(Self { layout, cells: behind.cells, output_unit: behind.output_unit, joint: before.joint })
     }
 }
 
-/// Numbers of variants: of the law and of the quantity.
+/// Number of the law's variant.
 const GEOMETRIC: u32 = 0;
-const VELOCITY: u32 = 0;
-
-/// What of the image is passed over.
-const PROVENANCE_NAMES: usize = 2;
-const PROVENANCE_NUMBERS: usize = 2;
-const LAW_ERROR_FLOATS: usize = 2;
-const RIGID_BODY_ERROR_FLOATS: usize = 15;
-const INPUT_BYTES: usize = 9;
-const LIMIT_FLOATS: usize = 1;
-const BODY_FLOATS: usize = 5;

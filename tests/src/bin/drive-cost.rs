@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS, example, example_of_nothing};
-use frikan_tests::cost::{count, count_integer, count_rows, count_steps};
+use frikan_tests::cost::{count, count_integer, count_integer_steps, count_rows, count_steps};
 use frikan_tests::models::{self, TestModel, stribeck_friction};
 use frikan_tests::vectors::one_input;
 use frikan_trainer::emulator::{Answer, Emulator, Firmware, Footprint, Mode, Request, footprint};
@@ -99,6 +99,19 @@ fn append_target(page: &mut String, firmware: &Firmware, name: &str) -> Result<(
     let (kind, model) = ("integer table, counts in and out, without limits", models::integer_table());
     let counted = count_integer(&integer, &model)?;
     append_model(page, kind, &model, ("-", &range(&counted)), &counted);
+    append_integer_step(page, firmware, name)
+}
+
+/// The integer compensator with its table in flash, and the smallest drive with it alone.
+fn append_integer_step(page: &mut String, firmware: &Firmware, name: &str) -> Result<()> {
+    let alone = firmware.with_features("integer");
+    let emulator = Emulator::with_binary(&alone, name, "emulate-integer-step")?;
+    let model = models::integer_table();
+    let counted = count_integer_steps(&emulator, &model)?;
+    append_model(page, "integer compensator, its table in flash", &model, (&range(&counted), "-"), &counted);
+    let drive = footprint(&alone.build(emulator.target(), "drive-integer")?)?;
+    let flash = drive.beyond(footprint(&alone.build(emulator.target(), "bare")?)?).flash_bytes;
+    append(page, format_args!("\nFlash of the drive with the integer compensator alone {flash} B.\n"));
     Ok(())
 }
 

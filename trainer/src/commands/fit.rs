@@ -42,7 +42,8 @@ pub struct Fit {
     /// Instructions that one evaluation may take on a Cortex-M4F
     #[arg(long, value_name = "N")]
     pub max_instructions: Option<u32>,
-    /// Drive that has to have room for the image, by its name as `verify` takes it; the smallest documented one when absent
+    /// Drive that has to have room for the image, by its name as `verify` takes it; the smallest documented one when absent. One without floating-point unit
+    /// gets a table of integers
     #[arg(long, value_name = "NAME", value_parser = profile)]
     pub target: Option<Profile>,
     /// Image to write
@@ -148,6 +149,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
             instructions: arguments.max_instructions,
             target: arguments.target.unwrap_or_default(),
         },
+        integers: arguments.target.is_some_and(|target| !target.has_floats),
         training: arguments.training.training()?,
     };
     let reporter = Reporter::new(arguments.quiet);

@@ -1,5 +1,8 @@
 //! `trainer verify`: the step that a control loop calls against the trainer's own evaluator, bit for bit, here or on an emulated target.
 
+mod integers;
+mod told;
+
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -7,11 +10,15 @@ use clap::Args;
 use frikan_runtime::friction::Measurement;
 use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
+use integers::{InIntegers, Place};
 use serde_json::{Value, json};
+use told::{Cost, line};
 
 use super::measurement::{self, motion};
 use super::output::{Outputs, print};
 use super::progress::Reporter;
+use crate::compile::cost;
+use crate::compile::profile::Profile;
 use crate::compile::steps::sequence::sequence;
 use crate::compile::steps::{
     ANSWER_WORDS, Answer, CALL_WORDS, Call, LEAST_STEPS, StepDifference, compare as compare_steps, compare_answers,
@@ -61,15 +68,8 @@ struct Found {
     /// Of the static law apart; on the host alone, for on a target the steps go through it.
     law: Option<Comparison>,
     cost: Cost,
-}
-
-/// What stepping takes.
-#[derive(Default)]
-struct Cost {
-    instructions: Option<(u32, u32)>,
-    flash_bytes: u64,
-    ram_bytes: u64,
-    stack_bytes: u64,
+    /// Of an integer table, here or where there is no floating-point unit.
+    in_integers: Option<InIntegers>,
 }
 
 /// Runs the command; the exit status is 0, or 1 where bits differ.
@@ -99,11 +99,20 @@ pub fn run(arguments: &Verify) -> Result<u8> {
         };
         let ram_bytes = size_of_val(model) + size_of_val(&model.cells[..]) - size_of_val(&model.cells);
         let cost = Cost { flash_bytes: bytes.len() as u64, ram_bytes: ram_bytes as u64, ..Cost::default() };
-        Found { steps: compare_steps(model, &calls), law: Some(law), cost }
+        Found { steps: compare_steps(model, &calls), law: Some(law), cost, in_integers: None }
     } else {
         reporter.say("building the firmware and running it");
         emulated(arguments, &bytes, model, &calls)?
     };
+    let place =
+        if on_host { Place::Host { exhaustively: arguments.exhaustive } } else { Place::Target(&arguments.target) };
+    let in_integers = if on_host || !has_floats(&arguments.target) {
+        let drive = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?.drive;
+        integers::compare(place, &bytes, model, &drive)?
+    } else {
+        None
+    };
+    let found = Found { in_integers, ..found };
     drop(reporter);
     let text = summary(arguments, &found);
     match &arguments.json {
@@ -123,8 +132,15 @@ pub fn run(arguments: &Verify) -> Result<u8> {
 
 impl Found {
     fn identical(&self) -> bool {
-        self.steps.identical() && self.law.is_none_or(|law| law.identical())
+        self.steps.identical()
+            && self.law.is_none_or(|law| law.identical())
+            && self.in_integers.as_ref().is_none_or(|found| found.steps.identical())
     }
+}
+
+/// Whether a target calculates with floats by itself.
+fn has_floats(target: &str) -> bool {
+    Profile::named(target).is_none_or(|profile| profile.has_floats)
 }
 
 /// A call for each sample of a recording, without limits.
@@ -187,16 +203,10 @@ fn emulated(arguments: &Verify, image: &[u8], model: &HostModel, calls: &[Call])
         ram_bytes: footprint.ram_bytes + u64::from(answer.model_bytes),
         stack_bytes: u64::from(answer.decode_stack_bytes.max(answer.evaluate_stack_bytes)),
     };
-    Ok(Found { steps, law: None, cost })
+    Ok(Found { steps, law: None, cost, in_integers: None })
 }
 
-/// `N of N what equal`, or how many agree where not all do.
-fn line<D>(comparison: &Comparison<D>, what: &str) -> String {
-    let word = if comparison.identical() { "equal" } else { "agree" };
-    format!("{} of {} {what} {word}", comparison.equal, comparison.compared)
-}
-
-fn summary(arguments: &Verify, Found { steps, law, cost }: &Found) -> String {
+fn summary(arguments: &Verify, Found { steps, law, cost, in_integers }: &Found) -> String {
     let mut text = format!("{} on {}: law, effects, memory and limits\n", line(steps, "steps"), arguments.target);
     if let Some(StepDifference { step, call, computed, expected }) = &steps.first_difference {
         let number = |bits| format!("{:?} ({bits:08x})", f32::from_bits(bits));
@@ -226,10 +236,20 @@ fn summary(arguments: &Verify, Found { steps, law, cost }: &Found) -> String {
     if let Some((least, most)) = cost.instructions {
         text += &format!("{least} to {most} instructions a step, {} bytes of stack at the deepest\n", cost.stack_bytes);
     }
-    text + &format!("{} bytes of flash, {} bytes of RAM\n", cost.flash_bytes, cost.ram_bytes)
+    text += &format!("{} bytes of flash, {} bytes of RAM\n", cost.flash_bytes, cost.ram_bytes);
+    match (in_integers, cost::integer_step(&arguments.target)) {
+        (Some(found), _) => text + &found.text(),
+        (None, Some(instructions)) => {
+            let target = &arguments.target;
+            text + &format!(
+                "{target} has no floating-point unit: as a table of integers (`fit --target {target}`) {instructions} instructions a step\n"
+            )
+        }
+        (None, None) => text,
+    }
 }
 
-fn as_json(arguments: &Verify, Found { steps, law, cost }: &Found) -> Value {
+fn as_json(arguments: &Verify, Found { steps, law, cost, in_integers }: &Found) -> Value {
     let of_step = steps.first_difference.as_ref().map(|difference| {
         let answer =
             |Answer { torque, position, status }| json!({"torque": torque, "position": position, "status": status});
@@ -265,5 +285,7 @@ fn as_json(arguments: &Verify, Found { steps, law, cost }: &Found) -> Value {
         "flash_bytes": cost.flash_bytes,
         "ram_bytes": cost.ram_bytes,
         "stack_bytes": cost.stack_bytes,
+        "floating_point_unit": has_floats(&arguments.target),
+        "integers": in_integers.as_ref().map(InIntegers::to_json),
     })
 }

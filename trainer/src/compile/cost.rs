@@ -23,6 +23,62 @@ const INNER_NODE: u32 = 13;
 const PRODUCT: u32 = 49;
 const EDGE: u32 = 22;
 
+/// What a step of the float compensator takes on a drive without floating-point unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FloatStep {
+    /// Row of docs/drive-cost.md: the kind of law that was counted.
+    pub row: &'static str,
+    /// Fewest and most instructions, by the input.
+    pub instructions: [u32; 2],
+}
+
+/// The rows of docs/drive-cost.md.
+const TABLE_ROW: &str = "symmetric table";
+const UNIFORM_ROW: &str = "uniform table";
+const FORMULA_ROW: &str = "Stribeck expression";
+const NETWORK_ROW: &str = "network [1,5,1]";
+/// Fewest and most instructions of each row.
+type Rows = [(&'static str, [u32; 2]); 4];
+/// Rows of docs/drive-cost.md for drives without floating-point unit: a step, instructions.
+const FLOAT_STEPS: [(&str, Rows); 3] = [
+    (
+        "cortex-m0plus",
+        [
+            (TABLE_ROW, [1125, 1533]),
+            (UNIFORM_ROW, [1414, 1946]),
+            (FORMULA_ROW, [3614, 6879]),
+            (NETWORK_ROW, [2485, 3021]),
+        ],
+    ),
+    ("riscv32imac", RISCV_FLOAT_STEPS),
+    ("riscv32imc", RISCV_FLOAT_STEPS),
+];
+const RISCV_FLOAT_STEPS: Rows =
+    [(TABLE_ROW, [606, 887]), (UNIFORM_ROW, [887, 1238]), (FORMULA_ROW, [2312, 3929]), (NETWORK_ROW, [778, 1085])];
+
+/// Instructions of a step of the integer compensator, the same for every count; `tests/tests/emulation_integer.rs` counts them again.
+const INTEGER_STEPS: [(&str, u32); 3] = [("cortex-m0plus", 139), ("riscv32imac", 124), ("riscv32imc", 124)];
+
+/// What the documented law of the same kind takes in floats, limits included, on a drive without floating-point unit; none for other drives.
+#[must_use]
+pub fn float_step(target: &str, law: &Law) -> Option<FloatStep> {
+    let row = match law {
+        Law::Geometric(_) | Law::IntegerTable(_) => TABLE_ROW,
+        Law::Uniform(_) => UNIFORM_ROW,
+        Law::Expression(_) => FORMULA_ROW,
+        Law::Network(_) => NETWORK_ROW,
+    };
+    let (_, rows) = FLOAT_STEPS.into_iter().find(|(name, _)| *name == target)?;
+    let (row, instructions) = rows.into_iter().find(|(kind, _)| *kind == row)?;
+    Some(FloatStep { row, instructions })
+}
+
+/// Instructions of a step of the integer compensator on a drive without floating-point unit; none for other drives.
+#[must_use]
+pub fn integer_step(target: &str) -> Option<u32> {
+    INTEGER_STEPS.into_iter().find_map(|(name, instructions)| (name == target).then_some(instructions))
+}
+
 /// Instructions of one evaluation of the law of a model, without effects.
 #[must_use]
 pub fn instructions<const CELLS: usize>(model: &Model<CELLS>) -> u32 {

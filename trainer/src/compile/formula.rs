@@ -1,7 +1,7 @@
 //! A law in symbols, as the compiler needs it: evaluated in `f64`, enclosed over intervals, and told odd from even.
 
 use super::interval::Interval;
-use super::series::Series;
+use super::series::{ORDERS, Series};
 
 /// A function of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +78,28 @@ pub trait Curve: Sync {
     /// Its symmetry, where it can be shown.
     fn parity(&self) -> Parity {
         Parity::Neither
+    }
+}
+
+/// A curve of which only values are known, and perhaps their symmetry; no enclosure is claimed.
+pub struct Sampled<'a> {
+    /// The value at a point.
+    pub value: &'a (dyn Fn(f64) -> f64 + Sync),
+    /// The symmetry of the values.
+    pub parity: Parity,
+}
+
+impl Curve for Sampled<'_> {
+    fn value(&self, x: f64) -> f64 {
+        (self.value)(x)
+    }
+
+    fn series(&self, _over: Interval) -> Series {
+        Series([Interval::ENTIRE; ORDERS])
+    }
+
+    fn parity(&self) -> Parity {
+        self.parity
     }
 }
 

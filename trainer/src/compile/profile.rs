@@ -11,17 +11,19 @@ pub struct Profile {
     pub name: &'static str,
     /// Cells of tables for which it has room.
     pub cells: usize,
+    /// Whether it calculates with floats by itself; else in integers, or by a library that takes its time.
+    pub has_floats: bool,
 }
 
 /// The documented drives, the smallest first.
 pub const PROFILES: [Profile; 7] = [
-    Profile { name: "cortex-m0plus", cells: DRIVE_CELLS },
-    Profile { name: "riscv32imc", cells: DRIVE_CELLS },
-    Profile { name: "riscv32imac", cells: DRIVE_CELLS },
-    Profile { name: "cortex-m4f", cells: DRIVE_CELLS },
-    Profile { name: "cortex-m33", cells: DRIVE_CELLS },
-    Profile { name: "cortex-m7", cells: DRIVE_CELLS },
-    Profile { name: "host", cells: CELLS },
+    Profile { name: "cortex-m0plus", cells: DRIVE_CELLS, has_floats: false },
+    Profile { name: "riscv32imc", cells: DRIVE_CELLS, has_floats: false },
+    Profile { name: "riscv32imac", cells: DRIVE_CELLS, has_floats: false },
+    Profile { name: "cortex-m4f", cells: DRIVE_CELLS, has_floats: true },
+    Profile { name: "cortex-m33", cells: DRIVE_CELLS, has_floats: true },
+    Profile { name: "cortex-m7", cells: DRIVE_CELLS, has_floats: true },
+    Profile { name: "host", cells: CELLS, has_floats: true },
 ];
 
 impl Profile {

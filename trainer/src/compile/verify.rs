@@ -41,6 +41,28 @@ impl<D> Comparison<D> {
         Self { compared: 1, equal: u64::from(difference.is_none()), first_difference: difference }
     }
 
+    /// Of the answers to `calls`, one after the other, with what is `expected` of each; a call without an answer counts as compared and not equal.
+    /// `difference` has the number of a call, the call, what was answered and what was expected.
+    pub fn of_answers<C, A: PartialEq>(
+        calls: &[C],
+        answers: impl IntoIterator<Item = A>,
+        mut expected: impl FnMut(&C) -> A,
+        difference: impl Fn(u64, &C, A, A) -> D,
+    ) -> Self {
+        let mut answers = answers.into_iter();
+        let mut comparison = Self::NONE;
+        for (step, call) in (0..).zip(calls) {
+            let expected = expected(call);
+            let Some(computed) = answers.next() else {
+                comparison.compared += 1;
+                continue;
+            };
+            let differs = computed != expected;
+            comparison = comparison.then(Self::of_one(differs.then(|| difference(step, call, computed, expected))));
+        }
+        comparison
+    }
+
     /// Whether every input agreed.
     #[must_use]
     pub fn identical(&self) -> bool {
@@ -169,7 +191,7 @@ mod tests {
     use super::*;
     use crate::compile::formula::tests::stribeck_law;
     use crate::compile::formula::{Formula, Function, Operator};
-    use crate::compile::integers::compile_integer_table;
+    use crate::compile::integers::{Wanted, compile_integers};
     use crate::compile::networks::{Edge, Edges, Nodes, assemble, node_ranges};
     use crate::compile::program::compile_program;
     use crate::compile::tables::{compile_layout, compile_table, rows};
@@ -229,7 +251,11 @@ mod tests {
 
     #[test]
     fn integer_tables_agree_to_the_bit() {
-        let compiled = compile_integer_table(&stribeck_law(), -2.0, 2.0, 5.0e-2, 0).unwrap();
+        let law = stribeck_law();
+        let held = |velocity: f64| law.evaluate(&[velocity.clamp(-2.0, 2.0)]);
+        let bound = 5.0e-2;
+        let wanted = Wanted { range: [-2.0, 2.0], velocity_count: None, torque_count: None, bound, cells: 128 };
+        let compiled = compile_integers(&held, &wanted).unwrap();
         assert_identical(&model(Law::IntegerTable(compiled.table), &compiled.cells, &[Quantity::Velocity]));
     }
 

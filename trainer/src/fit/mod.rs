@@ -5,6 +5,8 @@
 mod choice;
 mod data;
 mod gate;
+mod integer_summary;
+mod integers;
 mod law_error;
 mod laws;
 pub mod model;
@@ -16,6 +18,7 @@ mod run;
 pub mod score;
 
 pub use gate::{Identifiable, identifiable};
+pub use integer_summary::IntegerSummary;
 pub use laws::activations::label_activations;
 pub use laws::formula::formula_of;
 pub use model::{CELLS, HostModel};

@@ -17,6 +17,8 @@ pub struct Options {
     pub rate_hz: Option<f64>,
     /// What the law may cost on the drive.
     pub budget: Budget,
+    /// Whether the image holds a table of integers, for a drive without floating-point unit.
+    pub integers: bool,
     /// How the network is trained.
     pub training: Training,
 }

@@ -1,5 +1,6 @@
 //! What a fit brings back: everything that a terminal, a JSON file and a report show of it. Plain data.
 
+use super::integer_summary::IntegerSummary;
 use crate::kan::{GraphSummary, Removed, Step};
 use crate::parameter::Parameter;
 use crate::recording::Axis;
@@ -102,6 +103,8 @@ pub struct Outcome {
     pub held_out: bool,
     /// Why this form was chosen, one sentence.
     pub choice: String,
+    /// The table of integers that the image holds in place of that form, where the drive calculates in integers.
+    pub integers: Option<IntegerSummary>,
     /// What the data do not determine and what else was noticed, in sentences.
     pub remarks: Vec<String>,
     /// Whether every parameter is determined and every optimiser converged.

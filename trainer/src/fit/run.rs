@@ -13,6 +13,7 @@ use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
 use super::gate::confounded::Identified;
 use super::gate::{ONE_WAY, withheld};
+use super::integers::{self, of_velocity};
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
 use super::laws::formula::{self, at_velocity, classical, law_data, law_parameters};
@@ -20,7 +21,9 @@ use super::laws::learn::{TrainedNetwork, TrainingData};
 use super::laws::simple::{Simple, simple};
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
-use super::outcome::{CURVE_POINTS, Form, InputRange, Outcome, Score, Soundness, SplitScore, uncertain_share};
+use super::outcome::{
+    CURVE_POINTS, Form, InputRange, Outcome, Representation, Score, Soundness, SplitScore, uncertain_share,
+};
 use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
 use crate::error::Result;
@@ -49,6 +52,7 @@ pub fn fit(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<Outcome> {
+    let options = &of_velocity(options)?;
     let first = fit_once(recordings, tests, joint, options, progress);
     let too_large = first.as_ref().is_err_and(|error| *error == no_image());
     if !too_large || options.inputs.is_some() {
@@ -96,6 +100,8 @@ fn fit_once(
         judge(&material, &first.models, &trials, freedom(first, &learnt), options.representation, &options.budget)?;
     let Shipped { model, fit } = shipped(&builder, verdict.form, first, found, &learnt, &data, options)?;
     let violation = Violation::of(&model, &material);
+    let rmse = on_all_rows(&model, &material).sqrt();
+    let (model, integers) = integers::shipped(model, &joint.drive, options, rmse)?;
 
     let name = joint.name.clone().unwrap_or_default();
     let residual = Residual::of(&model, &material)?;
@@ -132,9 +138,10 @@ fn fit_once(
         classical,
         parameters,
         candidates: verdict.candidates,
-        representation: verdict.form.representation(),
+        representation: if integers.is_some() { Representation::Table } else { verdict.form.representation() },
         held_out: material.repeats.is_none(),
         choice: verdict.reason,
+        integers,
         remarks: remarks(&material, first, of_the_sign, verdict.form, recordings, &identified),
         sound,
         train_score: Score::over(&train),

@@ -19,6 +19,12 @@ pub struct Drive {
     /// Rate of the control loop, Hz; above zero.
     #[serde(rename = "rate_Hz")]
     pub rate_hz: Option<f64>,
+    /// Velocity of the joint that is one count where the drive calculates in integers, rad/s (m/s on a linear axis); above zero.
+    #[serde(alias = "velocity_count_m_s")]
+    pub velocity_count_rad_s: Option<f64>,
+    /// Torque at the joint that is one count where the drive calculates in integers, N m (N, A, as the actuator column); above zero.
+    #[serde(rename = "torque_count_Nm", alias = "torque_count_N", alias = "torque_count_A")]
+    pub torque_count_nm: Option<f64>,
 }
 
 /// Limits within which the joint may be moved; what is absent is taken from a recording.

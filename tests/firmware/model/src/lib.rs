@@ -2,12 +2,20 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(any(feature = "models", feature = "table"))]
 mod drive;
+#[cfg(feature = "integer")]
+mod integer;
+#[cfg(any(feature = "models", feature = "table"))]
 mod joint;
 #[cfg(feature = "models")]
 mod laws;
 
+#[cfg(any(feature = "models", feature = "table"))]
 pub use drive::Drive;
+#[cfg(feature = "integer")]
+pub use integer::CountingDrive;
+#[cfg(any(feature = "models", feature = "table"))]
 pub use joint::{Joint, Model, joint, read};
 #[cfg(feature = "models")]
 pub use laws::{IntegerDrive, StaticLaw};

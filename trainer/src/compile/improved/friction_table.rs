@@ -8,10 +8,8 @@ use frikan_shared::table::{Cell, Geometric, GeometricShape, Symmetry, Table};
 use frikan_shared::units::{Quantity, Unit};
 
 use super::origin::{Friction, Origin};
-use crate::compile::formula::{Curve, Parity};
+use crate::compile::formula::{Parity, Sampled};
 use crate::compile::host_model::{CELLS, HostModel};
-use crate::compile::interval::Interval;
-use crate::compile::series::{ORDERS, Series};
 use crate::compile::tables::{CompiledTable, compile_layout};
 use crate::physics::JointState;
 
@@ -96,22 +94,6 @@ fn velocity_table(
         reach: reach as f32,
         reach_negative: reach as f32,
     };
-    compile_layout(&Sampled(friction, odd), Table::Geometric(Geometric::new(layout)))
-}
-
-/// A curve of which only values are known; no enclosure is claimed.
-struct Sampled<'a>(&'a (dyn Fn(f64) -> f64 + Sync), bool);
-
-impl Curve for Sampled<'_> {
-    fn value(&self, x: f64) -> f64 {
-        (self.0)(x)
-    }
-
-    fn series(&self, _over: Interval) -> Series {
-        Series([Interval::ENTIRE; ORDERS])
-    }
-
-    fn parity(&self) -> Parity {
-        if self.1 { Parity::Odd } else { Parity::Neither }
-    }
+    let parity = if odd { Parity::Odd } else { Parity::Neither };
+    compile_layout(&Sampled { value: friction, parity }, Table::Geometric(Geometric::new(layout)))
 }

@@ -109,18 +109,8 @@ pub fn compare_answers<const CELLS: usize>(
     answers: impl IntoIterator<Item = Answer>,
 ) -> Comparison<StepDifference> {
     let mut reference = Reference::new(model, effects::added);
-    let mut answers = answers.into_iter();
-    let mut comparison = Comparison::NONE;
-    for (step, call) in (0..).zip(calls) {
-        let expected = reference.step(call);
-        let Some(computed) = answers.next() else {
-            comparison.compared += 1;
-            continue;
-        };
-        let difference = StepDifference { step, call: *call, computed, expected };
-        comparison = comparison.then(Comparison::of_one((computed != expected).then_some(difference)));
-    }
-    comparison
+    let difference = |step, call: &Call, computed, expected| StepDifference { step, call: *call, computed, expected };
+    Comparison::of_answers(calls, answers, |call| reference.step(call), difference)
 }
 
 /// The answer of the runtime's compensator to a call.

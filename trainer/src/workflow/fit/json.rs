@@ -3,6 +3,7 @@
 use frikan_shared::image::image_crc32;
 use serde_json::{Value, json};
 
+use super::integers;
 use super::simulated::SimulatedMotions;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Soundness, SplitScore, Trace};
@@ -27,6 +28,7 @@ pub(super) fn summary(
         "filter": outcome.filter,
         "representation": outcome.representation.name(),
         "choice": outcome.choice,
+        "integers": outcome.integers.as_ref().map(|integers| integers::to_json(integers, outcome)),
         "held_out": outcome.held_out,
         "expression": outcome.law.expression,
         "latex": outcome.law.latex,

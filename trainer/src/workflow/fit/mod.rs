@@ -1,5 +1,6 @@
 //! From recordings to a law that tells itself.
 
+mod integers;
 pub(super) mod json;
 mod servo;
 mod simulated;
@@ -64,6 +65,10 @@ pub fn fit(
     progress: ProgressCallback<'_>,
 ) -> Result<Fitted> {
     let start = Instant::now();
+    if options.integers && joint.actuator.kind != Kind::Torque {
+        let message = "a table of integers is made from recorded torque, force or current; this joint reports none";
+        return Err(Error::new(&codes::USAGE, message).with_value(options.budget.target.name));
+    }
     let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint))?;
     let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint))?;
     warnings.extend(of_tests);

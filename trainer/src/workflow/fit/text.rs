@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::integers;
 use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Trace};
 use crate::law::significant;
@@ -73,6 +74,9 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: Option<&Path>, seco
         if let Some(violation) = &candidate.violation {
             writeln!(out, "      {violation}")?;
         }
+    }
+    if let Some(integers) = &outcome.integers {
+        out.push_str(&integers::text(integers, outcome));
     }
     writeln!(
         out,
