@@ -92,7 +92,7 @@ class Fitted:
 
     def report(self, path: Path) -> None:
         """Writes the result as one HTML page."""
-        _write(path, self._native.report())
+        _write(path, self._native.report("frikan.fit"))
 
     def plot(self, axes: Any = None) -> Any:
         """Draws law and band over velocity with Matplotlib, and gives its axes."""
@@ -158,7 +158,7 @@ class Diagnosed:
 
     def report(self, path: Path) -> None:
         """Writes the result as one HTML page."""
-        _write(path, self._native.report(self._compared_with))
+        _write(path, self._native.report(self._compared_with, "frikan.diagnose"))
 
     def __str__(self) -> str:
         return self._native.text()

@@ -34,8 +34,8 @@ impl FittedObject {
     }
 
     /// The result as one HTML page.
-    fn report(&self) -> String {
-        self.0.report()
+    fn report(&self, command: &str) -> String {
+        self.0.report(command)
     }
 
     /// The result as `trainer fit` prints it.
@@ -71,8 +71,8 @@ impl DiagnosedObject {
     }
 
     /// The result as one HTML page.
-    fn report(&self, compared_with: &str) -> String {
-        self.0.report(compared_with, &[])
+    fn report(&self, compared_with: &str, command: &str) -> String {
+        self.0.report(compared_with, &[], command)
     }
 
     /// The result as `trainer diagnose` prints it.

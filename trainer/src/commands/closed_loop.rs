@@ -11,7 +11,7 @@ use frikan_runtime::shared::image::Image;
 use frikan_runtime::shared::units::Unit;
 use frikan_runtime::supervised::{DEFAULT_GAIN, SupervisionError, VelocitySource};
 
-use super::output::{Outputs, print};
+use super::output::{Outputs, command_line, print};
 use super::progress::Reporter;
 use super::simulate::{parse_effect, with_effects};
 use crate::emulator::Lockstep;
@@ -163,7 +163,8 @@ fn write(arguments: &Loop, account: &Account<'_>, uncompensated: &[Row]) -> Resu
         outputs.add(path, format!("{}\n", account.to_json()));
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, report::closed_loop(account.motion, &account.lines(), uncompensated, account.rows));
+        let origin = report::Origin { command: &command_line(), recordings: &[], settings: "" };
+        outputs.add(path, report::closed_loop(account.motion, &account.lines(), uncompensated, account.rows, &origin));
     }
     let inputs = [Some(arguments.joint.as_path()), arguments.image.as_deref(), arguments.swap_image.as_deref()];
     outputs.refuse_overwriting(&inputs.into_iter().flatten().collect::<Vec<&Path>>())?;

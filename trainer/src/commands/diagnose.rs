@@ -3,7 +3,7 @@
 mod put_right;
 
 use crate::commands::measurement::{self, Source, profile};
-use crate::commands::output::{Outputs, refuse_unwritable, say};
+use crate::commands::output::{Outputs, command_line, refuse_unwritable, say};
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::profile::Profile;
 use crate::diagnose::answer::outcome::Verdict;
@@ -140,7 +140,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, found.report(&compared_with(arguments), &remarks));
+        outputs.add(path, found.report(&compared_with(arguments), &remarks, &command_line()));
     }
     match (&arguments.advise, found.trajectory()) {
         (Some(path), Some(trajectory)) => outputs.add(path, trajectory),

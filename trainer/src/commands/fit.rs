@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::measurement::{self, Source, actuator_file, profile};
-use super::output::{Outputs, print, refuse_unwritable, say};
+use super::output::{Outputs, command_line, print, refuse_unwritable, say};
 use super::progress::Reporter;
 use crate::actuator::Kind;
 use crate::compile::profile::Profile;
@@ -198,7 +198,7 @@ fn write(arguments: &Fit, fitted: &Fitted, withheld: bool) -> Result<()> {
         outputs.add(path, format!("{}\n", fitted.json()));
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, fitted.report());
+        outputs.add(path, fitted.report(&command_line()));
     }
     outputs.write()?;
     // With JSON on standard output the text would get in its way.

@@ -11,7 +11,7 @@ use super::stamp::day;
 use super::table::{self, table};
 use super::task::{Done, FLEET_FILE, Task, Tasks};
 use super::told::{json, text};
-use crate::commands::output::Outputs;
+use crate::commands::output::{Outputs, command_line};
 use crate::error::{Error, Result, codes};
 use crate::files::create_folder;
 use crate::fleet::{FittedLaw, Measured, Ripple, survey};
@@ -72,7 +72,8 @@ pub fn run(arguments: &Gather) -> Result<u8> {
     let json = json(&gathered).to_string() + "\n";
     outputs.add(&at(FLEET_FILE), json.as_bytes());
     let (headline, lines) = text(&gathered);
-    outputs.add(&at("fleet.html"), report::fleet(&gathered.survey, &headline, &lines, &curves(&measured)));
+    let origin = report::Origin { command: &command_line(), recordings: &[], settings: "" };
+    outputs.add(&at("fleet.html"), report::fleet(&gathered.survey, &headline, &lines, &curves(&measured), &origin));
     if let Some(path) = &arguments.json {
         outputs.add(path, json);
     }

@@ -66,6 +66,15 @@ fn refuse_overwriting(outputs: &[&Path], inputs: &[&Path]) -> Result<()> {
     Ok(())
 }
 
+/// The command as it was typed, for a shell of POSIX.
+pub(crate) fn command_line() -> String {
+    let is_plain =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || "-_./,:=+%@".contains(c));
+    let quoted = |word: String| if is_plain(&word) { word } else { format!("'{}'", word.replace('\'', "'\\''")) };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("trainer".to_string()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
 /// Says a line on standard error. That nobody listens is no failure.
 pub fn say(line: &str) {
     // A message that cannot be told can only be dropped.
