@@ -13,7 +13,7 @@ use crate::error::{Error, Result, codes};
 use crate::files::{create_folder, read_text};
 use crate::fit::{Budget, Options};
 use crate::joint::ArmFile;
-use crate::workflow::arm::{FittedArm, Recorded, arm, file_name, joint_doubt};
+use crate::workflow::arm::{FittedArm, Recorded, arm, joint_doubt};
 
 /// Largest `arm.toml` and URDF that are read, in bytes.
 const FILE_LIMIT_BYTES: u64 = 64 << 20;
@@ -115,15 +115,11 @@ fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
     create_folder(&arguments.output)?;
     let mut outputs = Outputs::default();
     let place = |name: &str| arguments.output.join(name);
-    let mut images = Vec::new();
-    for joint in &fitted.outcome.joints {
-        let law = joint.law.as_ref().ok().filter(|_| arguments.force || joint_doubt(joint).is_none());
-        let image = law.map(|law| (format!("{}.frk", file_name(&joint.name)), law.image.clone()));
-        images.push(image.as_ref().map(|(name, _)| name.clone()));
-        if let Some((name, bytes)) = image {
-            outputs.add(&place(&name), bytes);
-        }
+    let images = fitted.images(arguments.force);
+    for (name, bytes) in images.iter().flatten() {
+        outputs.add(&place(name), *bytes);
     }
+    let images: Vec<Option<String>> = images.into_iter().map(|image| image.map(|(name, _)| name)).collect();
     let json = format!("{}\n", fitted.json(&images));
     outputs.add(&place("arm.json"), json.clone());
     outputs.add(&place("arm.urdf"), fitted.patched(urdf, arguments.force)?);
