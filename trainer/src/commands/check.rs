@@ -40,7 +40,7 @@ pub fn run(arguments: &Check) -> Result<u8> {
     let checked = check(&recordings, &joint)?;
     let mut outputs = Outputs::default();
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", checked.json()));
+        outputs.add_json(path, checked.json());
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
         outputs.add("-".as_ref(), checked.text());

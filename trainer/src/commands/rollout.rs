@@ -54,7 +54,7 @@ pub fn run(arguments: &Rollout) -> Result<()> {
         outputs.add(path, done.csv()?);
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", done.json()));
+        outputs.add_json(path, done.json());
     }
     outputs.write()?;
     if !arguments.quiet {

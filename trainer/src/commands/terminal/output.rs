@@ -3,6 +3,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
+use super::configuration::resolved;
 use crate::error::{Error, Result, codes};
 use crate::files::{refuse_place, write_together};
 
@@ -22,6 +25,14 @@ impl Outputs {
         } else {
             self.files.push((path.to_owned(), content));
         }
+    }
+
+    /// Adds a result as JSON, with the options that were in force; `-` is standard output.
+    pub(crate) fn add_json(&mut self, path: &Path, mut result: Value) {
+        if let (Some(result), Some(options)) = (result.as_object_mut(), resolved()) {
+            result.insert("configuration".to_owned(), options.clone());
+        }
+        self.add(path, format!("{result}\n"));
     }
 
     /// Refuses to write over what was read, and the same file twice.
