@@ -8,7 +8,5 @@ cargo nextest run --workspace "$@"
 # The C library as it is by default is among them; here with all that it can have.
 cargo nextest run -p frikan-c --features auth,expression,network,effects "$@"
 cargo test --workspace --doc
-# The Python package: pip installs what builds and tests it, once.
-tests/python.sh
 # Says which measured pages are older than what they measure; that is no failure.
 tests/pages.sh

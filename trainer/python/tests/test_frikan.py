@@ -134,7 +134,7 @@ URDF = """<robot name="table"><link name="base"/>
 
 def turntable():
     """A plate of 0.3 kg m2 with 0.8 N m of Coulomb and 0.4 N m s/rad of viscous friction."""
-    time_s = np.arange(0, 40, 0.004)
+    time_s = np.arange(0, 16, 0.008)
     waves = [(0.9, 0.31), (0.35, 0.83), (0.12, 1.9)]
     position = sum(size * np.sin(2 * np.pi * rate * time_s) for size, rate in waves)
     velocity = sum(size * 2 * np.pi * rate * np.cos(2 * np.pi * rate * time_s) for size, rate in waves)
