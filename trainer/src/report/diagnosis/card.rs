@@ -67,22 +67,44 @@ fn what_to_do(found: &Finding, content: &DiagnosisPage<'_>) -> String {
     format!("{act} To be sure of the name: {}.", separate_by(found, content.plan))
 }
 
-/// What all other terms leave and the torque of this one, over the axis that locates it.
+/// The channel along which an effect acts by its equation; `None` where there is none of its own.
+fn own_axis(effect: EffectId) -> Option<&'static str> {
+    use EffectId::*;
+    match effect {
+        Stribeck | ViscousNonlinearity | DirectionAsymmetry | FrictionLevel => Some("velocity"),
+        PositionRipple | KinematicError | PositionFriction | RecurrentFault | GravityError | Spring | Contact => {
+            Some("position")
+        }
+        Presliding | Backlash | WindupHysteresis => Some("distance_since_reversal"),
+        DwellBreakaway => Some("dwell"),
+        LoadFriction | DriveBackdrive => Some("load"),
+        Temperature => Some("temperature"),
+        WarmUp | SlowDrift | TransientEvent => Some("time"),
+        InertiaError => Some("acceleration"),
+        _ => None,
+    }
+}
+
+/// What all other terms leave and the torque of this one, over its own axis or else the one that locates it.
 fn over_its_axis(diagnosis: &Diagnosis, index: usize, units: Units) -> Option<(Plot, String)> {
     let traces = &diagnosis.traces;
     let found = &diagnosis.findings[index];
     let torque = traces.effects.get(index).filter(|torque| torque.iter().any(|value| *value != 0.0))?;
-    let Region { side, .. } = found.location.named().or(found.location.regions.first())?;
-    let values = traces.channel(side.channel)?;
+    let regions = || found.location.regions.iter().map(|region: &Region| &region.side);
+    let located = regions().map(|side| side.channel);
+    let (channel, values) =
+        own_axis(found.effect).into_iter().chain(located).find_map(|name| Some((name, traces.channel(name)?)))?;
     let without: Vec<f64> = traces.after.iter().zip(torque).map(|(rest, effect)| rest + effect).collect();
-    let labels = [axis_label(side.channel, units), format!("torque ({})", units.actuator)];
-    let by_decades = BY_DECADES.contains(&side.channel);
-    let name = format!("{} over {}", found.effect.name(), side.channel);
+    let labels = [axis_label(channel, units), format!("torque ({})", units.actuator)];
+    let by_decades = BY_DECADES.contains(&channel);
+    let name = format!("{} over {}", found.effect.name(), channel);
     let mut plot = Plot::new(&name, Size::Low, [&labels[0], &labels[1]]).logarithmic(by_decades);
-    plot.band(side.from, side.to);
+    if let Some(side) = regions().find(|side| side.channel == channel) {
+        plot.band(side.from, side.to);
+    }
     plot.dots(values, &[(&without, Ink::Data, "needed beside all else"), (torque, Ink::Two, plain_name(found.effect))]);
     let largest = quantity(torque.iter().fold(0.0, |most: f64, value| most.max(value.abs())), units.actuator);
-    let over = side.channel.replace('_', " ");
+    let over = channel.replace('_', " ");
     Some((
         plot,
         format!(
