@@ -69,7 +69,7 @@ answers() {
         "$trainer" diagnose $arguments --json "$into/$name.raw" -o "$into/$name.frk" --advise "$into/$name.csv" --quiet \
             >/dev/null 2>"$into/$name.err" || echo "exit $?" >>"$into/$name.err"
         [ -e "$into/$name.raw" ] || echo '{}' >"$into/$name.raw"
-        sed -E 's/"seconds":[0-9.e-]+/"seconds":0/' "$into/$name.raw" >"$into/$name.json"
+        sed -E 's/"seconds":[0-9.e-]+/"seconds":0/; s/"configuration":\{("[^"]*":\{[^}]*\},?)*\},?//' "$into/$name.raw" >"$into/$name.json"
         rm "$into/$name.raw"
     done
     echo "$into"

@@ -122,7 +122,10 @@ fn a_wrong_friction_level_of_a_simulation_is_a_finding_with_the_level_of_the_joi
         let [before, after] = ["baseline", "improved"].map(|which| json["fit"][which]["rmse"].as_f64().unwrap());
         assert!(before > 0.9 * change && after < 0.15, "{simulation}: {before} {after}");
         let page = std::fs::read_to_string(at.join("page.html")).unwrap();
-        assert!(page.contains("wrong level of Coulomb or viscous friction, coulomb torque"), "{page}");
+        assert!(
+            page.contains("Wrong level of Coulomb or viscous friction") && page.contains("<td>coulomb torque</td>"),
+            "{page}"
+        );
         assert!(page.contains("trainer export IMPROVED.frk --to mujoco --into MODEL.xml --joint-name"), "{page}");
     }
 }

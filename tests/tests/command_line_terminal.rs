@@ -73,10 +73,93 @@ fn a_place_that_cannot_be_written_is_refused_before_the_work() {
         "diagnose real.csv --report nowhere/d.html",
         "simulate joint.toml -o nowhere/real.csv",
         "predict m.frk real.csv -o folder",
+        "init real.csv -o nowhere/joint.toml",
+        "show m.frk --json nowhere/m.json",
+        "verify m.frk --json nowhere/v.json",
+        "loop joint.toml -o nowhere/trace.csv",
+        "export m.frk --to c -o nowhere/m.c",
+        "plan recordings -o nowhere/tasks.jsonl",
+        "gather --tasks tasks.jsonl --json nowhere/fleet.json -o fleet",
+        "arm real.csv --urdf arm.urdf --json nowhere/arm.json -o arm",
     ] {
         let refused = run(at, &line.split(' ').collect::<Vec<_>>());
         assert_eq!(refused.status, 5, "{line}: {}", refused.messages);
         assert!(refused.messages.starts_with("nowhere/") || refused.messages.starts_with("folder: FRK-I003"));
     }
     assert_eq!(run(at, &["fit", "real.csv", "-o", "real.csv"]).status, 2);
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_refused_before_the_work() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    for line in ["arm real.csv --urdf arm.urdf -o file", "gather --tasks tasks.jsonl -o file/there"] {
+        let refused = run(folder.path(), &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(refused.status, 5, "{line}: {}", refused.messages);
+        assert!(refused.messages.starts_with("file: FRK-I001"), "{line}: {}", refused.messages);
+    }
+}
+
+/// Flags go before the environment, that before the file, that before defaults; the JSON tells what was in force, and from where.
+#[test]
+fn options_come_from_flags_environment_file_and_defaults_in_this_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for name in ["stribeck.csv", "elbow.toml"] {
+        std::fs::copy(frikan_tests::fixtures::folder().join(name), at.join(name)).unwrap();
+    }
+    std::fs::write(
+        at.join("trainer.toml"),
+        "quiet = true\n[check]\njson = \"file.json\"\n[simulate]\nduration = 2\nseed = 3\n",
+    )
+    .unwrap();
+    let options = |variables: &[(&str, &str)], line: &str, json: &str| -> serde_json::Value {
+        let mut command = Command::new(trainer());
+        command.current_dir(at).args(line.split(' ')).envs(variables.iter().copied());
+        let done = command.output().unwrap();
+        assert!(done.status.success(), "{line}: {}", String::from_utf8_lossy(&done.stderr));
+        assert!(done.stderr.is_empty(), "quiet by the file");
+        let text = std::fs::read_to_string(at.join(json)).unwrap_or_else(|error| panic!("{line}: {error}"));
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["configuration"].clone()
+    };
+    let by_file = options(&[], "check stribeck.csv", "file.json");
+    assert_eq!(by_file["json"], serde_json::json!({ "value": "file.json", "from": "file" }));
+    assert_eq!(by_file["quiet"], serde_json::json!({ "value": true, "from": "file" }));
+    assert_eq!(by_file["recordings"], serde_json::json!({ "value": ["stribeck.csv"], "from": "command line" }));
+    let variable = [("FRIKAN_CHECK_JSON", "environment.json")];
+    assert_eq!(options(&variable, "check stribeck.csv", "environment.json")["json"]["from"], "environment");
+    assert_eq!(options(&variable, "check stribeck.csv --json flag.json", "flag.json")["json"]["from"], "command line");
+    let rows = |line: &str| {
+        let done = run(at, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!((done.status, done.messages.as_str()), (0, ""), "{line}");
+        std::fs::read_to_string(at.join("real.csv")).unwrap().lines().count()
+    };
+    let short = rows("simulate elbow.toml -o real.csv");
+    assert!(rows("simulate elbow.toml -o real.csv --duration 4") > 3 * short / 2);
+    std::fs::write(at.join("trainer.toml"), "[simulate]\ndurations = 2\n").unwrap();
+    let refused = run(at, &["simulate", "elbow.toml", "-o", "real.csv"]);
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused.messages.contains("trainer.toml") && refused.messages.contains("did you mean `duration`"),
+        "{}",
+        refused.messages
+    );
+}
+
+#[test]
+fn a_dry_run_reads_what_there_is_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::copy(frikan_tests::fixtures::folder().join("stribeck.csv"), at.join("stribeck.csv")).unwrap();
+    for line in ["fit stribeck.csv -o m.frk --dry-run", "diagnose stribeck.csv -o m.frk --dry-run"] {
+        let told = run(at, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(told.status, 0, "{line}: {}", told.messages);
+        assert!(
+            told.output.contains("would read   stribeck.csv, ") && told.output.contains("would write  m.frk"),
+            "{line}: {}",
+            told.output
+        );
+    }
+    assert_eq!(std::fs::read_dir(at).unwrap().count(), 1);
+    assert_eq!(run(at, &["fit", "absent.csv", "-o", "m.frk", "--dry-run"]).status, 5);
 }

@@ -24,6 +24,20 @@ pub fn refuse_place(path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Refuses a path at which no folder can be made.
+///
+/// # Errors
+/// `FRK-I001` where it, or what it would lie in, is no folder.
+pub fn refuse_folder(path: &Path) -> Result<()> {
+    match path.ancestors().find(|place| place.exists()) {
+        Some(place) if !place.is_dir() => {
+            let error = Error::new(&codes::INPUT_OUTPUT, "a folder is needed here, and this is a file");
+            Err(error.in_file(place.display().to_string()))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes `bytes` to `path` by way of a temporary file in the same folder and a rename, so that a reader
 /// sees the old file or the whole new one.
 ///

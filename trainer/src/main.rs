@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use frikan_trainer::commands::fleet::{gather, plan, run as run_task};
 use frikan_trainer::commands::output::{print, say};
-use frikan_trainer::commands::terminal::shell;
+use frikan_trainer::commands::terminal::{configuration, shell};
 use frikan_trainer::commands::{
     arm, check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
 };
@@ -14,7 +14,8 @@ use frikan_trainer::error::Result;
 /// Learns, explains and diagnoses the friction of a joint from recordings.
 ///
 /// Exit status: 0 fine, 1 `diagnose`, `verify`, `gather` or `show --compare` found something, 2 usage, 3 bad input data, 4 fitted but not
-/// identifiable or not converged, 5 input or output.
+/// identifiable or not converged, 5 input or output. Options that are not given are those of the environment (`FRIKAN_FIT_SEED` for
+/// `fit --seed`), then those of `trainer.toml` here (`[fit] seed = 3`, or `seed = 3` for all commands; `FRIKAN_CONFIG` names another file).
 #[derive(Parser)]
 #[command(name = "trainer", version, arg_required_else_help = true)]
 struct Trainer {
@@ -67,8 +68,22 @@ fn run(command: &Command) -> Result<u8> {
     }
 }
 
+/// The command line, with what environment and `trainer.toml` add to it.
+fn parsed() -> Result<Command> {
+    let mut program = Trainer::command();
+    program.build();
+    let completed = configuration::complete(std::env::args_os().collect(), &program)?;
+    let matches = Trainer::command().get_matches_from(&completed.words);
+    if let Some((name, matches)) = matches.subcommand()
+        && let Some(command) = program.find_subcommand(name)
+    {
+        completed.keep(command, matches);
+    }
+    Ok(Trainer::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()).command)
+}
+
 fn main() -> ExitCode {
-    match run(&Trainer::parse().command) {
+    match parsed().and_then(|command| run(&command)) {
         Ok(status) => ExitCode::from(status),
         Err(error) => {
             say(&error.to_string());

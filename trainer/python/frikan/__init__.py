@@ -12,19 +12,28 @@ What is known of the joint is a path of a ``joint.toml``, or a mapping with its 
 
 from ._frikan import Error, __version__
 from ._image import Image
-from ._calls import diagnose, fit, predict, simulate
-from ._results import Diagnosed, Fitted, Parameters, Prediction
+from ._calls import arm, check, diagnose, fit, predict, rollout, simulate
+from ._regressor import FrictionRegressor
+from ._results import Checked, Diagnosed, Fitted, FittedArm, Parameters
+from ._tables import Prediction, RolledOut
 
 __all__ = [
+    "Checked",
     "Diagnosed",
     "Error",
     "Fitted",
+    "FittedArm",
+    "FrictionRegressor",
     "Image",
     "Parameters",
     "Prediction",
+    "RolledOut",
     "__version__",
+    "arm",
+    "check",
     "diagnose",
     "fit",
     "predict",
+    "rollout",
     "simulate",
 ]

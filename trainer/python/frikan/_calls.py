@@ -12,9 +12,11 @@ import numpy.typing as npt
 from . import _frikan
 from ._image import Image
 from ._recordings import Joint, Recording, all_handed, handed, joint_file
-from ._results import Diagnosed, Fitted, Prediction
+from ._results import Checked, Diagnosed, Fitted, FittedArm
+from ._tables import Prediction, RolledOut
 
 Recordings = Union[Recording, Sequence[Recording]]
+Model = Union[Image, Fitted, str, "os.PathLike[str]"]
 Progress = Callable[[str, int, Optional[float]], Any]
 
 
@@ -99,10 +101,48 @@ def diagnose(
     return Diagnosed(native, compared_with)
 
 
-def predict(model: Union[Image, Fitted, str, "os.PathLike[str]"], recording: Recording, *, joint: Joint = None) -> Prediction:
+def predict(model: Model, recording: Recording, *, joint: Joint = None) -> Prediction:
     """A recording with the model's prediction beside it, rigid body included."""
-    image = model.image if isinstance(model, Fitted) else model if isinstance(model, Image) else Image.load(model)
-    return Prediction(*_frikan.predict(image._native, handed(recording), joint_file(joint)))
+    return Prediction(*_frikan.predict(_image(model)._native, handed(recording), joint_file(joint)))
+
+
+def check(recordings: Recordings, *, joint: Joint = None) -> Checked:
+    """The quality of recordings, what can be identified from them and what to record next, before anything is fitted."""
+    return Checked(*_frikan.check(all_handed(recordings, "recording"), joint_file(joint)))
+
+
+def rollout(model: Model, recording: Recording, *, joint: Joint = None, window: Optional[float] = None) -> RolledOut:
+    """The joint simulated with a model under the commands of a recording, and how far it comes off.
+
+    It is put back to the recorded state every ``window`` seconds; as is usual for its actuator when absent.
+    """
+    return RolledOut(*_frikan.rollout(_image(model)._native, handed(recording), joint_file(joint), window))
+
+
+def arm(
+    recordings: Recordings,
+    *,
+    urdf: Union[str, "os.PathLike[str]"],
+    test: Optional[Recordings] = None,
+    joint: Joint = None,
+    target: Optional[str] = None,
+    seed: int = 1,
+    progress: Optional[Progress] = None,
+) -> FittedArm:
+    """Fits bodies and friction of a whole arm from recordings of all its joints.
+
+    ``urdf`` is the path of the robot's description, ``joint`` an ``arm.toml`` or a mapping with its keys; ``test`` is only scored.
+    """
+    native = _frikan.arm(
+        all_handed(recordings, "recording"),
+        all_handed(test, "test"),
+        os.fspath(urdf),
+        joint_file(joint),
+        target,
+        seed,
+        progress,
+    )
+    return FittedArm(native)
 
 
 def simulate(
@@ -121,6 +161,12 @@ def simulate(
     names, _, rows = text.partition("\n")
     table = np.loadtxt(rows.splitlines(), delimiter=",", ndmin=2)
     return {name: np.ascontiguousarray(table[:, column]) for column, name in enumerate(names.split(","))}
+
+
+def _image(model: Model) -> Image:
+    if isinstance(model, Fitted):
+        return model.image
+    return model if isinstance(model, Image) else Image.load(model)
 
 
 def handed_label(recording: Any) -> Optional[str]:

@@ -19,7 +19,7 @@ def handed(recording: Recording, label: str = "recording") -> Handed:
     """A path as it is; a frame or mapping of columns as an archive of NumPy, which keeps every bit."""
     if isinstance(recording, (str, os.PathLike)):
         return os.fspath(recording), None
-    columns = {str(name): _column(values) for name, values in _columns(recording).items()}
+    columns = {str(name): _column(values) for name, values in columns_of(recording).items()}
     archive = io.BytesIO()
     np.savez(archive, **columns)  # type: ignore[arg-type]
     return label, archive.getvalue()
@@ -43,7 +43,8 @@ def joint_file(joint: Joint) -> Optional[tuple[bool, str]]:
     return False, os.fspath(joint)
 
 
-def _columns(recording: Any) -> Mapping[str, Any]:
+def columns_of(recording: Any) -> Mapping[str, Any]:
+    """The columns of a frame or mapping by name."""
     if isinstance(recording, Mapping):
         return recording
     names = getattr(recording, "column_names", None)  # Arrow

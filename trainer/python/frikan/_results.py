@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import html
-import io
 import json
 import os
 from typing import Any, Iterator, Optional, Union
@@ -14,6 +12,7 @@ import numpy.typing as npt
 
 from . import _frikan
 from ._image import Image
+from ._notebook import page, table
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -48,9 +47,7 @@ class Parameters:
 
     def _repr_html_(self) -> str:
         cells = ((row["name"], row["symbol"], _number(row["value"]), row["unit"], _interval(row)) for row in self.rows)
-        body = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) + "</tr>" for row in cells)
-        head = "".join(f"<th>{name}</th>" for name in ("parameter", "symbol", "value", "unit", "95 % interval"))
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return table(("parameter", "symbol", "value", "unit", "95 % interval"), cells)
 
 
 class Fitted:
@@ -92,7 +89,7 @@ class Fitted:
 
     def report(self, path: Path) -> None:
         """Writes the result as one HTML page."""
-        _write(path, self._native.report())
+        _write(path, self._native.report("frikan.fit"))
 
     def plot(self, axes: Any = None) -> Any:
         """Draws law and band over velocity with Matplotlib, and gives its axes."""
@@ -115,11 +112,7 @@ class Fitted:
         return f"<frikan.Fitted: friction = {self.law}>"
 
     def _repr_html_(self) -> str:
-        train = self.json["train"]
-        score = f"R² {train['r2']:.4f}, error {_number(train['rmse'])} {html.escape(self.json['unit'])}"
-        doubt = f"<p>{html.escape(self.doubt[1])}</p>" if self.doubt else ""
-        parameters = self.parameters._repr_html_()
-        return f"<p>friction = <code>{html.escape(self.law)}</code>; {score}</p>{doubt}{parameters}"
+        return page(self._native.report("frikan.fit"))
 
 
 class Diagnosed:
@@ -158,7 +151,7 @@ class Diagnosed:
 
     def report(self, path: Path) -> None:
         """Writes the result as one HTML page."""
-        _write(path, self._native.report(self._compared_with))
+        _write(path, self._native.report(self._compared_with, "frikan.diagnose"))
 
     def __str__(self) -> str:
         return self._native.text()
@@ -167,51 +160,93 @@ class Diagnosed:
         return f"<frikan.Diagnosed: {self.json['headline']}>"
 
     def _repr_html_(self) -> str:
-        items = "".join(f"<li>{html.escape(finding['sentence'])}</li>" for finding in self.findings)
-        return f"<p>{html.escape(self.json['headline'])}</p><ul>{items}</ul>"
+        return page(self._native.report(self._compared_with, "frikan.diagnose"))
 
 
-class Prediction:
-    """A recording with a model's prediction beside it: columns by name."""
+class Checked:
+    """What recordings are worth before anything is fitted to them."""
 
-    def __init__(self, content: bytes, warnings: list[str]) -> None:
-        self.content = content
-        self.warnings = warnings
-        rows = csv.reader(io.StringIO(content.decode()))
-        self._names = next(rows)
-        self._columns = list(zip(*rows))
-
-    def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
-        if name not in self._names:
-            raise KeyError(name)
-        return np.array(self._columns[self._names.index(name)], dtype=np.float64)
+    def __init__(self, said: str, text: str) -> None:
+        self.json: dict[str, Any] = json.loads(said)
+        self._text = text
 
     @property
-    def names(self) -> list[str]:
-        """Names of the columns."""
-        return list(self._names)
+    def verdict(self) -> str:
+        """``good``, ``usable`` or ``unusable``."""
+        return str(self.json["verdict"])
 
     @property
-    def predicted(self) -> npt.NDArray[np.float64]:
-        """The predicted torque, force or current, in the unit of the recording."""
-        return self[next(name for name in self._names if name.startswith("predicted_"))]
+    def items(self) -> list[dict[str, Any]]:
+        """What was noticed, each with ``code``, ``severity``, ``message`` and ``when_s``."""
+        return list(self.json["items"])
 
     @property
-    def residual(self) -> Optional[npt.NDArray[np.float64]]:
-        """Recorded less predicted; ``None`` where the actuator is not recorded."""
-        names = [name for name in self._names if name.startswith("residual_")]
-        return self[names[-1]] if names else None
+    def identifiable(self) -> dict[str, float]:
+        """What can be identified, with the share of the friction within which."""
+        return {one["name"]: one["within_share_of_friction"] for one in self.json["identifiable"]}
 
-    def frame(self) -> Any:
-        """The same as a frame of pandas."""
-        import pandas
+    @property
+    def record_next(self) -> list[str]:
+        """Motions that would tell what these do not."""
+        return list(self.json["record_next"])
 
-        return pandas.read_csv(io.BytesIO(self.content))
+    def __str__(self) -> str:
+        return self._text
 
-    def save(self, path: Path) -> None:
-        """Writes the table as CSV."""
-        with open(path, "wb") as file:
-            file.write(self.content)
+    def __repr__(self) -> str:
+        return f"<frikan.Checked: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        rows = ((item["severity"], item["code"], item["message"]) for item in self.items)
+        return f"<p><b>{html.escape(self.verdict)}</b></p>" + table(("severity", "code", "message"), rows)
+
+
+class FittedArm:
+    """A fitted arm: bodies, and a law with an image for each joint."""
+
+    def __init__(self, native: _frikan.FittedArm) -> None:
+        self._native = native
+        self.json: dict[str, Any] = json.loads(native.json())
+        self.warnings = native.warnings()
+
+    @property
+    def joints(self) -> list[dict[str, Any]]:
+        """Law, parameters and scores of each joint."""
+        return list(self.json["joints"])
+
+    @property
+    def base_parameters(self) -> list[dict[str, Any]]:
+        """Inertial parameters that the motion can determine, each with ``expression``, ``value``, ``ci95`` and ``unit``."""
+        return list(self.json["base_parameters"])
+
+    def images(self, force: bool = False) -> dict[str, Image]:
+        """Images by joint, where the law may be relied upon; of every joint with ``force``."""
+        names = [joint["name"] for joint in self.joints]
+        return {name: Image(found[1]) for name, found in zip(names, self._native.images(force)) if found is not None}
+
+    def urdf(self, force: bool = False) -> str:
+        """The URDF with the friction of these joints."""
+        return self._native.patched(force)
+
+    def save(self, folder: Path, force: bool = False) -> None:
+        """Writes what ``trainer arm`` writes: an image for each joint, ``arm.json`` and ``arm.urdf``."""
+        os.makedirs(folder, exist_ok=True)
+        for found in self._native.images(force):
+            if found is not None:
+                with open(os.path.join(folder, found[0]), "wb") as file:
+                    file.write(found[1])
+        _write(os.path.join(folder, "arm.json"), self._native.json() + "\n")
+        _write(os.path.join(folder, "arm.urdf"), self.urdf(force))
+
+    def __str__(self) -> str:
+        return self._native.text()
+
+    def __repr__(self) -> str:
+        return f"<frikan.FittedArm of {', '.join(joint['name'] for joint in self.joints)}>"
+
+    def _repr_html_(self) -> str:
+        rows = ((joint["name"], joint["law"] or "", joint["image"] or "not to be relied upon") for joint in self.joints)
+        return table(("joint", "friction", "image"), rows)
 
 
 def _write(path: Path, text: str) -> None:

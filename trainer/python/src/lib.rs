@@ -3,93 +3,27 @@
 
 mod failure;
 mod image;
+mod results;
 mod source;
 mod work;
 
 use frikan_trainer::compile::profile::Profile;
+use frikan_trainer::error::Error;
 use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::fit::{Budget, Options, model};
 use frikan_trainer::plant;
-use frikan_trainer::workflow::diagnose::{Against, BaseKind, Diagnosed, Request};
-use frikan_trainer::workflow::fit::Fitted;
-use frikan_trainer::workflow::{Source, Warning, predict as predicting};
+use frikan_trainer::workflow::arm::{self as fitting_arms, Recorded};
+use frikan_trainer::workflow::diagnose::{Against, BaseKind, Request};
+use frikan_trainer::workflow::{Source, Warning, check as checking, predict as predicting, rollout as rolling_out};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use failure::raise;
 use image::Image;
+use results::{ArmObject, DiagnosedObject, FittedObject};
 use source::{Recording, joint};
 use work::{Progress, watched};
-
-/// A fit.
-#[pyclass(frozen, name = "Fitted")]
-struct FittedObject(Fitted);
-
-#[pymethods]
-impl FittedObject {
-    /// The result as JSON, schema `frikan.fit/1`.
-    fn json(&self) -> String {
-        self.0.json().to_string()
-    }
-
-    /// The result as one HTML page.
-    fn report(&self) -> String {
-        self.0.report()
-    }
-
-    /// The result as `trainer fit` prints it.
-    fn text(&self, image: &str) -> String {
-        self.0.text(Some(image.as_ref()))
-    }
-
-    /// The image, as it is written to a file.
-    fn image<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.outcome.image)
-    }
-
-    /// Code and sentence of why the fit may not be relied upon, where it may not.
-    fn doubt(&self) -> Option<(&'static str, String)> {
-        self.0.doubt().map(|doubt| (doubt.code().id, doubt.message().to_owned()))
-    }
-
-    /// The friction law over velocity, and the band in which the friction lies with 95 %.
-    fn curves(&self) -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
-        (self.0.outcome.law_curve.clone(), self.0.outcome.band.clone())
-    }
-}
-
-/// A diagnosis.
-#[pyclass(frozen, name = "Diagnosed")]
-struct DiagnosedObject(Diagnosed);
-
-#[pymethods]
-impl DiagnosedObject {
-    /// The result as JSON, schema `frikan.diagnose/1`.
-    fn json(&self) -> String {
-        self.0.json().to_string()
-    }
-
-    /// The result as one HTML page.
-    fn report(&self, compared_with: &str) -> String {
-        self.0.report(compared_with, &[])
-    }
-
-    /// The result as `trainer diagnose` prints it.
-    fn text(&self) -> String {
-        self.0.text()
-    }
-
-    /// The improved image, where there is one.
-    fn image<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyBytes>> {
-        self.0.image().map(|image| PyBytes::new(py, image))
-    }
-
-    /// The motion that would tell apart what cannot be told, as CSV.
-    fn trajectory(&self) -> Option<String> {
-        self.0.trajectory()
-    }
-}
 
 /// Fits recordings; `progress` is called with a stage, steps and an error.
 #[pyfunction]
@@ -175,6 +109,66 @@ fn predict<'py>(
     Ok((PyBytes::new(py, &done.csv), done.warnings.iter().map(Warning::to_string).collect()))
 }
 
+/// What recordings are worth before anything is fitted: JSON of schema `frikan.check/1`, and text.
+#[pyfunction]
+fn check(py: Python<'_>, recordings: Vec<Recording>, joint_file: Option<(bool, String)>) -> PyResult<(String, String)> {
+    let joint = joint(joint_file).map_err(|error| raise(py, &error))?;
+    let done = py.detach(|| checking::check(&recordings.iter().map(Recording::source).collect::<Vec<_>>(), &joint));
+    let done = done.map_err(|error| raise(py, &error))?;
+    Ok((done.json().to_string(), done.text()))
+}
+
+/// A joint simulated with an image under the commands of a recording: CSV, JSON of schema `frikan.rollout/1`, text, what was noticed.
+#[pyfunction]
+fn rollout<'py>(
+    py: Python<'py>,
+    image: &Image,
+    recording: Recording,
+    joint_file: Option<(bool, String)>,
+    window: Option<f64>,
+) -> PyResult<(Bound<'py, PyBytes>, String, String, Vec<String>)> {
+    let joint = joint(joint_file).map_err(|error| raise(py, &error))?;
+    let done = py.detach(|| {
+        let done = rolling_out::rollout(image.model(), recording.source(), &joint, window)?;
+        Ok::<_, Error>((done.csv()?, done))
+    });
+    let (csv, done) = done.map_err(|error| raise(py, &error))?;
+    let warnings = done.warnings.iter().map(Warning::to_string).collect();
+    Ok((PyBytes::new(py, &csv), done.json().to_string(), done.text(), warnings))
+}
+
+/// Fits a whole arm; `progress` is called with the joint and stage, steps and an error.
+#[pyfunction]
+#[pyo3(signature = (recordings, tests, urdf, arm_file, target, seed, progress))]
+#[expect(clippy::too_many_arguments, reason = "the Python package names them all")]
+fn arm(
+    py: Python<'_>,
+    recordings: Vec<Recording>,
+    tests: Vec<Recording>,
+    urdf: String,
+    arm_file: Option<(bool, String)>,
+    target: Option<&str>,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<ArmObject> {
+    let prepared = source::arm_file(arm_file).and_then(|file| Ok((file, source::text(&urdf)?)));
+    let (file, urdf) = prepared.map_err(|error| raise(py, &error))?;
+    let budget = Budget { target: profile(target)?, ..Budget::default() };
+    let options = Options { seed, budget, ..Options::default() };
+    let done = watched(py, progress, move |progress: &Progress| {
+        let [recordings, tests] =
+            [&recordings, &tests].map(|all| all.iter().map(Recording::source).collect::<Vec<_>>());
+        let recorded = Recorded { recordings: &recordings, tests: &tests, urdf: &urdf, file: &file };
+        let tell = |joint: Option<&str>, now: &frikan_trainer::fit::Progress| {
+            let stage = now.stage.name();
+            progress.tell(&joint.map_or(stage.to_owned(), |joint| format!("{joint}: {stage}")), now.steps, now.rmse);
+        };
+        let fitted = fitting_arms::arm(&recorded, &options, &tell)?;
+        Ok((fitted, urdf))
+    })?;
+    Ok(ArmObject::new(done.0, done.1))
+}
+
 /// A simulated recording of a joint in closed loop, as CSV.
 #[pyfunction]
 fn simulate(
@@ -222,9 +216,13 @@ fn _frikan(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<FittedObject>()?;
     module.add_class::<DiagnosedObject>()?;
+    module.add_class::<ArmObject>()?;
     module.add_class::<Image>()?;
     module.add_function(wrap_pyfunction!(fit, module)?)?;
     module.add_function(wrap_pyfunction!(diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(predict, module)?)?;
+    module.add_function(wrap_pyfunction!(check, module)?)?;
+    module.add_function(wrap_pyfunction!(rollout, module)?)?;
+    module.add_function(wrap_pyfunction!(arm, module)?)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)
 }

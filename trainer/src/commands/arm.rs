@@ -10,10 +10,10 @@ use super::output::{Outputs, print, refuse_unwritable, say};
 use super::progress::Reporter;
 use crate::compile::profile::Profile;
 use crate::error::{Error, Result, codes};
-use crate::files::{create_folder, read_text};
+use crate::files::{create_folder, read_text, refuse_folder};
 use crate::fit::{Budget, Options};
 use crate::joint::ArmFile;
-use crate::workflow::arm::{FittedArm, Recorded, arm, file_name, joint_doubt};
+use crate::workflow::arm::{FittedArm, Recorded, arm, joint_doubt};
 
 /// Largest `arm.toml` and URDF that are read, in bytes.
 const FILE_LIMIT_BYTES: u64 = 64 << 20;
@@ -73,6 +73,7 @@ impl Arm {
 /// As [`arm`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Arm) -> Result<u8> {
     refuse_unwritable(&arguments.json, &arguments.inputs())?;
+    refuse_folder(&arguments.output)?;
     let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
     let in_file = |path: &Path| {
         let path = path.display().to_string();
@@ -115,23 +116,19 @@ fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
     create_folder(&arguments.output)?;
     let mut outputs = Outputs::default();
     let place = |name: &str| arguments.output.join(name);
-    let mut images = Vec::new();
-    for joint in &fitted.outcome.joints {
-        let law = joint.law.as_ref().ok().filter(|_| arguments.force || joint_doubt(joint).is_none());
-        let image = law.map(|law| (format!("{}.frk", file_name(&joint.name)), law.image.clone()));
-        images.push(image.as_ref().map(|(name, _)| name.clone()));
-        if let Some((name, bytes)) = image {
-            outputs.add(&place(&name), bytes);
-        }
+    let images = fitted.images(arguments.force);
+    for (name, bytes) in images.iter().flatten() {
+        outputs.add(&place(name), *bytes);
     }
-    let json = format!("{}\n", fitted.json(&images));
-    outputs.add(&place("arm.json"), json.clone());
+    let images: Vec<Option<String>> = images.into_iter().map(|image| image.map(|(name, _)| name)).collect();
+    let json = fitted.json(&images);
+    outputs.add_json(&place("arm.json"), json.clone());
     outputs.add(&place("arm.urdf"), fitted.patched(urdf, arguments.force)?);
     if arguments.split {
         fitted.recordings().into_iter().for_each(|(name, content)| outputs.add(&place(&name), content));
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, json);
+        outputs.add_json(path, json);
     }
     outputs.refuse_overwriting(&arguments.inputs())?;
     outputs.write()?;

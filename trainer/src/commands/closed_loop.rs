@@ -11,7 +11,7 @@ use frikan_runtime::shared::image::Image;
 use frikan_runtime::shared::units::Unit;
 use frikan_runtime::supervised::{DEFAULT_GAIN, SupervisionError, VelocitySource};
 
-use super::output::{Outputs, print};
+use super::output::{Outputs, command_line, print, refuse_unwritable};
 use super::progress::Reporter;
 use super::simulate::{parse_effect, with_effects};
 use crate::emulator::Lockstep;
@@ -116,6 +116,10 @@ impl From<Velocity> for VelocitySource {
 /// motion that does not exist or a model that is not in N m, `FRK-U004` and `FRK-I004` to `FRK-I008` for targets that do not
 /// exist or cannot be emulated. Nothing is written unless both runs ended.
 pub fn run(arguments: &Loop) -> Result<()> {
+    let written = [&arguments.output, &arguments.json, &arguments.report];
+    let read = [Some(arguments.joint.as_path()), arguments.image.as_deref(), arguments.swap_image.as_deref()];
+    let read = read.into_iter().flatten().chain(Some(Path::new(&arguments.motion)).filter(|motion| motion.is_file()));
+    refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let label = arguments.joint.display().to_string();
     let joint = with_contact(&with_effects(&arguments.joint, &arguments.effects)?);
     let (image, model) = image_of(arguments, &joint)?;
@@ -160,13 +164,12 @@ fn write(arguments: &Loop, account: &Account<'_>, uncompensated: &[Row]) -> Resu
         outputs.add(path, account::trace(account.rows));
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", account.to_json()));
+        outputs.add_json(path, account.to_json());
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, report::closed_loop(account.motion, &account.lines(), uncompensated, account.rows));
+        let origin = report::Origin { command: &command_line(), recordings: &[], settings: "" };
+        outputs.add(path, report::closed_loop(account.motion, &account.lines(), uncompensated, account.rows, &origin));
     }
-    let inputs = [Some(arguments.joint.as_path()), arguments.image.as_deref(), arguments.swap_image.as_deref()];
-    outputs.refuse_overwriting(&inputs.into_iter().flatten().collect::<Vec<&Path>>())?;
     outputs.write()?;
     if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
         print(&(account.lines().join("\n") + "\n"))?;

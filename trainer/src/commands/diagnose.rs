@@ -2,8 +2,8 @@
 
 mod put_right;
 
-use crate::commands::measurement::{self, Source, profile};
-use crate::commands::output::{Outputs, refuse_unwritable, say};
+use crate::commands::measurement::{self, Source, profile, rehearse};
+use crate::commands::output::{Outputs, command_line, print, refuse_unwritable, say};
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::profile::Profile;
 use crate::diagnose::answer::outcome::Verdict;
@@ -65,6 +65,9 @@ pub struct Diagnose {
     /// Seed of the null draws: one seed, one result
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Read and check the recordings, say what would be written, and stop there
+    #[arg(long)]
+    pub dry_run: bool,
     /// Say nothing but the result
     #[arg(long)]
     pub quiet: bool,
@@ -93,6 +96,10 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     reporter.say("reading");
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
     let model = arguments.model.as_deref().map(fit::model::load).transpose()?;
+    if arguments.dry_run {
+        let recordings: Vec<Source<'_>> = arguments.recordings.iter().map(Source::from).collect();
+        return print(&rehearse(&recordings, &joint, &written.into_iter().flatten().collect::<Vec<_>>())?).map(|()| 0);
+    }
     let against = match (&arguments.simulation, model, arguments.base) {
         (Some(path), ..) => Against::Simulation(path.into()),
         (None, Some((_, image)), _) => Against::Model(image),
@@ -117,7 +124,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     }
     let mut outputs = Outputs::default();
     if let Some(path) = &arguments.json {
-        outputs.add(path, found.json().to_string() + "\n");
+        outputs.add_json(path, found.json());
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
         outputs.add(Path::new("-"), found.text());
@@ -140,7 +147,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, found.report(&compared_with(arguments), &remarks));
+        outputs.add(path, found.report(&compared_with(arguments), &remarks, &command_line()));
     }
     match (&arguments.advise, found.trajectory()) {
         (Some(path), Some(trajectory)) => outputs.add(path, trajectory),

@@ -15,7 +15,7 @@ use frikan_shared::model::Law;
 use self::model_file::ModelFileArguments;
 use self::number::number;
 use self::slot::FlashArguments;
-use super::output::{Outputs, print, say};
+use super::output::{Outputs, print, refuse_unwritable, say};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
@@ -128,6 +128,11 @@ pub enum ElfProcessor {
 /// `FRK-D020` for what is no image, `FRK-D022` for what is no key, `FRK-U001` and `FRK-U005` where the form does not suit the model
 /// or the options, or the address does not suit the form, `FRK-I...` when a file cannot be read or written.
 pub fn run(arguments: &Export) -> Result<()> {
+    let mut read = vec![arguments.model.as_path()];
+    read.extend(arguments.key_file.as_deref());
+    read.extend(arguments.model_file.inputs());
+    let header = (arguments.to == Format::C).then(|| c_names(&arguments.output)).transpose()?.map(|(_, header)| header);
+    refuse_unwritable([Some(&arguments.output), header.as_ref()].into_iter().flatten(), &read)?;
     let (image_bytes, image) = model::load(&arguments.model)?;
     let title = title(&image_bytes, &image);
     let bytes = flashed(arguments, image_bytes.clone())?;
@@ -167,10 +172,6 @@ pub fn run(arguments: &Export) -> Result<()> {
         }
     };
     outputs.add(&arguments.output, content);
-    let mut inputs = vec![arguments.model.as_path()];
-    inputs.extend(arguments.key_file.as_deref());
-    inputs.extend(arguments.model_file.inputs());
-    outputs.refuse_overwriting(&inputs)?;
     outputs.write()?;
     if arguments.output == Path::new("-") { Ok(()) } else { print(&advice(arguments, bytes.len())) }
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::measurement::{self, Source, actuator_file, profile};
-use super::output::{Outputs, print, refuse_unwritable, say};
+use super::measurement::{self, Source, actuator_file, profile, rehearse};
+use super::output::{Outputs, command_line, print, refuse_unwritable, say};
 use super::progress::Reporter;
 use crate::actuator::Kind;
 use crate::compile::profile::Profile;
@@ -64,6 +64,9 @@ pub struct Fit {
     /// Write the image in spite of exit status 4: not identifiable, not physical or not converged
     #[arg(long)]
     pub force: bool,
+    /// Read and check the recordings, say what would be written, and stop there
+    #[arg(long)]
+    pub dry_run: bool,
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
@@ -136,6 +139,11 @@ pub fn run(arguments: &Fit) -> Result<u8> {
     let actuator = (joint.actuator.kind != Kind::Torque).then(|| actuator_file(&arguments.output));
     let written = [Some(&arguments.output), actuator.as_ref(), arguments.json.as_ref(), arguments.report.as_ref()];
     refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
+    if arguments.dry_run {
+        let recordings: Vec<Source<'_>> =
+            arguments.recordings.iter().chain(&arguments.tests).map(Source::from).collect();
+        return print(&rehearse(&recordings, &joint, &written.into_iter().flatten().collect::<Vec<_>>())?).map(|()| 0);
+    }
     let options = Options {
         seed: arguments.seed,
         inputs: arguments.inputs.clone(),
@@ -197,10 +205,10 @@ fn write(arguments: &Fit, fitted: &Fitted, withheld: bool) -> Result<()> {
         }
     }
     if let Some(path) = &arguments.json {
-        outputs.add(path, format!("{}\n", fitted.json()));
+        outputs.add_json(path, fitted.json());
     }
     if let Some(path) = &arguments.report {
-        outputs.add(path, fitted.report());
+        outputs.add(path, fitted.report(&command_line()));
     }
     outputs.write()?;
     // With JSON on standard output the text would get in its way.

@@ -1,10 +1,10 @@
 //! `trainer init`: a `joint.toml` that reads a recording, from the recording itself.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use super::output::{Outputs, say};
+use super::output::{Outputs, refuse_unwritable, say};
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::{self, Proposal, Recording};
@@ -28,14 +28,14 @@ pub struct Init {
 /// # Errors
 /// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; nothing is written then.
 pub fn run(arguments: &Init) -> Result<()> {
+    let read: Vec<_> = arguments.recordings.iter().map(PathBuf::as_path).collect();
+    refuse_unwritable([&arguments.output], &read)?;
     let Some((first, others)) = arguments.recordings.split_first() else { return Ok(()) };
     let (proposal, recording) = recording::propose(first)?;
     let joint = Joint::parse(&proposal.toml)?;
     others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, proposal.toml.as_bytes());
-    let inputs: Vec<&Path> = arguments.recordings.iter().map(PathBuf::as_path).collect();
-    outputs.refuse_overwriting(&inputs)?;
     outputs.write()?;
     if !arguments.quiet {
         say(told(&recording, &proposal).trim_end());

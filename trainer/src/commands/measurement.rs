@@ -10,6 +10,7 @@ use crate::error::{Result, codes};
 use crate::joint::Joint;
 
 pub(super) use crate::workflow::recordings::{Source, motion};
+use crate::workflow::recordings::{load_all, load_with_faults};
 
 /// What is known of the joint, from its file where one is given; what nothing reads of that file is told on standard error.
 ///
@@ -22,6 +23,21 @@ pub(super) fn joint(path: Option<&Path>, quiet: bool) -> Result<Joint> {
         joint.unknown_keys().iter().for_each(|sentence| say(&format!("{} {sentence}", codes::UNKNOWN_KEY.id)));
     }
     Ok(joint)
+}
+
+/// What a command would read and write, in place of its work: recordings are read and checked, nothing is written.
+///
+/// # Errors
+/// Whatever reading a recording reports.
+pub(super) fn rehearse(recordings: &[Source<'_>], joint: &Joint, written: &[&PathBuf]) -> Result<String> {
+    let (recordings, warnings) = load_all(recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+    let mut lines: Vec<String> = recordings
+        .iter()
+        .map(|recording| format!("would read   {}, {} rows", recording.label, recording.len()))
+        .collect();
+    lines.extend(warnings.iter().map(|warning| format!("             {warning}")));
+    lines.extend(written.iter().map(|path| format!("would write  {}", path.display())));
+    Ok(lines.join("\n") + "\n")
 }
 
 /// The file in which `fit` writes what it identified of the actuator, beside its image.

@@ -7,7 +7,7 @@ use clap::Args;
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32, image_version};
 use frikan_shared::model::{Law, LawError, RIGID_BODY_CONSTANTS, RigidBodyError};
 
-use super::output::Outputs;
+use super::output::{Outputs, refuse_unwritable};
 use crate::error::Result;
 use crate::export::dump::{Found, images, in_use};
 use crate::export::readable::readable;
@@ -45,6 +45,8 @@ pub struct Show {
 /// # Errors
 /// `FRK-D020` for what holds no image, `FRK-D022` for what is no key, `FRK-I...` when a file cannot be read.
 pub fn run(arguments: &Show) -> Result<u8> {
+    let read = [Some(&arguments.model), arguments.compare.as_ref(), arguments.key_file.as_ref()];
+    refuse_unwritable(&arguments.json, &read.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let key = arguments.key_file.as_deref().map(key::load).transpose()?;
     let wanted = arguments.compare.as_deref().map(model::load).transpose()?;
     let bytes = read_whole(&arguments.model, DUMP_LIMIT_BYTES)?;
@@ -81,8 +83,6 @@ pub fn run(arguments: &Show) -> Result<u8> {
     if arguments.json.as_deref() != Some(Path::new("-")) {
         outputs.add(Path::new("-"), text);
     }
-    let inputs = [Some(&arguments.model), arguments.compare.as_ref(), arguments.key_file.as_ref()];
-    outputs.refuse_overwriting(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     outputs.write().map(|()| status)
 }
 

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use told::{Cost, line};
 
 use super::measurement::{self, motion};
-use super::output::{Outputs, print};
+use super::output::{Outputs, print, refuse_unwritable};
 use super::progress::Reporter;
 use crate::compile::cost;
 use crate::compile::profile::Profile;
@@ -78,6 +78,8 @@ struct Found {
 /// `FRK-D020` for what is no image, `FRK-U001` for an exhaustive comparison of several inputs or on a target,
 /// `FRK-U004` and `FRK-I004` to `FRK-I008` for targets that do not exist or cannot be emulated.
 pub fn run(arguments: &Verify) -> Result<u8> {
+    let read = [Some(&arguments.model), arguments.recording.as_ref(), arguments.joint.as_ref()];
+    refuse_unwritable(&arguments.json, &read.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let (bytes, image) = model::load(&arguments.model)?;
     let model = &image.model;
     let on_host = arguments.target == "host";
@@ -118,8 +120,7 @@ pub fn run(arguments: &Verify) -> Result<u8> {
     match &arguments.json {
         Some(path) => {
             let mut outputs = Outputs::default();
-            outputs.add(path, format!("{}\n", as_json(arguments, &found)));
-            outputs.refuse_overwriting(&[arguments.model.as_path()])?;
+            outputs.add_json(path, as_json(arguments, &found));
             outputs.write()?;
             if path.as_os_str() != "-" {
                 print(&text)?;

@@ -203,6 +203,12 @@ fn refuse_backward_time(time: &Channel, table: &TextTable) -> Result<()> {
 }
 
 impl Recording {
+    /// Name and fingerprint of the content.
+    #[must_use]
+    pub fn source(&self) -> (String, u64) {
+        (self.label.clone(), self.content_hash)
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {

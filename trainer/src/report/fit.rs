@@ -1,9 +1,8 @@
 //! The page of a fit.
 
-use super::axis::Scale;
-use super::chart::{Chart, Ink};
 use super::graph;
-use super::page::{PARAMETER_HEADER, Page, parameter_rows};
+use super::ink::Ink;
+use super::page::{Origin, PARAMETER_HEADER, Page, Plot, Size, columns, parameter_rows};
 use crate::figures::{digits, quantity};
 use crate::fit::outcome::{Outcome, Soundness, Trace};
 use crate::recording::Axis;
@@ -11,23 +10,31 @@ use crate::recording::Axis;
 /// Pictures of activations at most.
 const MOST_ACTIVATIONS: usize = 12;
 
+/// Link of the charts over the time of one recording.
+const TIME: &str = "time";
+
 /// The page as one HTML file; `warnings` are those of the checks before the fit, in sentences.
 #[must_use]
-pub fn fit(outcome: &Outcome, warnings: &[String]) -> String {
+pub fn fit(outcome: &Outcome, warnings: &[String], origin: &Origin<'_>) -> String {
     let name = if outcome.joint.is_empty() { "a joint" } else { &outcome.joint };
-    let mut page = Page::new(&format!("Friction of {name}"), &format!("{}. Seed {}.", outcome.filter, outcome.seed));
+    let labels = |traces: &[Trace]| traces.iter().map(|trace| trace.label.as_str()).collect::<Vec<_>>().join(", ");
+    let tested =
+        if outcome.tests.is_empty() { String::new() } else { format!("; tested on {}", labels(&outcome.tests)) };
+    let mut page = Page::new(&format!("Friction of {name}"), &format!("Fitted to {}{tested}.", labels(&outcome.train)));
     summary(&mut page, outcome, warnings);
-    page.equation(&outcome.law.expression);
-    page.paragraph(&outcome.choice);
+    page.equation(&format!("friction = {}", outcome.law.expression));
+    page.html("<div class=\"split\"><div>");
     page.table(&PARAMETER_HEADER, &parameter_rows(&outcome.parameters));
+    page.html("</div>");
+    law(&mut page, outcome);
+    page.html("</div>");
     scores(&mut page, outcome);
-    over_velocity(&mut page, outcome);
     for trace in outcome.train.iter().chain(&outcome.tests) {
         over_time(&mut page, trace, outcome.unit);
     }
     network(&mut page, outcome);
     comparison(&mut page, outcome);
-    page.finish()
+    page.finish(origin)
 }
 
 fn summary(page: &mut Page, outcome: &Outcome, warnings: &[String]) {
@@ -65,7 +72,7 @@ fn scores(page: &mut Page, outcome: &Outcome) {
         .map(|trace| row("training", trace))
         .chain(outcome.tests.iter().map(|trace| row("test", trace)))
         .collect();
-    page.table(&["", "recording", "rows", "R2", "error (RMS)", "relative error, filtered"], &rows);
+    page.table(&["use", "recording", "rows", "R2", "error (RMS)", "relative error, filtered"], &rows);
 }
 
 fn velocity_label(outcome: &Outcome) -> &'static str {
@@ -75,58 +82,62 @@ fn velocity_label(outcome: &Outcome) -> &'static str {
     }
 }
 
-fn over_velocity(page: &mut Page, outcome: &Outcome) {
-    let label = format!("friction ({})", outcome.unit);
-    let velocities = outcome.cloud.iter().chain(&outcome.law_curve).map(|p| p[0]);
-    let (x, y) = (Scale::over(velocities), Scale::over(outcome.cloud.iter().chain(&outcome.law_curve).map(|p| p[1])));
-    page.heading("Friction over velocity");
-    let mut law = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
-    law.dots(&outcome.cloud, Ink::Data, "measured");
-    law.area(&outcome.band, Ink::Two, "95 % band");
-    law.line(&outcome.law_curve, Ink::One, "exported law");
-    let mut stages = Chart::new((520.0, 340.0), x, y, [velocity_label(outcome), &label]);
-    stages.dots(&outcome.cloud, Ink::Data, "");
+/// The exported law among the measured friction.
+fn law(page: &mut Page, outcome: &Outcome) {
+    let mut plot = over_velocity(outcome, "friction over velocity");
+    plot.area(&outcome.band, Ink::Two, "95 % band");
+    let (velocity, friction) = columns(&outcome.law_curve);
+    plot.lines(&velocity, &[(&friction, Ink::One, "exported law")]);
+    page.plot(
+        &plot,
+        "The law in the image, other inputs at their mean, with the band that the network leaves for it; measured torque less the rigid body.",
+    );
+}
+
+/// The measured friction over velocity.
+fn over_velocity(outcome: &Outcome, name: &str) -> Plot {
+    let mut plot = Plot::new(name, Size::Half, [velocity_label(outcome), &format!("friction ({})", outcome.unit)]);
+    let (velocity, friction) = columns(&outcome.cloud);
+    plot.dots(&velocity, &[(&friction, Ink::Data, "measured")]);
+    plot
+}
+
+/// The network in training.
+fn stages(page: &mut Page, outcome: &Outcome) {
+    let mut plot = over_velocity(outcome, "network in training");
     for ((share, points), ink) in outcome.network.stages.iter().zip([Ink::Three, Ink::Two, Ink::One]) {
-        stages.line(points, ink, &format!("{:.0} % trained", 100.0 * share));
+        let (velocity, friction) = columns(points);
+        plot.lines(&velocity, &[(&friction, ink, &format!("{:.0} % trained", 100.0 * share))]);
     }
-    page.figures(&[
-        (
-            law.svg(),
-            "The law in the image, other inputs at their mean, with the band that the network leaves for it; measured torque less the rigid body."
-                .to_string(),
-        ),
-        (stages.svg(), "The network while it was trained.".to_string()),
-    ]);
+    page.plot(&plot, "The network while it was trained.");
 }
 
 fn over_time(page: &mut Page, trace: &Trace, unit: &str) {
     page.heading(&format!("{} over time", trace.label));
-    let pairs =
-        |series: &[f64]| -> Vec<[f64; 2]> { trace.time.iter().zip(series).map(|(t, value)| [*t, *value]).collect() };
-    let time = Scale::over(trace.time.iter().copied());
-    let values = Scale::over(trace.measured.iter().chain(&trace.predicted).copied());
-    let mut chart = Chart::new((1060.0, 300.0), time, values, ["time (s)", &format!("actuator ({unit})")]);
-    chart.line(&pairs(&trace.measured), Ink::Data, "measured");
-    chart.line(&pairs(&trace.predicted), Ink::One, "predicted");
-    page.figure(&chart.svg(), "Actuator as recorded and as the exported image predicts it, rigid body included.");
     let residual: Vec<f64> = trace.measured.iter().zip(&trace.predicted).map(|(m, p)| m - p).collect();
-    let label = format!("residual ({unit})");
-    let range = Scale::over(residual.iter().copied());
-    let mut over_time = Chart::new((520.0, 260.0), time, range, ["time (s)", &label]);
-    over_time.line(&pairs(&residual), Ink::Two, "");
-    let mut pictures = vec![(over_time.svg(), "Measured less predicted, over time.".to_string())];
+    let named = |what: &str| format!("{} {what}", trace.label);
+    let [actuator, left] = ["actuator", "residual"].map(|what| format!("{what} ({unit})"));
+    let mut over_time = Plot::new(&named("over time"), Size::Wide, ["time (s)", &actuator]).linked(TIME);
+    over_time
+        .lines(&trace.time, &[(&trace.measured, Ink::Data, "measured"), (&trace.predicted, Ink::One, "predicted")]);
+    page.plot(&over_time, "Actuator as recorded and as the exported image predicts it, rigid body included.");
+    let mut rest = Plot::new(&named("residual over time"), Size::Low, ["time (s)", &left]).linked(TIME);
+    rest.lines(&trace.time, &[(&residual, Ink::Two, "residual")]);
+    let mut plots = vec![(rest, "Measured less predicted, over time.".to_string())];
     if trace.velocity.len() == residual.len() && !residual.is_empty() {
-        let points: Vec<[f64; 2]> = trace.velocity.iter().zip(&residual).map(|(v, r)| [*v, *r]).collect();
-        let velocity = Scale::over(trace.velocity.iter().copied());
-        let mut over_velocity = Chart::new((520.0, 260.0), velocity, range, ["velocity", &label]);
-        over_velocity.dots(&points, Ink::Two, "");
-        pictures.push((over_velocity.svg(), "The same over velocity.".to_string()));
+        let mut over_velocity = Plot::new(&named("residual over velocity"), Size::Low, ["velocity", &left]);
+        over_velocity.dots(&trace.velocity, &[(&residual, Ink::Two, "residual")]);
+        plots.push((over_velocity, "The same over velocity.".to_string()));
     }
-    page.figures(&pictures);
+    page.plots(&plots);
 }
 
 fn network(page: &mut Page, outcome: &Outcome) {
-    page.heading("The network");
+    page.folded("The network", |page| graphs(page, outcome));
+}
+
+fn graphs(page: &mut Page, outcome: &Outcome) {
+    stages(page, outcome);
     let names: Vec<String> = outcome.inputs.iter().map(|input| input.name.clone()).collect();
     let story = &outcome.network;
     page.figures(&[
@@ -138,27 +149,31 @@ fn network(page: &mut Page, outcome: &Outcome) {
     ]);
     let edges =
         story.after.edges.iter().zip(&story.activations).filter(|(edge, points)| edge.active && !points.is_empty());
-    let pictures: Vec<(String, String)> = edges
+    let plots: Vec<(Plot, String)> = edges
         .take(MOST_ACTIVATIONS)
         .map(|(edge, points)| {
-            let (x, y) = (Scale::over(points.iter().map(|p| p[0])), Scale::over(points.iter().map(|p| p[1])));
-            let mut chart = Chart::new((520.0, 240.0), x, y, ["in", "out"]);
-            chart.line(points, Ink::One, "");
+            let (x, y) = columns(points);
             let place = format!("layer {}, {} to {}", edge.layer, edge.from, edge.to);
-            (chart.svg(), format!("Activation of {place}, attribution {}.", digits(edge.score)))
+            let mut plot = Plot::new(&format!("activation {place}"), Size::Low, ["in", "out"]);
+            plot.lines(&x, &[(&y, Ink::One, "activation")]);
+            (plot, format!("Activation of {place}, attribution {}.", digits(edge.score)))
         })
         .collect();
     page.subheading("Activations that are left");
-    page.figures(&pictures);
+    page.plots(&plots);
 }
 
 fn comparison(page: &mut Page, outcome: &Outcome) {
-    page.heading("Relevance of the inputs");
+    page.folded("Relevance of the inputs", |page| relevance(page, outcome));
+    page.folded("What was compared", |page| candidates(page, outcome));
+}
+
+fn relevance(page: &mut Page, outcome: &Outcome) {
     let rows: Vec<Vec<String>> = outcome
         .relevance
         .iter()
         .map(|row| {
-            let picked = if row.picked { "picked" } else { "" };
+            let picked = if row.picked { "yes" } else { "" };
             vec![
                 row.input.clone(),
                 digits(row.correlation),
@@ -168,8 +183,11 @@ fn comparison(page: &mut Page, outcome: &Outcome) {
             ]
         })
         .collect();
-    page.table(&["input", "correlation", "variance explained alone", "of what velocity leaves", ""], &rows);
-    page.heading("What was compared");
+    page.table(&["input", "correlation", "variance explained alone", "of what velocity leaves", "picked"], &rows);
+}
+
+fn candidates(page: &mut Page, outcome: &Outcome) {
+    page.paragraph(&format!("{}.", outcome.choice));
     let rows: Vec<Vec<String>> = outcome
         .candidates
         .iter()
@@ -184,7 +202,7 @@ fn comparison(page: &mut Page, outcome: &Outcome) {
             ]
         })
         .collect();
-    page.table(&["form", "", "held-out error", "size", "Cortex-M4F", ""], &rows);
+    page.table(&["form", "law", "held-out error", "size", "Cortex-M4F", "chosen"], &rows);
     let rows: Vec<Vec<String>> = outcome
         .classical
         .iter()

@@ -2,9 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::axis::Scale;
-use super::chart::{Chart, Ink};
-use super::page::Page;
+use super::ink::Ink;
+use super::page::{Origin, Page, Plot, Size, columns};
 use crate::figures::{digits, quantity};
 use crate::fleet::{Kind, Member, Quantity, Survey};
 
@@ -15,22 +14,28 @@ const MOST_CURVES: usize = 200;
 
 /// The page as one HTML file; `lines` tell kinds, outliers and failures in sentences, `friction` are the friction curves by joint.
 #[must_use]
-pub fn fleet(survey: &Survey, headline: &str, lines: &[String], friction: &[(&str, &[[f64; 3]])]) -> String {
+pub fn fleet(
+    survey: &Survey,
+    headline: &str,
+    lines: &[String],
+    friction: &[(&str, &[[f64; 3]])],
+    origin: &Origin<'_>,
+) -> String {
     let mut page = Page::new("Fleet", &format!("{} joints.", survey.members.len()));
     page.lead(headline);
     page.list(lines, "findings");
     for (index, kind) in survey.kinds.iter().enumerate() {
         let members: Vec<&Member> = survey.members.iter().filter(|member| member.kind == index).collect();
         page.heading(if kind.name.is_empty() { "All joints" } else { &kind.name });
-        page.figure(&curves(kind, &members, friction), "Friction over velocity, outliers in colour.");
+        page.plot(&curves(kind, &members, friction), "Friction over velocity, outliers in colour.");
         let pictures = (0..Quantity::ALL.len()).filter_map(|quantity| side_by_side(kind, &members, quantity));
-        page.figures(&pictures.collect::<Vec<_>>());
+        page.plots(&pictures.collect::<Vec<_>>());
         constants(&mut page, &members);
     }
-    page.finish()
+    page.finish(origin)
 }
 
-fn curves(kind: &Kind, members: &[&Member], friction: &[(&str, &[[f64; 3]])]) -> String {
+fn curves(kind: &Kind, members: &[&Member], friction: &[(&str, &[[f64; 3]])]) -> Plot {
     let points = |curve: &[[f64; 3]]| curve.iter().map(|[v, friction, _]| [*v, *friction]).collect::<Vec<_>>();
     let outlier: HashMap<&str, bool> =
         members.iter().map(|member| (member.joint.as_str(), member.is_outlier)).collect();
@@ -38,16 +43,16 @@ fn curves(kind: &Kind, members: &[&Member], friction: &[(&str, &[[f64; 3]])]) ->
     let (outliers, others): (Vec<_>, Vec<_>) = of_kind.partition(|curve| curve.0);
     let stride = others.len().div_ceil(MOST_CURVES).max(1);
     let shown: Vec<&(bool, Vec<[f64; 2]>)> = others.iter().step_by(stride).chain(&outliers).collect();
-    let over = |axis: usize| Scale::over(shown.iter().flat_map(|curve| curve.1.iter().map(move |point| point[axis])));
-    let mut chart = Chart::new((1060.0, 360.0), over(0), over(1), ["velocity", &format!("friction ({})", kind.unit)]);
+    let mut plot = Plot::new("friction over velocity", Size::Wide, ["velocity", &format!("friction ({})", kind.unit)]);
     for (is_outlier, curve) in shown {
-        chart.line(curve, if *is_outlier { Ink::Two } else { Ink::Data }, "");
+        let (velocity, friction) = columns(curve);
+        plot.lines(&velocity, &[(&friction, if *is_outlier { Ink::Two } else { Ink::Data }, "")]);
     }
-    chart.svg()
+    plot
 }
 
 /// A quantity of all joints, one dot each, from the smallest on.
-fn side_by_side(kind: &Kind, members: &[&Member], quantity: usize) -> Option<(String, String)> {
+fn side_by_side(kind: &Kind, members: &[&Member], quantity: usize) -> Option<(Plot, String)> {
     let value = |member: &&&Member| {
         member.compared[quantity].value.map(|value| (value.value, member.compared[quantity].stands_out))
     };
@@ -62,10 +67,11 @@ fn side_by_side(kind: &Kind, members: &[&Member], quantity: usize) -> Option<(St
     };
     let name = Quantity::ALL[quantity].name().replace('_', " ");
     let unit = if Quantity::ALL[quantity] == Quantity::Trend { "share a year" } else { &kind.unit };
-    let (x, y) = (Scale::over([0.0, values.len() as f64].into_iter()), Scale::over(values.iter().map(|value| value.0)));
-    let mut chart = Chart::new((520.0, 240.0), x, y, ["joints, by rank", &format!("{name} ({unit})")]);
-    chart.dots(&dots(false), Ink::Data, "");
-    chart.dots(&dots(true), Ink::Two, "stands out");
+    let mut plot = Plot::new(&name, Size::Low, ["joints, by rank", &format!("{name} ({unit})")]);
+    for (which, ink, label) in [(false, Ink::Data, "like its siblings"), (true, Ink::Two, "stands out")] {
+        let (rank, value) = columns(&dots(which));
+        plot.dots(&rank, &[(&value, ink, label)]);
+    }
     let caption = match (Quantity::ALL[quantity], kind.levels.0) {
         (Quantity::Friction(level), speeds) => format!("Friction at a speed of {}.", digits(speeds[level])),
         (Quantity::Ripple, _) => "Amplitude of the strongest wave over position in the residual.".to_string(),
@@ -74,7 +80,7 @@ fn side_by_side(kind: &Kind, members: &[&Member], quantity: usize) -> Option<(St
         }
         (Quantity::Trend, _) => "How the friction changes with the date.".to_string(),
     };
-    Some((chart.svg(), caption))
+    Some((plot, caption))
 }
 
 /// The constants of the common law, joint by joint.

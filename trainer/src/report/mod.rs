@@ -1,16 +1,12 @@
-//! Pages to read in a browser: one HTML file each, nothing loaded from anywhere, pictures as inline SVG, the same bytes for the
-//! same result. Knows results, not how they came about.
+//! Pages to read in a browser: one HTML file each, nothing loaded from anywhere, charts drawn by a script within, the same bytes for
+//! the same result. Knows results, not how they came about.
 
-mod axis;
-mod chart;
 mod closed_loop;
 mod diagnosis;
-mod finding;
 mod fit;
 mod fleet;
 mod graph;
-mod heat_map;
-mod on_the_drive;
+mod ink;
 mod page;
 pub mod picture;
 pub mod tell;
@@ -19,3 +15,4 @@ pub use closed_loop::closed_loop;
 pub use diagnosis::{DiagnosisPage, diagnosis};
 pub use fit::fit;
 pub use fleet::fleet;
+pub use page::Origin;

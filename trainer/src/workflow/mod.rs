@@ -2,10 +2,12 @@
 //! JSON, page and image. Reads recordings, writes nothing.
 
 pub mod arm;
+pub mod check;
 pub(crate) mod columns;
 pub mod diagnose;
 pub mod fit;
 pub mod predict;
 pub mod recordings;
+pub mod rollout;
 
 pub use recordings::{Source, Warning};

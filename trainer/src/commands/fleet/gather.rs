@@ -11,9 +11,9 @@ use super::stamp::day;
 use super::table::{self, table};
 use super::task::{Done, FLEET_FILE, Task, Tasks};
 use super::told::{json, text};
-use crate::commands::output::Outputs;
+use crate::commands::output::{Outputs, command_line, refuse_unwritable};
 use crate::error::{Error, Result, codes};
-use crate::files::create_folder;
+use crate::files::{create_folder, refuse_folder};
 use crate::fleet::{FittedLaw, Measured, Ripple, survey};
 use crate::numerics::statistics::NORMAL_95;
 use crate::parameter::Parameter;
@@ -48,9 +48,10 @@ pub struct Gather {
 /// # Errors
 /// `FRK-D044` for a list that is none, `FRK-I...` where a file cannot be read or written.
 pub fn run(arguments: &Gather) -> Result<u8> {
+    refuse_unwritable(&arguments.json, &[&arguments.tasks])?;
+    refuse_folder(&arguments.output)?;
     let tasks = Tasks::load(&arguments.tasks)?;
     let list = tasks.all()?;
-    create_folder(&arguments.output)?;
     let results: Vec<Option<Done>> = list.par_iter().map(|task| tasks.result(task)).collect::<Result<_>>()?;
     let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());
     for (task, done) in list.iter().zip(results) {
@@ -69,18 +70,20 @@ pub fn run(arguments: &Gather) -> Result<u8> {
     outputs.add(&at("joints.csv"), table::csv(&columns)?);
     #[cfg(feature = "parquet")]
     outputs.add(&at("joints.parquet"), table::parquet(&columns)?);
-    let json = json(&gathered).to_string() + "\n";
-    outputs.add(&at(FLEET_FILE), json.as_bytes());
+    let json = json(&gathered);
+    outputs.add_json(&at(FLEET_FILE), json.clone());
     let (headline, lines) = text(&gathered);
-    outputs.add(&at("fleet.html"), report::fleet(&gathered.survey, &headline, &lines, &curves(&measured)));
+    let origin = report::Origin { command: &command_line(), recordings: &[], settings: "" };
+    outputs.add(&at("fleet.html"), report::fleet(&gathered.survey, &headline, &lines, &curves(&measured), &origin));
     if let Some(path) = &arguments.json {
-        outputs.add(path, json);
+        outputs.add_json(path, json);
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {
         let lines: String = lines.iter().map(|line| format!("  * {line}\n")).collect();
         outputs.add(Path::new("-"), format!("{headline}\n{lines}"));
     }
     outputs.refuse_overwriting(&[&arguments.tasks])?;
+    create_folder(&arguments.output)?;
     outputs.write()?;
     let is_well = gathered.unfitted.is_empty() && !gathered.survey.members.iter().any(|member| member.is_outlier);
     Ok(u8::from(!is_well))

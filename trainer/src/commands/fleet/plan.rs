@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::stamp::without_date;
 use super::task::{FLEET_FILE, Task, folder_of};
-use crate::commands::output::{Outputs, say};
+use crate::commands::output::{Outputs, refuse_unwritable, say};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 
@@ -52,6 +52,7 @@ pub struct Plan {
 /// `FRK-I002` where a folder or pattern has no recording, `FRK-U001` for a pattern that is none, `FRK-D015` for a `joint.toml` that
 /// cannot be used.
 pub fn run(arguments: &Plan) -> Result<()> {
+    refuse_unwritable([&arguments.output], &[])?;
     let mut found: Vec<(PathBuf, PathBuf)> = Vec::new();
     for place in &arguments.recordings {
         let root = if place.is_dir() { place.clone() } else { fixed_part(place) };
@@ -64,13 +65,13 @@ pub fn run(arguments: &Plan) -> Result<()> {
     }
     found.sort_by(|a, b| a.1.cmp(&b.1));
     found.dedup_by(|a, b| a.1 == b.1);
+    refuse_unwritable([&arguments.output], &found.iter().map(|(_, file)| file.as_path()).collect::<Vec<_>>())?;
     let base = absolute(folder_of(&arguments.output))?;
     let tasks = found.iter().enumerate().map(|(index, (root, file))| task(arguments, index, root, file, &base));
     let tasks = tasks.collect::<Result<Vec<Task>>>()?;
     let lines = tasks.iter().map(|task| serde_json::json!(task).to_string() + "\n");
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, lines.collect::<String>());
-    outputs.refuse_overwriting(&found.iter().map(|(_, file)| file.as_path()).collect::<Vec<_>>())?;
     outputs.write()?;
     if !arguments.quiet {
         say(how_to_run(&arguments.output, &tasks).trim_end());

@@ -3,6 +3,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
+use super::configuration::resolved;
 use crate::error::{Error, Result, codes};
 use crate::files::{refuse_place, write_together};
 
@@ -22,6 +25,14 @@ impl Outputs {
         } else {
             self.files.push((path.to_owned(), content));
         }
+    }
+
+    /// Adds a result as JSON, with the options that were in force; `-` is standard output.
+    pub(crate) fn add_json(&mut self, path: &Path, mut result: Value) {
+        if let (Some(result), Some(options)) = (result.as_object_mut(), resolved()) {
+            result.insert("configuration".to_owned(), options.clone());
+        }
+        self.add(path, format!("{result}\n"));
     }
 
     /// Refuses to write over what was read, and the same file twice.
@@ -64,6 +75,15 @@ fn refuse_overwriting(outputs: &[&Path], inputs: &[&Path]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The command as it was typed, for a shell of POSIX.
+pub(crate) fn command_line() -> String {
+    let is_plain =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || "-_./,:=+%@".contains(c));
+    let quoted = |word: String| if is_plain(&word) { word } else { format!("'{}'", word.replace('\'', "'\\''")) };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("trainer".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
 /// Says a line on standard error. That nobody listens is no failure.

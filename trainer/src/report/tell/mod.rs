@@ -1,6 +1,6 @@
 //! A diagnosis in plain words: one sentence a finding, with numbers and confidence. Knows no terminal and no page.
 
-mod certainty;
+pub(super) mod certainty;
 mod discarded;
 pub mod evidence;
 pub mod measurement;
@@ -64,8 +64,12 @@ pub struct Story {
 impl Story {
     /// What follows the findings.
     pub fn rest(&self) -> impl Iterator<Item = &String> {
-        let found = [&self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.undetermined];
-        [&self.sealed, &self.proof].into_iter().chain(found).chain([&self.limits]).flatten()
+        [&self.sealed, &self.proof].into_iter().flatten().chain(self.beside()).chain(&self.limits)
+    }
+
+    /// What was found and is no finding.
+    pub fn beside(&self) -> impl Iterator<Item = &String> {
+        [&self.minor, &self.doubtful, &self.negligible, &self.withdrawn, &self.undetermined].into_iter().flatten()
     }
 }
 
@@ -163,15 +167,11 @@ fn change(parameter: &Parameter) -> Option<String> {
 #[must_use]
 pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let found = &diagnosis.findings[index];
-    // A fault of the measurement adds no torque of which to say where and how much.
-    let is_of_measurement = found.fitted.coefficients.is_empty() && found.effect != EffectId::Unknown;
-    if is_of_measurement || found.effect == EffectId::TimeMisalignment {
+    if !adds_torque(found) {
         let name = capital(plain_name(found.effect));
         return format!("{name}{}. {}{}", figures(found, units), certainty(found), action(found));
     }
-    let region = found.location.named();
-    let place = region.map_or_else(|| "over the whole motion".to_string(), |region| place(region, units));
-    let amount = amount(diagnosis, index, region, units);
+    let (place, amount) = (whereabouts(found, units), amount(diagnosis, index, units));
     let name = match found.effect {
         EffectId::Unknown => format!("{} ({})", plain_name(found.effect), found.equation),
         effect => plain_name(effect).to_string(),
@@ -179,6 +179,17 @@ pub fn finding(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
     let figures = figures(found, units);
     let certainty = certainty(found);
     format!("{} {amount}: {name}{figures}. {certainty}{}", capital(&place), action(found))
+}
+
+/// Whether a finding adds torque of which to say where and how much; a fault of the measurement does not.
+pub(super) fn adds_torque(found: &Finding) -> bool {
+    let is_of_measurement = found.fitted.coefficients.is_empty() && found.effect != EffectId::Unknown;
+    !is_of_measurement && found.effect != EffectId::TimeMisalignment
+}
+
+/// Where a finding is, in small letters and without a full stop.
+pub(super) fn whereabouts(found: &Finding, units: Units) -> String {
+    found.location.named().map_or_else(|| "over the whole motion".to_string(), |region| place(region, units))
 }
 
 /// Where a region is, as a sentence begins, in small letters.
@@ -209,7 +220,8 @@ fn place_along(side: &Side, units: Units) -> String {
 }
 
 /// How much torque the real joint needs, and in which direction.
-fn amount(diagnosis: &Diagnosis, index: usize, region: Option<&Region>, units: Units) -> String {
+pub(super) fn amount(diagnosis: &Diagnosis, index: usize, units: Units) -> String {
+    let region = diagnosis.findings[index].location.named();
     let traces = &diagnosis.traces;
     let Some(effect) = traces.effects.get(index) else { return "the real joint differs".to_string() };
     let sides: Vec<(&Side, &[f64])> = region

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::recordings::{Source, Warning, motion_of};
 use crate::arm::chain::Chain;
-use crate::arm::fit::{Arm, ArmProgress};
+use crate::arm::fit::{Arm, ArmProgress, JointOutcome};
 use crate::arm::motion::Run;
 use crate::error::Result;
 use crate::export::simulator::{ModelFile, Request, Simulator, write};
@@ -57,6 +57,16 @@ fn run(source: Source<'_>, joints: &[Joint], warnings: &mut Vec<Warning>) -> Res
 }
 
 impl FittedArm {
+    /// Name of a file and content of the image of each joint whose law may be relied upon, or of all where `force` says so.
+    #[must_use]
+    pub fn images(&self, force: bool) -> Vec<Option<(String, &[u8])>> {
+        fn image(joint: &JointOutcome, force: bool) -> Option<(String, &[u8])> {
+            let law = joint.law.as_ref().ok().filter(|_| force || joint_doubt(joint).is_none())?;
+            Some((format!("{}.frk", file_name(&joint.name)), law.image.as_slice()))
+        }
+        self.outcome.joints.iter().map(|joint| image(joint, force)).collect()
+    }
+
     /// The result as JSON, schema `frikan.arm/1`; `images` holds the name of the image of each joint, where one is written.
     #[must_use]
     pub fn json(&self, images: &[Option<String>]) -> Value {

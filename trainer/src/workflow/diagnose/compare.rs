@@ -20,7 +20,8 @@ use frikan_shared::model::RigidBody;
 /// What the recording is compared with.
 pub(super) enum Compared {
     Itself(Box<RigidBody>),
-    Simulation(Box<InverseLaw>, RigidBody),
+    /// Its law, the rigid body given beside it, name and fingerprint of its file.
+    Simulation(Box<InverseLaw>, RigidBody, (String, u64)),
     Model(Box<Image<CELLS>>),
 }
 
@@ -29,8 +30,16 @@ impl Compared {
     pub(super) fn at(&self, state: &JointState, recorded_body: bool) -> Option<Reference> {
         match self {
             Self::Itself(_) => None,
-            Self::Simulation(law, _) => Some(law.at(state)),
+            Self::Simulation(law, ..) => Some(law.at(state)),
             Self::Model(image) => of_model(image, state, state.rigid_body.as_deref().filter(|_| recorded_body)).ok(),
+        }
+    }
+
+    /// Name and fingerprint of the file of a simulation.
+    pub(super) fn source(&self) -> Option<(String, u64)> {
+        match self {
+            Self::Simulation(_, _, source) => Some(source.clone()),
+            Self::Itself(_) | Self::Model(_) => None,
         }
     }
 }
@@ -55,7 +64,7 @@ pub(super) fn comparison(request: &Request<'_>, real: &[Recording], joint: &Join
             let of_simulation = law.at(&simulation.states());
             comparison = comparison.beside(simulation, of_simulation);
         }
-        Ok((comparison, Compared::Simulation(Box::new(law), given)))
+        Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
     } else if let Against::Model(image) = &request.against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };

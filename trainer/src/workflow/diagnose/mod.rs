@@ -10,6 +10,7 @@ mod trajectory;
 use std::time::Instant;
 
 use frikan_shared::image::Image;
+use frikan_shared::model::RigidBody;
 use frikan_shared::units::Unit;
 use serde_json::Value;
 
@@ -47,6 +48,8 @@ pub struct Diagnosed {
     pub improvement: Improvement,
     /// Name of the first recording.
     pub label: String,
+    /// Name and CRC-64/XZ of the content of each recording, then of the simulation.
+    pub sources: Vec<(String, u64)>,
     /// Samples that were read.
     pub samples: usize,
     /// Time that it took, s.
@@ -115,6 +118,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let story = tell(&diagnosis, sealed_of(&improvement), units);
     Ok(Diagnosed {
         label: real.label.clone(),
+        sources: recordings.iter().map(Recording::source).chain(compared.source()).collect(),
         samples: comparison.signals.time.len(),
         seconds: begin.elapsed().as_secs_f64(),
         seed: request.seed,
@@ -146,9 +150,11 @@ impl Diagnosed {
         summary(&told, self.seconds, self.seed)
     }
 
-    /// The result as one HTML page; `compared_with` names what the recording was compared with, `remarks` are sentences on the image.
+    /// The result as one HTML page; `compared_with` names what the recording was compared with, `remarks` are sentences on the image,
+    /// `command` is what made it, for its foot.
     #[must_use]
-    pub fn report(&self, compared_with: &str, remarks: &[String]) -> String {
+    pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
+        let settings = format!("Seed {}.", self.seed);
         report::diagnosis(&DiagnosisPage {
             recording: &self.label,
             compared_with,
@@ -156,7 +162,12 @@ impl Diagnosed {
             story: &self.story,
             units: self.units,
             plan: self.advice.as_ref(),
+            rigid_body: match &self.improvement {
+                Improvement::Written(written) => written.compared_with,
+                Improvement::Refused(_) | Improvement::Blocked => None,
+            },
             export: remarks,
+            origin: report::Origin { command, recordings: &self.sources, settings: &settings },
         })
     }
 
@@ -221,6 +232,8 @@ pub struct Written {
     pub image: Vec<u8>,
     /// What it holds, in sentences.
     pub remarks: Vec<String>,
+    /// Rigid body of the model compared with, where that is a model.
+    pub compared_with: Option<RigidBody>,
     /// How much better it is on rows that decided nothing, where there are such.
     pub sealed: Option<SealedScore>,
 }
@@ -235,7 +248,7 @@ fn improved_image(
     let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, request.seed);
     let origin = match compared {
         Compared::Itself(body) => Origin::Recording(**body),
-        Compared::Simulation(law, given) => Origin::Simulation(law, *given),
+        Compared::Simulation(law, given, _) => Origin::Simulation(law, *given),
         Compared::Model(image) => {
             provenance.law_error = image.provenance.law_error;
             provenance.rigid_body_error = image.provenance.rigid_body_error;
@@ -252,10 +265,11 @@ fn improved_image(
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.
     let after = fit::model::from_bytes(&image)?.model;
+    let compared_with = improved.compared_with.as_ref().map(|before| before.rigid_body);
     let sealed = improved
         .compared_with
         .and_then(|before| sealed_score(&diagnosis.sealed_s, recordings, comparison.signals.period, [&before, &after]));
-    Ok(Written { image, remarks: improved.remarks, sealed })
+    Ok(Written { image, remarks: improved.remarks, compared_with, sealed })
 }
 
 fn refused(refusal: &Refusal, recording: &Recording) -> Error {

@@ -18,7 +18,7 @@ use crate::fit::outcome::Soundness;
 use crate::fit::{Options, Outcome, ProgressCallback};
 use crate::joint::Joint;
 use crate::recording::Recording;
-use crate::report;
+use crate::report::{self, Origin};
 use crate::servo::{ServoFit, fit_servo};
 use simulated::SimulatedMotions;
 
@@ -33,6 +33,8 @@ pub struct Fitted {
     pub recordings: Vec<Recording>,
     /// What the checks of the recordings put right or noticed.
     pub warnings: Vec<Warning>,
+    /// Name and CRC-64/XZ of the content of each recording, tests included.
+    pub sources: Vec<(String, u64)>,
     /// Time that reading and fitting took, s.
     pub seconds: f64,
     /// The joint simulated with the image, where it can be.
@@ -51,7 +53,7 @@ pub struct Fitted {
 /// let fitted = frikan_trainer::fit(&recordings, &tests, &Joint::default(), &Options::default(), &|_| {})?;
 /// println!("friction = {}", fitted.outcome.law.expression);
 /// assert!(fitted.outcome.tests[0].score.r2 > 0.999);
-/// std::fs::write(std::env::temp_dir().join("stribeck.html"), fitted.report())?;
+/// std::fs::write(std::env::temp_dir().join("stribeck.html"), fitted.report("my program"))?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -72,6 +74,7 @@ pub fn fit(
     let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint))?;
     let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint))?;
     warnings.extend(of_tests);
+    let sources = recordings.iter().chain(&tests).map(Recording::source).collect();
     let servo = match joint.actuator.kind {
         Kind::Torque => None,
         _ => Some(fit_servo(&recordings, &tests, joint, options, progress)?),
@@ -84,7 +87,8 @@ pub fn fit(
         Some(servo) => Some(SimulatedMotions::of_servo(servo, joint)),
         None => SimulatedMotions::under_torque(&outcome, &recordings, &tests, joint),
     };
-    Ok(Fitted { outcome, servo, recordings, warnings, seconds: start.elapsed().as_secs_f64(), motions })
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(Fitted { outcome, servo, recordings, warnings, sources, seconds, motions })
 }
 
 impl Fitted {
@@ -107,11 +111,12 @@ impl Fitted {
         self.servo.as_ref().map(|servo| servo::table(&servo.identified))
     }
 
-    /// The result as one HTML page.
+    /// The result as one HTML page; `command` is what made it, for its foot.
     #[must_use]
-    pub fn report(&self) -> String {
+    pub fn report(&self, command: &str) -> String {
         let told: Vec<String> = self.warnings.iter().map(|warning| format!("{warning}.")).collect();
-        report::fit(&self.outcome, &told)
+        let settings = format!("Seed {}. Filter: {}.", self.outcome.seed, self.outcome.filter);
+        report::fit(&self.outcome, &told, &Origin { command, recordings: &self.sources, settings: &settings })
     }
 
     /// Whether the image may not be relied upon, and is written only by force.

@@ -1,7 +1,7 @@
 //! Mean residual over two channels, as cells whose colour says the sign and whose depth says the size.
 
-use super::axis::Scale;
-use super::chart::Chart;
+use crate::report::page::{Cells, Plot};
+use crate::report::picture::Scale;
 
 /// Cells along each axis.
 const CELLS: [usize; 2] = [28, 18];
@@ -39,17 +39,10 @@ impl HeatMap {
     }
 
     /// The picture; full colour at `reach`, so that two maps can be compared.
-    pub(super) fn svg(&self, reach: f64, labels: [&str; 2]) -> String {
-        let mut chart = Chart::new((520.0, 340.0), self.x, self.y, labels);
-        let edge = |(low, high): (f64, f64), k: usize, cells: usize| low + (high - low) * k as f64 / cells as f64;
-        for (place, mean) in self.means.iter().enumerate() {
-            let Some(mean) = mean else { continue };
-            let (column, row) = (place % CELLS[0], place / CELLS[0]);
-            let x = [edge(self.x, column, CELLS[0]), edge(self.x, column + 1, CELLS[0])];
-            let y = [edge(self.y, row, CELLS[1]), edge(self.y, row + 1, CELLS[1])];
-            let depth = (mean.abs() / reach.max(f64::MIN_POSITIVE)).min(1.0);
-            chart.cell(x, y, if *mean > 0.0 { "f-hot" } else { "f-cold" }, 0.06 + 0.94 * depth);
-        }
-        chart.svg()
+    pub(super) fn plot(&self, name: &str, reach: f64, labels: [&str; 2], unit: &'static str) -> Plot {
+        let values = self.means.iter().map(|mean| mean.unwrap_or(f64::NAN)).collect();
+        let ends = |(low, high): (f64, f64)| [low, high];
+        let reach = reach.max(f64::MIN_POSITIVE);
+        Plot::of_cells(name, labels, Cells { x: ends(self.x), y: ends(self.y), size: CELLS, values, reach, unit })
     }
 }

@@ -1,11 +1,14 @@
 //! Pictures by themselves: SVG files for documents, with the colours of the pages.
 
-use super::axis::Scale;
-use super::chart::{self, Chart};
+mod axis;
+mod chart;
+
 use super::graph;
 use crate::kan::GraphSummary;
+pub(super) use axis::Scale;
+use chart::Chart;
 
-pub use super::chart::Ink;
+pub use super::ink::Ink;
 
 /// Size of a chart, pixels.
 const SIZE: (f64, f64) = (520.0, 340.0);
@@ -68,8 +71,8 @@ pub fn network(graph: &GraphSummary, inputs: &[String]) -> String {
 
 /// A picture of a page as a file of its own.
 fn standing_alone(svg: &str) -> String {
-    let drawn = [":root", "svg", ".grid", ".frame", ".line", ".s-", ".f-", ".band"];
-    let style: String = include_str!("style.css")
+    let drawn = [":root", "svg", ".grid", ".frame", ".line", ".s-", ".f-"];
+    let style: String = include_str!("../page/style.css")
         .lines()
         .filter(|line| drawn.iter().any(|start| line.starts_with(start)) && !line.starts_with("svg{"))
         .collect();

@@ -1,32 +1,41 @@
-//! One finding of a diagnosis on its page: equation, parameters, pictures, rivals, the drive.
+//! What a finding rests on: equation, evidence, its torque over time, its regions, its rivals, the drive. Folded at first.
 
-use super::axis::{Scale, axis_label};
-use super::chart::{Chart, Ink, bars};
+use super::content::TIME;
 use super::on_the_drive::on_the_drive;
-use super::page::{PARAMETER_HEADER, Page, parameter_rows};
 use crate::diagnose::advice::Plan;
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
-use crate::diagnose::answer::region::{Region, Side};
+use crate::diagnose::answer::region::Side;
 use crate::diagnose::answer::traces::Traces;
 use crate::figures::digits;
 use crate::physics::names::{capital, plain_name};
 use crate::physics::units::Units;
 use crate::physics::{Action, EffectId};
+use crate::report::ink::Ink;
+use crate::report::page::{PARAMETER_HEADER, Page, Plot, Size, parameter_rows};
 use crate::report::tell::evidence::{evidence, parameters, separate_by};
 
 /// Names in the chart of one finding's rivals, its own included.
 const MOST_STANDINGS: usize = 6;
 
-/// One finding: equation, parameters, torque over its channel and time, regions.
+/// One finding: equation, parameters, torque over time, regions.
 pub(super) fn section(page: &mut Page, diagnosis: &Diagnosis, index: usize, units: Units, plan: Option<&Plan>) {
     let found = &diagnosis.findings[index];
     let code = if found.effect == EffectId::Unknown { "" } else { found.effect.code() };
     let name = format!("{code} {}", found.effect.name());
-    page.heading(&format!("{}. {} ({})", index + 1, capital(plain_name(found.effect)), name.trim()));
+    let heading = format!("{}. {} ({}) in detail", index + 1, capital(plain_name(found.effect)), name.trim());
+    page.folded(&heading, |page| details(page, (diagnosis, found, index), units, plan));
+}
+
+fn details(
+    page: &mut Page,
+    (diagnosis, found, index): (&Diagnosis, &Finding, usize),
+    units: Units,
+    plan: Option<&Plan>,
+) {
     page.paragraph(&format!("{}.", capital(&evidence(found, units))));
     page.equation(&found.equation);
     page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&found.parameters, units)));
-    figures(page, diagnosis, found, index, units);
+    over_time(page, (diagnosis, found, index), units);
     let regions: Vec<Vec<String>> = found
         .location
         .regions
@@ -60,48 +69,26 @@ pub(super) fn section(page: &mut Page, diagnosis: &Diagnosis, index: usize, unit
     }
 }
 
-/// Residual without this effect and its torque, over its best channel and over the time where it is densest.
-fn figures(page: &mut Page, diagnosis: &Diagnosis, found: &Finding, index: usize, units: Units) {
+/// Residual without this effect and its torque over the time where it is densest.
+fn over_time(page: &mut Page, (diagnosis, found, index): (&Diagnosis, &Finding, usize), units: Units) {
     let traces = &diagnosis.traces;
     let Some(torque) = traces.effects.get(index) else { return };
     let without: Vec<f64> = traces.after.iter().zip(torque).map(|(rest, effect)| rest + effect).collect();
-    let label = format!("torque ({})", units.actuator);
-    let range = Scale::over(without.iter().copied());
-    let mut pictures = Vec::new();
-    if let Some(Region { side, .. }) = found.location.regions.first()
-        && let Some(values) = traces.channel(side.channel)
-    {
-        let pairs = |series: &[f64]| -> Vec<[f64; 2]> { values.iter().zip(series).map(|(x, y)| [*x, *y]).collect() };
-        let over = Scale::over(values.iter().copied());
-        let mut chart = Chart::new((520.0, 320.0), over, range, [&axis_label(side.channel, units), &label]);
-        chart.band(side.from, side.to);
-        chart.dots(&pairs(&without), Ink::Data, "residual without it");
-        chart.dots(&pairs(torque), Ink::Two, "its torque");
-        pictures.push((
-            chart.svg(),
-            "Residual of all other terms and the torque of this one, over the channel that locates it.".to_string(),
-        ));
-    }
     let (from, to) = window(traces, found);
     let inside: Vec<usize> = (0..traces.len()).filter(|&i| traces.time[i] >= from && traces.time[i] <= to).collect();
-    if inside.len() > 4 {
-        let pairs = |series: &[f64]| -> Vec<[f64; 2]> { inside.iter().map(|&i| [traces.time[i], series[i]]).collect() };
-        let mut chart = Chart::new(
-            (520.0, 320.0),
-            (from, to),
-            Scale::over(inside.iter().map(|&i| without[i])),
-            ["time (s)", &label],
-        );
-        for [begin, end] in &found.location.when_s {
-            if *end > from && *begin < to {
-                chart.band(*begin, *end);
-            }
-        }
-        chart.line(&pairs(&without), Ink::Data, "residual without it");
-        chart.line(&pairs(torque), Ink::Two, "its torque");
-        pictures.push((chart.svg(), "The same over the stretch of time with the densest evidence.".to_string()));
+    if inside.len() <= 4 {
+        return;
     }
-    page.figures(&pictures);
+    let at = |series: &[f64]| inside.iter().map(|&i| series[i]).collect::<Vec<_>>();
+    let name = format!("{} over time", found.effect.name());
+    let label = format!("torque ({})", units.actuator);
+    let mut plot = Plot::new(&name, Size::Half, ["time (s)", &label]).linked(TIME);
+    for [begin, end] in found.location.when_s.iter().filter(|[begin, end]| *end > from && *begin < to) {
+        plot.band(begin.max(from), end.min(to));
+    }
+    let series = [(&*at(&without), Ink::Data, "needed beside all else"), (&*at(torque), Ink::Two, "this effect")];
+    plot.lines(&at(&traces.time), &series);
+    page.plot(&plot, "The stretch of time with the densest evidence: what the recording asks for beside all other terms, and this effect.");
 }
 
 /// A stretch of time around the densest evidence, at most a tenth of the recording.
@@ -123,6 +110,6 @@ fn standings(page: &mut Page, found: &Finding) {
     if rows.len() > 1 {
         rows.truncate(MOST_STANDINGS);
         page.subheading("Its rivals");
-        page.figure(&bars(&rows, "nats"), "What each name alone would have explained when this one was accepted.");
+        page.bars(&rows, "nats", "What each name alone would have explained when this one was accepted.");
     }
 }

@@ -1,11 +1,10 @@
 //! Scales and ticks.
 
 use crate::figures::digits;
-use crate::physics::units::Units;
 
 /// A linear scale from data to pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub(in crate::report) struct Scale {
     low: f64,
     high: f64,
     begin: f64,
@@ -14,7 +13,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// A scale over finite `values` with a small margin; one unit wide where they do not vary.
-    pub(super) fn over(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    pub(in crate::report) fn over(values: impl Iterator<Item = f64>) -> (f64, f64) {
         let (low, high) = values
             .filter(|v| v.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -47,11 +46,6 @@ impl Scale {
             .map(|value| (value, if value.abs() < 1e-9 * step { "0".to_string() } else { digits(value) }))
             .collect()
     }
-}
-
-/// Label of an axis over a channel, with its unit.
-pub(super) fn axis_label(channel: &str, units: Units) -> String {
-    format!("{} ({})", channel.replace('_', " "), units.of_channel(channel))
 }
 
 #[cfg(test)]

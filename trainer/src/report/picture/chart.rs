@@ -3,6 +3,7 @@
 use super::axis::Scale;
 use crate::figures::digits;
 use crate::markup::escape;
+use crate::report::ink::Ink;
 use std::fmt::Write;
 
 /// Largest number of dots; more would only be slower to draw.
@@ -13,30 +14,6 @@ const LEFT: f64 = 62.0;
 const BOTTOM: f64 = 46.0;
 const TOP: f64 = 26.0;
 const RIGHT: f64 = 12.0;
-
-/// Colour of a series, by its role on the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ink {
-    /// What was measured.
-    Data,
-    /// The first thing compared with it.
-    One,
-    /// The second.
-    Two,
-    /// The third.
-    Three,
-}
-
-impl Ink {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Ink::Data => "data",
-            Ink::One => "one",
-            Ink::Two => "two",
-            Ink::Three => "three",
-        }
-    }
-}
 
 /// A chart under construction.
 pub(super) struct Chart {
@@ -106,29 +83,6 @@ impl Chart {
             ink.name()
         );
         self.mention(ink, label);
-    }
-
-    /// Shades a stretch of the horizontal axis.
-    pub(super) fn band(&mut self, from: f64, to: f64) {
-        let (left, right) = (self.x.at(from), self.x.at(to));
-        let _ = write!(
-            self.body,
-            "<rect class=\"band\" x=\"{left:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\"/>",
-            (right - left).max(1.0),
-            self.height - BOTTOM - TOP
-        );
-    }
-
-    /// A filled rectangle between data coordinates.
-    pub(super) fn cell(&mut self, x: [f64; 2], y: [f64; 2], class: &str, opacity: f64) {
-        let (left, right) = (self.x.at(x[0]), self.x.at(x[1]));
-        let (bottom, top) = (self.y.at(y[0]), self.y.at(y[1]));
-        let _ = write!(
-            self.body,
-            "<rect class=\"{class}\" x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill-opacity=\"{opacity:.2}\"/>",
-            right - left,
-            bottom - top
-        );
     }
 
     fn mention(&mut self, ink: Ink, label: &str) {

@@ -1,0 +1,148 @@
+//! Pages in a browser: Chromium opens them as on a phone and as on a desk, uses their charts, and nothing is amiss. `FRIKAN_PAGES=FOLDER`
+//! keeps the pages and pictures of them there.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use frikan_tests::command::run;
+use frikan_tests::fixtures::folder;
+use serde_json::Value;
+
+/// Width and height of a window: a phone, a desk.
+const WINDOWS: [(u32, u32); 2] = [(390, 844), (1280, 900)];
+/// Smallest letters, pixels.
+const SMALLEST_LETTER: f64 = 11.0;
+/// Bytes of a page at most.
+const MOST_BYTES: usize = 1_500_000;
+
+/// How long a page is given, ms of the browser's own clock, which does not run while the page works; it runs while a frame is being started,
+/// and on a busy machine that may take all of it.
+const BUDGET_MS: u32 = 300_000;
+/// Tries until a frame was started in time.
+const TRIES: usize = 3;
+
+/// The browser; `None` where there is none.
+fn chromium() -> Option<PathBuf> {
+    let path = std::env::split_paths(&std::env::var_os("PATH")?)
+        .map(|folder| folder.join("chromium"))
+        .find(|path| path.exists());
+    if path.is_none() {
+        eprintln!("skipped: there is no chromium (tests/setup.sh installs it)");
+    }
+    path
+}
+
+/// What a browser prints of a page.
+fn browse(browser: &Path, page: &Path, words: &[String]) -> String {
+    let fixed = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"];
+    let profile = tempfile::tempdir().unwrap();
+    let done = Command::new(browser)
+        .args(fixed)
+        .arg(format!("--virtual-time-budget={BUDGET_MS}"))
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(words)
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    String::from_utf8_lossy(&done.stdout).into_owned()
+}
+
+/// The page in a frame of that size, with what else is to be run in it; `picture` is a file for what it looks like.
+fn framed(browser: &Path, page: &Path, (width, height): (u32, u32), text: &str, picture: Option<&Path>) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join(page.file_name().unwrap());
+    std::fs::write(&inside, text).unwrap();
+    let around = std::fs::read_to_string(scripts().join("around.html")).unwrap();
+    let around = around.replace("PAGE", &inside.display().to_string()).replace("WIDTH", &width.to_string());
+    let frame = folder.path().join("around.html");
+    std::fs::write(&frame, around.replace("HEIGHT", &height.to_string())).unwrap();
+    let show = picture.map_or("--dump-dom".to_string(), |picture| format!("--screenshot={}", picture.display()));
+    browse(browser, &frame, &[format!("--window-size={width},{height}"), show])
+}
+
+fn scripts() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("browser")
+}
+
+/// What the scripts of `tests/browser` saw of a page.
+fn inspect(browser: &Path, page: &Path, window: (u32, u32)) -> Value {
+    let script = |name: &str| format!("<script>{}</script>", std::fs::read_to_string(scripts().join(name)).unwrap());
+    let axe = scripts().join("../../target/pages/axe_playwright_python/axe.min.js");
+    let axe = std::fs::read_to_string(axe).map_or_else(
+        |_| {
+            eprintln!("skipped: no axe-core under target/pages (tests/setup.sh installs it where there is a network)");
+            String::new()
+        },
+        |source| format!("<script>{source}</script>"),
+    );
+    let text = std::fs::read_to_string(page).unwrap();
+    let text = text.replacen("<head>", &format!("<head>{}", script("before.js")), 1);
+    let (start, end) = text.split_at(text.rfind("</body>").unwrap());
+    let text = [start, &axe, &script("after.js"), end].concat();
+    let seen = (0..TRIES).find_map(|_| {
+        let shown = framed(browser, page, window, &text, None);
+        let (_, seen) = shown.split_once("<pre id=\"inspected\">")?;
+        Some(seen.split_once("</pre>")?.0.to_owned())
+    });
+    let json = seen.unwrap_or_else(|| panic!("{}: nothing seen", page.display()));
+    let json = json.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+    serde_json::from_str(&json).unwrap_or_else(|error| panic!("{error}: {json}"))
+}
+
+#[test]
+fn pages_can_be_read_and_used_on_a_phone_and_at_a_desk() {
+    let Some(browser) = chromium() else { return };
+    let bench = tempfile::tempdir().unwrap();
+    let kept = std::env::var_os("FRIKAN_PAGES").map(PathBuf::from);
+    let at = kept.as_deref().unwrap_or(bench.path());
+    let fixture = |name: &str| folder().join(name).display().to_string();
+    let (joint, recording, test) = (fixture("elbow.toml"), fixture("stribeck.csv"), fixture("stribeck-test.csv"));
+    for (line, status) in [
+        (format!("simulate {joint} --effect presliding=1 --duration 20 --seed 7 -o real.csv"), 0),
+        (format!("simulate {joint} --duration 20 --seed 7 -o simulated.csv"), 0),
+        (format!("diagnose real.csv --joint {joint} -o itself.frk --report itself.html"), 1),
+        (
+            format!(
+                "diagnose real.csv --simulation simulated.csv --joint {joint} -o better.frk --report simulation.html"
+            ),
+            1,
+        ),
+        (format!("fit {recording} --test {test} -o law.frk --report fit.html"), 0),
+        (format!("loop {joint} --image better.frk --duration 2 --report loop.html"), 0),
+    ] {
+        let done = run(at, &line.split_whitespace().chain(["--quiet"]).collect::<Vec<_>>());
+        assert_eq!(done.status, status, "{line}: {}", done.messages);
+    }
+    for name in ["itself", "simulation", "fit", "loop"] {
+        let page = at.join(name).with_extension("html");
+        assert!(std::fs::metadata(&page).unwrap().len() as usize <= MOST_BYTES, "{name} is too large");
+        for window in WINDOWS {
+            let seen = inspect(&browser, &page, window);
+            let is = |key: &str, value: Value| assert_eq!(seen[key], value, "{name} at {window:?}: {key} of {seen}");
+            is("width", window.0.into());
+            is("errors", Value::Array(Vec::new()));
+            is("undrawn", 0.into());
+            is("zoomed", Value::from(vec![true, true]));
+            is("whole", Value::from(vec![true, true]));
+            is("toggled", "false".into());
+            assert!(seen["told"].as_str().is_some_and(|told| told.starts_with("at ")), "{name}: {seen}");
+            assert!(
+                seen["saved"][0].as_str().is_some_and(|head| head.contains(" (") || head.contains(", ")),
+                "{name}: {seen}"
+            );
+            assert!(seen["overflow"].as_f64().unwrap() <= 0.0, "{name} at {window:?}: {seen}");
+            assert!(seen["smallest"].as_f64().unwrap() >= SMALLEST_LETTER, "{name} at {window:?}: {seen}");
+            assert!(seen["axe"].as_array().is_none_or(Vec::is_empty), "{name} at {window:?}: {:#}", seen["axe"]);
+            if ["itself", "simulation"].contains(&name) {
+                is("answered", Value::from(vec!["Where", "How much", "How sure", "What to do"]));
+                let below = seen["answered_above"].as_f64().unwrap();
+                assert!(below < f64::from(window.1), "{name} at {window:?}: the answer ends at {below}");
+            }
+            if kept.is_some() {
+                let picture = at.join(format!("{name}-{}.png", window.0));
+                let text = std::fs::read_to_string(&page).unwrap();
+                framed(&browser, &page, (window.0, 3000), &text, Some(&picture));
+            }
+        }
+    }
+}

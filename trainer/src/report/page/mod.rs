@@ -1,0 +1,211 @@
+//! The frame of a page: head, style for light, dark and paper, contents, charts, foot, and the few elements that pages are made of.
+
+mod origin;
+mod plot;
+
+use std::fmt::Write;
+
+use crate::figures::digits;
+use crate::markup::escape;
+
+pub use origin::Origin;
+pub(super) use plot::{Cells, Plot, Size, columns};
+
+/// Colours come from custom properties, so that a picture follows the reader's choice of light or dark.
+const STYLE: &str = include_str!("style.css");
+/// The charts of a page: [uPlot](https://github.com/leeoniya/uPlot), and what hands it the values.
+const CHARTS: [&str; 2] = [include_str!("uplot/uPlot.iife.min.js"), include_str!("page.js")];
+const CHART_STYLE: &str = include_str!("uplot/uPlot.min.css");
+const CHART_LICENCE: &str = include_str!("uplot/LICENSE");
+
+/// A page under construction.
+#[derive(Debug, Default)]
+pub(super) struct Page {
+    title: String,
+    subtitle: String,
+    contents: Vec<String>,
+    body: String,
+    has_plots: bool,
+}
+
+impl Page {
+    pub(super) fn new(title: &str, subtitle: &str) -> Self {
+        Self { title: title.to_string(), subtitle: subtitle.to_string(), ..Self::default() }
+    }
+
+    /// Adds HTML as it is.
+    pub(super) fn html(&mut self, html: &str) {
+        self.body.push_str(html);
+        self.body.push('\n');
+    }
+
+    /// A section, which the contents name.
+    pub(super) fn heading(&mut self, text: &str) {
+        let place = self.place(text);
+        self.html(&format!("<h2 id=\"{place}\">{}</h2>", escape(text)));
+    }
+
+    /// A section that is folded at first.
+    pub(super) fn folded(&mut self, text: &str, fill: impl FnOnce(&mut Self)) {
+        let place = self.place(text);
+        self.html(&format!("<details id=\"{place}\"><summary><h2>{}</h2></summary>", escape(text)));
+        fill(self);
+        self.html("</details>");
+    }
+
+    /// The anchor of a section that the contents name from now on.
+    pub(super) fn place(&mut self, text: &str) -> String {
+        self.contents.push(text.to_string());
+        format!("section-{}", self.contents.len())
+    }
+
+    pub(super) fn subheading(&mut self, text: &str) {
+        self.html(&format!("<h3>{}</h3>", escape(text)));
+    }
+
+    pub(super) fn paragraph(&mut self, text: &str) {
+        self.html(&format!("<p>{}</p>", escape(text)));
+    }
+
+    /// A paragraph that stands out.
+    pub(super) fn lead(&mut self, text: &str) {
+        self.html(&format!("<p class=\"lead\">{}</p>", escape(text)));
+    }
+
+    pub(super) fn list(&mut self, items: &[String], class: &str) {
+        if items.is_empty() {
+            return;
+        }
+        let items: String = items.iter().map(|item| format!("<li>{}</li>", escape(item))).collect();
+        self.html(&format!("<ul class=\"{class}\">{items}</ul>"));
+    }
+
+    pub(super) fn equation(&mut self, text: &str) {
+        self.html(&format!("<pre class=\"equation\">{}</pre>", escape(text)));
+    }
+
+    /// Pictures side by side where there is room.
+    pub(super) fn figures(&mut self, figures: &[(String, String)]) {
+        let mut html = String::from("<div class=\"figures\">");
+        for (svg, caption) in figures {
+            let caption = escape(caption);
+            let svg = svg.replacen("<svg ", &format!("<svg aria-label=\"{caption}\" "), 1);
+            let _ = write!(
+                html,
+                "<figure><div class=\"table\" tabindex=\"0\">{svg}</div><figcaption>{caption}</figcaption></figure>"
+            );
+        }
+        html.push_str("</div>");
+        self.html(&html);
+    }
+
+    /// Charts side by side where there is room, each with what it shows.
+    pub(super) fn plots(&mut self, plots: &[(Plot, String)]) {
+        let figures: String = plots.iter().map(|(plot, caption)| self.figure_of(plot, caption)).collect();
+        self.html(&format!("<div class=\"figures\">{figures}</div>"));
+    }
+
+    /// A chart over the whole width.
+    pub(super) fn plot(&mut self, plot: &Plot, caption: &str) {
+        let figure = self.figure_of(plot, caption);
+        self.html(&figure);
+    }
+
+    /// A chart as HTML, to stand within other HTML.
+    pub(super) fn figure_of(&mut self, plot: &Plot, caption: &str) -> String {
+        self.has_plots = true;
+        let caption = escape(caption);
+        format!(
+            "<figure><div class=\"plot\" role=\"img\" aria-label=\"{caption}\"></div>\
+             <script type=\"application/json\">{}</script><figcaption>{caption}</figcaption></figure>",
+            plot.json()
+        )
+    }
+
+    /// Horizontal bars: name, value, whether it stands out.
+    pub(super) fn bars(&mut self, rows: &[(String, f64, bool)], unit: &str, caption: &str) {
+        let largest = rows.iter().map(|(_, value, _)| value.max(0.0)).fold(f64::MIN_POSITIVE, f64::max);
+        let bar = |(name, value, is_marked): &(String, f64, bool)| {
+            let (class, share) = (if *is_marked { "f-two" } else { "f-data" }, 100.0 * value.max(0.0) / largest);
+            format!(
+                "<tr><th scope=\"row\">{}</th><td class=\"bar\"><i class=\"{class}\" style=\"width:{share:.1}%\"></i></td>\
+                 <td>{} {}</td></tr>",
+                escape(name),
+                digits(*value),
+                escape(unit)
+            )
+        };
+        let rows: String = rows.iter().map(bar).collect();
+        self.html(&format!(
+            "<div class=\"table\" tabindex=\"0\"><table class=\"bars\"><caption>{}</caption>{rows}</table></div>",
+            escape(caption)
+        ));
+    }
+
+    pub(super) fn table(&mut self, header: &[&str], rows: &[Vec<String>]) {
+        if rows.is_empty() {
+            return;
+        }
+        let cells = |tag: &str, cells: Vec<&str>| -> String {
+            cells.iter().map(|cell| format!("<{tag}>{}</{}>", escape(cell), &tag[..2])).collect()
+        };
+        let head = cells("th scope=\"col\"", header.to_vec());
+        let body: String = rows
+            .iter()
+            .map(|row| format!("<tr>{}</tr>", cells("td", row.iter().map(String::as_str).collect())))
+            .collect();
+        self.html(&format!(
+            "<div class=\"table\" tabindex=\"0\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
+        ));
+    }
+
+    /// The whole file; `origin` stands at its foot.
+    pub(super) fn finish(self, origin: &Origin) -> String {
+        let (title, subtitle) = (escape(&self.title), escape(&self.subtitle));
+        let (mut contents, mut script, mut style, mut licence) = Default::default();
+        if self.contents.len() > 1 {
+            let link = |(index, text): (usize, &String)| {
+                format!("<li><a href=\"#section-{}\">{}</a></li>", index + 1, escape(text))
+            };
+            let links: String = self.contents.iter().enumerate().map(link).collect();
+            contents = format!(
+                "<nav aria-label=\"Contents\"><details><summary>Contents</summary><ul>{links}</ul></details></nav>"
+            );
+        }
+        if self.has_plots {
+            script = CHARTS.map(|source| format!("<script>{source}</script>")).concat();
+            style = CHART_STYLE;
+            licence = format!(
+                "<details><summary>Charts: uPlot, MIT licence</summary><pre>{}</pre></details>\
+                 <noscript>The charts need a browser that runs scripts.</noscript>",
+                escape(CHART_LICENCE.trim())
+            );
+        }
+        let (body, foot) = (self.body, origin.html());
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+             <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
+             <meta name=\"color-scheme\" content=\"light dark\"><title>{title}</title><style>{style}\n{STYLE}</style></head>\n\
+             <body><header><h1>{title}</h1><p>{subtitle}</p>{contents}</header><main>\n{body}</main>\n\
+             <footer>{foot}{licence}</footer>\n{script}</body></html>\n"
+        )
+    }
+}
+
+/// Parameters as rows of a table: name, symbol, value, unit, interval.
+pub(super) fn parameter_rows(parameters: &[crate::parameter::Parameter]) -> Vec<Vec<String>> {
+    parameters
+        .iter()
+        .map(|p| {
+            let interval = if p.ci95[1] > p.ci95[0] {
+                format!("{} to {}", digits(p.ci95[0]), digits(p.ci95[1]))
+            } else {
+                "fixed".to_string()
+            };
+            vec![p.name.replace('_', " "), p.symbol.clone(), digits(p.value), p.unit.clone(), interval]
+        })
+        .collect()
+}
+
+/// Header of [`parameter_rows`].
+pub(super) const PARAMETER_HEADER: [&str; 5] = ["parameter", "symbol", "value", "unit", "95 % interval"];
