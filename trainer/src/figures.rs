@@ -12,6 +12,9 @@ pub fn quantity(value: f64, unit: &str) -> String {
 
 /// Two values with a word between them and their unit, the prefix that suits the larger one.
 pub(crate) fn pair(from: f64, word: &str, to: f64, unit: &str) -> String {
+    if unit == "1" || unit.is_empty() {
+        return format!("{} {word} {}", digits(from), digits(to));
+    }
     let (factor, prefix) = prefix(from.abs().max(to.abs()), unit);
     format!("{} {word} {} {prefix}{unit}", digits(from * factor), digits(to * factor))
 }
@@ -51,5 +54,7 @@ mod tests {
             [0.0, 1.0, -12.345, 1234.5, 2.5e-5].into_iter().map(|value| quantity(value, "rad")).collect();
         assert_eq!(shown, ["0 rad", "1 rad", "-12.3 rad", "1234 rad", "25 urad"]);
         assert_eq!(quantity(0.0021, "N m s/rad"), "0.0021 N m s/rad");
+        assert_eq!(pair(0.0014, "to", 0.0032, "rad"), "1.4 to 3.2 mrad");
+        assert_eq!(pair(1.41, "to", 3.19, "1"), "1.41 to 3.19");
     }
 }
