@@ -38,8 +38,8 @@ pub(super) struct BehindLaw<'a> {
     pub(super) cells: Cells<'a>,
     /// Unit of the output.
     pub(super) output_unit: Unit,
-    /// Trained range of the input.
-    pub(super) range: [f32; 2],
+    /// Unit of the input, a byte, and its trained range, two floats.
+    input: &'a [u8],
     /// How many cells there ought to be.
     count: u32,
     /// Whether the velocity is the only input, and there are no effects.
@@ -53,13 +53,20 @@ impl<'a> BehindLaw<'a> {
         let count = fields.number();
         let (cells, _) = fields.bytes(16 * usize::from(header.cells)).as_chunks();
         let (inputs, quantity) = (fields.number(), fields.number());
-        let _unit = fields.byte();
-        let range = [fields.float(), fields.float()];
+        let input = fields.bytes(INPUT_BYTES);
         let output_unit = Unit::ALL.get(fields.number() as usize).copied().unwrap_or(Unit::One);
         fields.bytes(4 * (LIMIT_FLOATS + BODY_FLOATS));
         let effects = fields.number();
         let is_of_velocity_alone = inputs == 1 && quantity == VELOCITY && effects == 0;
-        Self { cells, output_unit, range, count, is_of_velocity_alone }
+        Self { cells, output_unit, input, count, is_of_velocity_alone }
+    }
+
+    /// Trained range of the input.
+    #[inline(always)]
+    pub(super) fn range(&self) -> [f32; 2] {
+        let mut fields = Fields::new(self.input);
+        fields.byte();
+        [fields.float(), fields.float()]
     }
 
     /// Whether it is the law that the reader knows, with nothing that it does not know around it, and the payload ends here.
@@ -97,5 +104,6 @@ const PROVENANCE_NAMES: usize = 2;
 const PROVENANCE_NUMBERS: usize = 2;
 const LAW_ERROR_FLOATS: usize = 2;
 const RIGID_BODY_ERROR_FLOATS: usize = 15;
+const INPUT_BYTES: usize = 9;
 const LIMIT_FLOATS: usize = 1;
 const BODY_FLOATS: usize = 5;

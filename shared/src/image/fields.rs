@@ -53,9 +53,9 @@ impl<'a> Fields<'a> {
     }
 
     /// A float.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn float(&mut self) -> f32 {
-        f32::from_bits(self.word())
+        self.bytes(4).first_chunk().copied().map_or(0.0, f32::from_le_bytes)
     }
 
     /// A number of 32 bits.

@@ -78,7 +78,7 @@ impl<'a> IntegerTableImage<'a> {
             let coefficients = [(); 4].map(|()| words.word().cast_signed());
             largest = largest_value(coefficients).ok_or(InvalidModel::Coefficient)?.max(largest);
         }
-        let BehindLaw { cells, range, output_unit, .. } = behind;
+        let BehindLaw { cells, output_unit, .. } = behind;
         let joint = before.joint;
         Ok(Self {
             segments,
@@ -89,7 +89,7 @@ impl<'a> IntegerTableImage<'a> {
             output_step,
             cells,
             largest,
-            range,
+            range: behind.range(),
             output_unit,
             joint,
         })
