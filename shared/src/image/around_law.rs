@@ -40,16 +40,15 @@ pub(super) struct BehindLaw<'a> {
     pub(super) output_unit: Unit,
     /// Unit of the input, a byte, and its trained range, two floats.
     input: &'a [u8],
-    /// How many cells there ought to be.
-    count: u32,
-    /// Whether the velocity is the only input, and there are no effects.
-    is_of_velocity_alone: bool,
 }
 
 impl<'a> BehindLaw<'a> {
-    /// Passes over limit and rigid body, whatever they are.
+    /// Passes over limit and rigid body, whatever they are. `is_known` says whether the law is the one that the reader has.
+    ///
+    /// # Errors
+    /// Where it is not or something around it is not known, and where the payload does not end here.
     #[inline(always)]
-    pub(super) fn read(header: &Header, fields: &mut Fields<'a>) -> Self {
+    pub(super) fn read(is_known: bool, header: &Header, fields: &mut Fields<'a>) -> Result<Self, ImageError> {
         let count = fields.number();
         let (cells, _) = fields.bytes(16 * usize::from(header.cells)).as_chunks();
         let (inputs, quantity) = (fields.number(), fields.number());
@@ -57,8 +56,13 @@ impl<'a> BehindLaw<'a> {
         let output_unit = Unit::ALL.get(fields.number() as usize).copied().unwrap_or(Unit::One);
         fields.bytes(4 * (LIMIT_FLOATS + BODY_FLOATS));
         let effects = fields.number();
-        let is_of_velocity_alone = inputs == 1 && quantity == VELOCITY && effects == 0;
-        Self { cells, output_unit, input, count, is_of_velocity_alone }
+        if !is_known || inputs != 1 || quantity != VELOCITY || effects != 0 {
+            return Err(ImageError::NotBuiltIn);
+        }
+        if !fields.are_all() || count != u32::from(header.cells) {
+            return Err(ImageError::Malformed);
+        }
+        Ok(Self { cells, output_unit, input })
     }
 
     /// Trained range of the input.
@@ -67,15 +71,6 @@ impl<'a> BehindLaw<'a> {
         let mut fields = Fields::new(self.input);
         fields.byte();
         [fields.float(), fields.float()]
-    }
-
-    /// Whether it is the law that the reader knows, with nothing that it does not know around it, and the payload ends here.
-    #[inline(always)]
-    pub(super) fn check(&self, is_law: bool, header: &Header, fields: &Fields<'_>) -> Result<(), ImageError> {
-        if !(is_law && self.is_of_velocity_alone) {
-            return Err(ImageError::NotBuiltIn);
-        }
-        if fields.are_all() && self.count == u32::from(header.cells) { Ok(()) } else { Err(ImageError::Malformed) }
     }
 
     /// So many cells from one on.

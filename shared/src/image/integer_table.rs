@@ -67,8 +67,7 @@ impl<'a> IntegerTableImage<'a> {
         let segments = fields.bytes(SEGMENTS).first_chunk().unwrap_or(&NO_SEGMENTS);
         let symmetry = symmetry(fields);
         let [input_step, output_step] = [fields.float(), fields.float()];
-        let behind = BehindLaw::read(header, fields);
-        behind.check(before.law == INTEGER_TABLE, header, fields)?;
+        let behind = BehindLaw::read(before.law == INTEGER_TABLE, header, fields)?;
         let (starts, end) = segment_starts(segments, first_cell).ok_or(InvalidModel::TableShape)?;
         let side = end - u32::from(first_cell);
         let count = if symmetry == Symmetry::Sided { 2 * side } else { side };

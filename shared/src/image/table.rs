@@ -58,8 +58,7 @@ impl<'a> TableImage<'a> {
             reach: fields.float(),
             reach_negative: fields.float(),
         };
-        let behind = BehindLaw::read(header, fields);
-        behind.check(before.law == GEOMETRIC, header, fields)?;
+        let behind = BehindLaw::read(before.law == GEOMETRIC, header, fields)?;
         ensure(shape.is_within_range(), InvalidModel::TableShape)?;
         let layout = Geometric::new(shape);
         ensure(layout.fits(), InvalidModel::TableShape)?;
