@@ -4,7 +4,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 tests/setup.sh
-cargo nextest run --workspace "$@"
+# With the tests, and so with the features that they ask of the dependencies: nothing is built twice.
+cargo build --workspace --tests --bin trainer
+FRIKAN_TRAINER="$(realpath "${CARGO_TARGET_DIR:-target}")/debug/trainer" cargo nextest run --workspace "$@"
 # The C library as it is by default is among them; here with all that it can have.
 cargo nextest run -p frikan-c --features auth,expression,network,effects "$@"
 cargo test --workspace --doc

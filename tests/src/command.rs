@@ -4,13 +4,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-/// The program `trainer` of this build; built first where it is not there yet.
+/// The program `trainer`: the one that `FRIKAN_TRAINER` names, else that of this build, built first where it is not there yet.
 ///
 /// # Panics
 /// When it cannot be built.
 pub fn trainer() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
+        if let Some(program) = std::env::var_os("FRIKAN_TRAINER") {
+            return program.into();
+        }
         let mut build = Command::new(env!("CARGO"));
         build.args(["build", "--quiet", "--package", "frikan-trainer", "--bin", "trainer"]);
         let this = std::env::current_exe().expect("a program has a path");
