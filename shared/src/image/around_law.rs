@@ -68,9 +68,10 @@ impl<'a> BehindLaw<'a> {
     /// Trained range of the input.
     #[inline(always)]
     pub(super) fn range(&self) -> [f32; 2] {
-        let mut fields = Fields::new(self.input);
-        fields.byte();
-        [fields.float(), fields.float()]
+        match self.input.first_chunk() {
+            Some(&[_unit, a, b, c, d, e, f, g, h]) => [[a, b, c, d], [e, f, g, h]].map(f32::from_le_bytes),
+            None => [0.0; 2],
+        }
     }
 
     /// So many cells from one on.

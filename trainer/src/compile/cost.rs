@@ -44,17 +44,17 @@ const FLOAT_STEPS: [(&str, Rows); 3] = [
     (
         "cortex-m0plus",
         [
-            (TABLE_ROW, [1125, 1533]),
-            (UNIFORM_ROW, [1414, 1946]),
-            (FORMULA_ROW, [3614, 6879]),
-            (NETWORK_ROW, [2485, 3021]),
+            (TABLE_ROW, [1170, 1629]),
+            (UNIFORM_ROW, [1486, 2043]),
+            (FORMULA_ROW, [3692, 7035]),
+            (NETWORK_ROW, [2557, 3138]),
         ],
     ),
     ("riscv32imac", RISCV_FLOAT_STEPS),
     ("riscv32imc", RISCV_FLOAT_STEPS),
 ];
 const RISCV_FLOAT_STEPS: Rows =
-    [(TABLE_ROW, [606, 887]), (UNIFORM_ROW, [887, 1238]), (FORMULA_ROW, [2312, 3929]), (NETWORK_ROW, [778, 1085])];
+    [(TABLE_ROW, [647, 944]), (UNIFORM_ROW, [945, 1298]), (FORMULA_ROW, [2373, 4022]), (NETWORK_ROW, [836, 1177])];
 
 /// Instructions of a step of the integer compensator, the same for every count; `tests/tests/emulation_integer.rs` counts them again.
 const INTEGER_STEPS: [(&str, u32); 3] = [("cortex-m0plus", 139), ("riscv32imac", 124), ("riscv32imc", 124)];
