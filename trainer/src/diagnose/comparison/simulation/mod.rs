@@ -94,10 +94,13 @@ pub struct InverseLaw {
 pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let law = learn_with(None, &prepared, given, None)?;
+    let unfitted = InverseLaw::unfitted(&prepared, given)?;
+    let law = unfitted.clone().relaxed(&prepared).learned(&prepared)?;
     let Some(ResidualNoise { noise, .. }) = residual_noise(real, &law) else { return Ok(law) };
     let simulated = simulated_effects(simulation, &law, noise, find_effects);
-    let mut law = if simulated.is_none() { law } else { learn_with(simulated, &prepared, given, None).unwrap_or(law) };
+    let holds_effects = simulated.is_some();
+    let with_effects = || InverseLaw { simulated, ..unfitted }.relaxed(&prepared).learned(&prepared);
+    let mut law = if holds_effects { with_effects().unwrap_or(law) } else { law };
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
     law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
@@ -111,62 +114,64 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
 pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, Unlearnable> {
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
-    let unfitted = learn_with(None, &prepared, given, None)?;
-    let turn_over = TurnOver::of(&InverseLaw { knots: KNOTS[0], relaxation_s: None, ..unfitted }, &prepared);
-    learn_with(None, &prepared, given, Some(turn_over))
-}
-
-/// The law with given effects in it.
-fn learn_with(
-    simulated: Option<SimulatedEffects>,
-    prepared: &Prepared,
-    given: bool,
-    turn_over: Option<TurnOver>,
-) -> Result<InverseLaw, Unlearnable> {
-    let state = &prepared.state;
-    let rows = prepared.rows.len();
-    if rows < LEAST_ROWS {
-        return Err(Unlearnable::Rest { rows });
-    }
-    let mut unfitted = InverseLaw {
-        sign_velocity: turn_over.map_or(state.sign_velocity, |of| of.width),
-        top_speed: state.top_speed(),
-        resolved_speed: state.resolved_speed().max(turn_over.map_or(0.0, |of| of.width)),
-        relaxation_s: None,
-        lead_s: turn_over.map_or(0.0, |of| of.lead_s),
-        knots: KNOTS[KNOTS.len() - 1],
-        gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
-        given,
-        simulated,
-        coefficients: Vec::new(),
-        uncertainty: Vec::new(),
-        replay: None,
-        formula_error: 0.0,
-        rmse: 0.0,
-    };
-    let columns = unfitted.with_nuisances(prepared, &unfitted.columns(state));
-    if turn_over.is_none() {
-        unfitted.relaxation_s =
-            relaxation_time(prepared, &columns, &prepared.filtered(&prepared.torque), LEAST_RELAXATION_SHARE);
-    }
-    let laws: Vec<(InverseLaw, Vec<f64>)> =
-        KNOTS.into_iter().filter_map(|knots| InverseLaw { knots, ..unfitted.clone() }.fitted(prepared)).collect();
-    // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
-    let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
-    let runs = prepared.open_runs();
-    let noise = Noise::fit(finest, &runs, &noise_features(prepared));
-    let criterion = |(law, rest): &(InverseLaw, Vec<f64>)| {
-        let white = noise.whitened(rest, &runs);
-        let rows = rows as f64;
-        2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
-    };
-    let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
-    let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
-    law.uncertainty = law.uncertain_directions(prepared, &rest, &noise);
-    Ok(law)
+    let unfitted = InverseLaw::unfitted(&prepared, given)?;
+    let TurnOver { lead_s, width } = TurnOver::of(&InverseLaw { knots: KNOTS[0], ..unfitted.clone() }, &prepared);
+    let resolved_speed = unfitted.resolved_speed.max(width);
+    InverseLaw { lead_s, sign_velocity: width, resolved_speed, ..unfitted }.learned(&prepared)
 }
 
 impl InverseLaw {
+    /// A static law without coefficients, whose friction turns over with the velocity and as sharply as the simulation resolves.
+    fn unfitted(prepared: &Prepared, given: bool) -> Result<Self, Unlearnable> {
+        let rows = prepared.rows.len();
+        if rows < LEAST_ROWS {
+            return Err(Unlearnable::Rest { rows });
+        }
+        let state = &prepared.state;
+        Ok(Self {
+            sign_velocity: state.sign_velocity,
+            top_speed: state.top_speed(),
+            resolved_speed: state.resolved_speed(),
+            relaxation_s: None,
+            lead_s: 0.0,
+            knots: KNOTS[KNOTS.len() - 1],
+            gravity: state.rotary && state.span() > GRAVITY_TRAVEL_RAD,
+            given,
+            simulated: None,
+            coefficients: Vec::new(),
+            uncertainty: Vec::new(),
+            replay: None,
+            formula_error: 0.0,
+            rmse: 0.0,
+        })
+    }
+
+    /// The same with the relaxation of the simulator's constraints beside it.
+    fn relaxed(self, prepared: &Prepared) -> Self {
+        let columns = self.with_nuisances(prepared, &self.columns(&prepared.state));
+        let torque = prepared.filtered(&prepared.torque);
+        Self { relaxation_s: relaxation_time(prepared, &columns, &torque, LEAST_RELAXATION_SHARE), ..self }
+    }
+
+    /// The law with its coefficients, at as many knots as the simulation bears.
+    fn learned(&self, prepared: &Prepared) -> Result<Self, Unlearnable> {
+        let laws: Vec<(Self, Vec<f64>)> =
+            KNOTS.into_iter().filter_map(|knots| Self { knots, ..self.clone() }.fitted(prepared)).collect();
+        // Weighed as the search weighs: a bend that a law lacks would be named there, however slow the noise that hides it.
+        let (_, finest) = laws.last().ok_or(Unlearnable::Undetermined)?;
+        let runs = prepared.open_runs();
+        let noise = Noise::fit(finest, &runs, &noise_features(prepared));
+        let criterion = |(law, rest): &(Self, Vec<f64>)| {
+            let white = noise.whitened(rest, &runs);
+            let rows = prepared.rows.len() as f64;
+            2.0 * rows * root_mean_square(&white).max(f64::MIN_POSITIVE).ln() + 2.0 * law.coefficients.len() as f64
+        };
+        let best = laws.iter().min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
+        let (mut law, rest) = best.cloned().ok_or(Unlearnable::Undetermined)?;
+        law.uncertainty = law.uncertain_directions(prepared, &rest, &noise);
+        Ok(law)
+    }
+
     /// Columns of the law behind the filter, then what is fitted beside it and left out: differentiation bias and the relaxation of
     /// the simulator's constraints.
     fn with_nuisances(&self, prepared: &Prepared, raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
