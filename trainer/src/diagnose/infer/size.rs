@@ -5,7 +5,7 @@ use crate::diagnose::infer::side::Side;
 use crate::diagnose::infer::weighing::Weighing;
 use crate::inference::evidence::Candidate;
 use crate::inference::sets::Member;
-use crate::numerics::least_squares::{fit_residual, weighted};
+use crate::numerics::least_squares::{orthonormal, project_out, weighted};
 use crate::numerics::statistics::root_mean_square;
 
 /// Standard deviations below its mean that a normal variable exceeds with 95 %.
@@ -30,11 +30,12 @@ pub(crate) struct Sizing<'a> {
 impl Sizing<'_> {
     /// Sizes of the members of a set.
     pub fn of(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member]) -> Vec<Size> {
+        let basis = orthonormal(&self.real.columns, &self.real.runs);
         let own = weighing.own(weighed, members);
         let model = weighing.model(weighed, members);
         let of_member = |member: &Member| {
             let places = self.candidates.places(std::slice::from_ref(member));
-            let beyond: Vec<Vec<f64>> = places.iter().map(|&place| self.beyond_base(place)).collect();
+            let beyond: Vec<Vec<f64>> = places.iter().map(|&place| self.beyond(&basis, place)).collect();
             let coefficients: Vec<f64> = places.iter().map(|&place| own[place]).collect();
             let torque = weighted(&beyond, &coefficients);
             let size = root_mean_square(&torque);
@@ -50,10 +51,10 @@ impl Sizing<'_> {
         members.iter().map(of_member).collect()
     }
 
-    /// A column at the weighed rows, less what the base takes of it.
-    fn beyond_base(&self, place: usize) -> Vec<f64> {
-        let column = &self.candidates.real[place];
-        let left = fit_residual(&self.real.columns, column, &self.real.runs);
-        self.real.on_rows(left.as_ref().unwrap_or(column))
+    /// A column at the weighed rows, less what the base, of that basis, takes of it.
+    fn beyond(&self, basis: &[Vec<f64>], place: usize) -> Vec<f64> {
+        let mut column = self.candidates.real[place].clone();
+        project_out(&mut column, basis, &self.real.runs);
+        self.real.on_rows(&column)
     }
 }
