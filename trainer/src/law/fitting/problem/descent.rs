@@ -91,8 +91,7 @@ impl Descent<'_, '_> {
 
     fn place(&self, psi: Vec<f64>) -> Place {
         let point = self.problem.at(&self.tape, &psi, self.pinned, &self.free);
-        let scale: Vec<f64> =
-            self.free.iter().map(|&k| if self.ranges[k].logarithmic { psi[k] } else { 1.0 }).collect();
+        let scale: Vec<f64> = (0..self.free.len()).map(|i| self.scale(&psi, i)).collect();
         let slope = |i: usize| scale[i] * dot(&point.jacobian[i], &point.residual);
         let product = |i: usize, j: usize| scale[i] * scale[j] * dot(&point.jacobian[i], &point.jacobian[j]);
         let n = self.free.len();
@@ -149,6 +148,12 @@ impl Descent<'_, '_> {
         None
     }
 
+    /// Change of a constant with a step of its own: its value where steps are in its logarithm.
+    fn scale(&self, psi: &[f64], i: usize) -> f64 {
+        let k = self.free[i];
+        if self.ranges[k].logarithmic { psi[k] } else { 1.0 }
+    }
+
     /// Whether a constant is at the end of its range, and lower sums lie beyond.
     fn is_stuck(&self, place: &Place, i: usize) -> bool {
         let (value, range) = (place.psi[self.free[i]], &self.ranges[self.free[i]]);
@@ -195,11 +200,7 @@ impl Bend {
             |bend: &DMatrix<f64>| -(2.0 * moved.dot(&from.slope) + moved.dot(&((&from.curvature + bend) * moved)));
         let miss = |bend: &DMatrix<f64>| (foretold(bend) - fall).abs();
         self.counts = miss(&self.matrix) < miss(&DMatrix::zeros(moved.len(), moved.len()));
-        let scale = |i: usize| {
-            let k = descent.free[i];
-            if descent.ranges[k].logarithmic { from.psi[k] } else { 1.0 }
-        };
-        let old_jacobian = |i: usize| scale(i) * dot(&from.point.jacobian[i], &to.point.residual);
+        let old_jacobian = |i: usize| descent.scale(&from.psi, i) * dot(&from.point.jacobian[i], &to.point.residual);
         let wanted = &to.slope - DVector::from_fn(moved.len(), |i, _| old_jacobian(i));
         let change = &to.slope - &from.slope;
         let along = moved.dot(&change);
