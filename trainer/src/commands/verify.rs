@@ -197,13 +197,7 @@ fn emulated(arguments: &Verify, image: &[u8], model: &HostModel, calls: &[Call])
     let answer = emulator.run(&Request { image, values: &values, inputs, outputs, mode, floating_point_control: 0 })?;
     let (answers, _) = answer.outputs.as_chunks::<ANSWER_WORDS>();
     let steps = compare_answers(model, calls, answers.iter().copied().map(Answer::from_words));
-    let footprint = emulator.footprint()?;
-    let cost = Cost {
-        instructions: answer.instruction_range(),
-        flash_bytes: footprint.flash_bytes + image.len() as u64,
-        ram_bytes: footprint.ram_bytes + u64::from(answer.model_bytes),
-        stack_bytes: u64::from(answer.decode_stack_bytes.max(answer.evaluate_stack_bytes)),
-    };
+    let cost = Cost::on_target(&answer, emulator.footprint()?, image);
     Ok(Found { steps, law: None, cost, in_integers: None })
 }
 
@@ -234,10 +228,7 @@ fn summary(arguments: &Verify, Found { steps, law, cost, in_integers }: &Found) 
             );
         }
     }
-    if let Some((least, most)) = cost.instructions {
-        text += &format!("{least} to {most} instructions a step, {} bytes of stack at the deepest\n", cost.stack_bytes);
-    }
-    text += &format!("{} bytes of flash, {} bytes of RAM\n", cost.flash_bytes, cost.ram_bytes);
+    text += &cost.text("");
     match (in_integers, cost::integer_step(&arguments.target)) {
         (Some(found), _) => text + &found.text(),
         (None, Some(instructions)) => {
@@ -282,7 +273,7 @@ fn as_json(arguments: &Verify, Found { steps, law, cost, in_integers }: &Found) 
         "steps": steps.compared,
         "steps_equal": steps.equal,
         "law": law.map(|law| json!({"compared": law.compared, "equal": law.equal, "first_difference": of_law})),
-        "instructions": cost.instructions.map(|(min, max)| json!({"min": min, "max": max})),
+        "instructions": cost.instructions_json(),
         "flash_bytes": cost.flash_bytes,
         "ram_bytes": cost.ram_bytes,
         "stack_bytes": cost.stack_bytes,

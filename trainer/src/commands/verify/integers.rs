@@ -69,12 +69,7 @@ pub(super) fn compare(place: Place<'_>, image: &[u8], model: &HostModel, drive: 
             let answer = emulator.run(&request)?;
             let drive = footprint(&firmware.build(emulator.target(), "drive-integer")?)?;
             let drive = drive.beyond(footprint(&firmware.build(emulator.target(), "bare")?)?);
-            let cost = Cost {
-                instructions: answer.instruction_range(),
-                flash_bytes: drive.flash_bytes + image.len() as u64,
-                ram_bytes: drive.ram_bytes + u64::from(answer.model_bytes),
-                stack_bytes: u64::from(answer.decode_stack_bytes.max(answer.evaluate_stack_bytes)),
-            };
+            let cost = Cost::on_target(&answer, drive, image);
             (answer.outputs.iter().map(|output| output.to_bits().cast_signed()).collect(), cost)
         }
     };
@@ -91,13 +86,7 @@ impl InIntegers {
         if let Some(IntegerDifference { step, call, computed, expected }) = &steps.first_difference {
             text += &format!("first difference at step {step}: {computed} where {expected} is expected\n{call:?}\n");
         }
-        if let Some((least, most)) = cost.instructions {
-            text += &format!(
-                "in integers {least} to {most} instructions a step, {} bytes of stack at the deepest\n",
-                cost.stack_bytes
-            );
-        }
-        text + &format!("in integers {} bytes of flash, {} bytes of RAM\n", cost.flash_bytes, cost.ram_bytes)
+        text + &cost.text("in integers ")
     }
 
     /// For `--json`.
@@ -113,7 +102,7 @@ impl InIntegers {
             "steps": steps.compared,
             "steps_equal": steps.equal,
             "first_difference": difference,
-            "instructions": cost.instructions.map(|(min, max)| json!({"min": min, "max": max})),
+            "instructions": cost.instructions_json(),
             "flash_bytes": cost.flash_bytes,
             "ram_bytes": cost.ram_bytes,
             "stack_bytes": cost.stack_bytes,
