@@ -165,7 +165,7 @@ pub(super) struct Header {
 }
 
 #[inline]
-pub(super) fn header(bytes: &[u8]) -> Result<Header, ImageError> {
+fn header(bytes: &[u8]) -> Result<Header, ImageError> {
     let (head, _) = bytes.split_first_chunk::<HEADER_BYTES>().ok_or(ImageError::Truncated)?;
     let [magic, version_and_cells, length, crc32] = head.as_chunks().0 else { return Err(ImageError::Truncated) };
     if *magic != MAGIC {
@@ -209,7 +209,7 @@ pub fn image_crc32(bytes: &[u8]) -> Result<u32, ImageError> {
 
 /// The payload behind a header, its checksum verified; what follows is not looked at.
 #[inline]
-pub(super) fn verified_payload<'a>(header: &Header, bytes: &'a [u8]) -> Result<&'a [u8], ImageError> {
+fn verified_payload<'a>(header: &Header, bytes: &'a [u8]) -> Result<&'a [u8], ImageError> {
     let (head, rest) = bytes.split_first_chunk::<HEADER_BYTES>().ok_or(ImageError::Truncated)?;
     let payload = rest.get(..header.payload_bytes).ok_or(ImageError::Truncated)?;
     let (covered, _) = head.split_first_chunk::<COVERED_HEADER_BYTES>().ok_or(ImageError::Truncated)?;
@@ -223,5 +223,13 @@ pub(super) fn verified(bytes: &[u8]) -> Result<(Header, &[u8]), ImageError> {
         return Err(ImageError::TrailingBytes);
     }
     let payload = verified_payload(&header, bytes)?;
+    Ok((header, payload))
+}
+
+/// Header and payload of the image at the start of a region, its checksum verified; what follows is not looked at.
+#[inline(always)]
+pub(super) fn verified_at_start(flash: &[u8]) -> Result<(Header, &[u8]), ImageError> {
+    let header = header(flash)?;
+    let payload = verified_payload(&header, flash)?;
     Ok((header, payload))
 }

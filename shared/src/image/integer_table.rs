@@ -2,7 +2,7 @@
 
 use super::around_law::{BeforeLaw, BehindLaw, Cells, symmetry};
 use super::fields::Fields;
-use super::header::{Header, ImageError, header, verified, verified_payload};
+use super::header::{Header, ImageError, verified, verified_at_start};
 use crate::integer_table::{SEGMENTS, largest_value, segment_starts};
 use crate::invalid::InvalidModel;
 use crate::table::Symmetry;
@@ -54,8 +54,7 @@ impl<'a> IntegerTableImage<'a> {
     /// Those of [`IntegerTableImage::read`].
     #[inline(always)]
     pub fn at_start(flash: &'a [u8]) -> Result<Self, ImageError> {
-        let header = header(flash)?;
-        let payload = verified_payload(&header, flash)?;
+        let (header, payload) = verified_at_start(flash)?;
         Self::of_payload(&header, payload)
     }
 

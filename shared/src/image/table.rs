@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use super::around_law::{BeforeLaw, BehindLaw, Cells, symmetry};
 use super::fields::Fields;
-use super::header::{Header, ImageError, header, verified, verified_payload};
+use super::header::{Header, ImageError, verified, verified_at_start};
 use crate::invalid::{InvalidModel, ensure};
 use crate::table::{Geometric, GeometricShape, is_usable};
 use crate::units::Unit;
@@ -41,8 +41,7 @@ impl<'a> TableImage<'a> {
     /// Those of [`TableImage::read`].
     #[inline(always)]
     pub fn at_start(flash: &'a [u8]) -> Result<Self, ImageError> {
-        let header = header(flash)?;
-        let payload = verified_payload(&header, flash)?;
+        let (header, payload) = verified_at_start(flash)?;
         Self::of_payload(&header, payload)
     }
 
