@@ -119,11 +119,10 @@ impl Actuator {
         }
         match self.kind {
             Kind::Torque => Applied { torque: command.effort, ..Applied::default() },
-            Kind::Current => self.limited(Applied {
-                torque: self.gain * command.effort,
-                by_gain: command.effort,
-                ..Applied::default()
-            }),
+            Kind::Current => {
+                let (torque, by_gain) = (self.gain * command.effort, command.effort);
+                self.limited(Applied { torque, by_gain, ..Applied::default() }, motion)
+            }
             Kind::DcMotor if command.is_voltage => self.motor(command.effort, false, motion),
             Kind::DcMotor => self.under_duty(command.effort, command, motion),
             Kind::PositionServo => {
@@ -144,12 +143,7 @@ impl Actuator {
         let error = self.error(command, motion);
         let torque = command.kp * error + self.kd * command.reference_velocity + command.feed_forward;
         let by_kd = command.reference_velocity - motion.velocity;
-        let applied = Applied { torque, damping: self.kd, by_kp: error, by_kd, ..Applied::default() };
-        let whole = torque - self.kd * motion.velocity;
-        if whole.abs() <= self.limits.torque {
-            return applied;
-        }
-        Applied { torque: self.limits.torque.copysign(whole), limited: true, ..Applied::default() }
+        self.limited(Applied { torque, damping: self.kd, by_kp: error, by_kd, ..Applied::default() }, motion)
     }
 
     /// A duty cycle of the supply, whose voltage sags with the current: at stall that is duty times voltage over the resistance, and the
@@ -161,21 +155,24 @@ impl Actuator {
     }
 
     fn motor(&self, voltage: f64, limited: bool, motion: Motion) -> Applied {
-        Applied {
+        let applied = Applied {
             torque: self.gain * voltage,
             damping: self.back_emf,
             by_gain: voltage,
             by_back_emf: -motion.velocity,
             limited,
             ..Applied::default()
-        }
+        };
+        self.limited(applied, motion)
     }
 
-    fn limited(&self, applied: Applied) -> Applied {
-        if applied.torque.abs() <= self.limits.torque {
+    /// No more than the limit of the torque, which of a motor is that of its current.
+    fn limited(&self, applied: Applied, motion: Motion) -> Applied {
+        let whole = applied.at(motion.velocity);
+        if whole.abs() <= self.limits.torque {
             return applied;
         }
-        Applied { torque: self.limits.torque.copysign(applied.torque), limited: true, ..Applied::default() }
+        Applied { torque: self.limits.torque.copysign(whole), limited: true, ..Applied::default() }
     }
 }
 
@@ -223,6 +220,9 @@ mod tests {
         assert!((applied.at(0.4) - (0.1 * 8.0 * duty - 0.03 * 0.4)).abs() < 1e-12);
         let stuck = servo().apply(&Command { kp: 1000.0, ..ON }, MOTION);
         assert!((stuck.torque - 0.8).abs() < 1e-12 && stuck.limited && stuck.damping == 0.03);
+        let short = Limits { torque: 0.5, ..servo().limits };
+        let held = Actuator { limits: short, ..servo() }.apply(&Command { kp: 1000.0, ..ON }, MOTION);
+        assert_eq!((held.torque, held.damping, held.limited), (0.5, 0.0, true));
         let band = Actuator { dead_band: 0.2, ..servo() }.apply(&ON, MOTION);
         assert_eq!(band.torque, 0.0);
         assert_eq!(servo().apply(&Command { enabled: false, ..ON }, MOTION), Applied::default());

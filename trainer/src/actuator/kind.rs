@@ -56,9 +56,17 @@ impl Kind {
         match self {
             Self::Torque => &[Delay],
             Self::Current => &[TorqueConstant, TorqueLimit, Delay],
-            Self::DcMotor => {
-                &[TorqueConstant, Resistance, TorquePerVolt, BackEmf, Supply, SupplyResistance, DutyLimit, Delay]
-            }
+            Self::DcMotor => &[
+                TorqueConstant,
+                Resistance,
+                TorquePerVolt,
+                BackEmf,
+                Supply,
+                SupplyResistance,
+                DutyLimit,
+                TorqueLimit,
+                Delay,
+            ],
             Self::Pd => &[Kp, Kd, TorqueLimit, DeadBand, Delay, VelocityLimit],
             Self::PositionServo => &[
                 TorqueConstant,
@@ -68,6 +76,7 @@ impl Kind {
                 Supply,
                 SupplyResistance,
                 DutyLimit,
+                TorqueLimit,
                 FirmwareKp,
                 FirmwareErrorGain,
                 DeadBand,

@@ -137,6 +137,7 @@ impl Partial {
             Kind::Pd => vec![(Constant::Kp, actuator.kp), (Constant::Kd, actuator.kd)],
         };
         constants.push((Constant::Delay, actuator.delay_s));
+        constants.extend(actuator.limits.torque.is_finite().then_some((Constant::TorqueLimit, actuator.limits.torque)));
         constants
     }
 }

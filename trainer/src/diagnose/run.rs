@@ -198,7 +198,8 @@ fn diagnose_locked(
     } else {
         let found = accepted.iter().enumerate();
         let told = |(index, effect)| finding(workbench, effect, &accepted, index, &improved);
-        found.map(told).map(|finding| if shows_gain { finding } else { finding.without_shown_gain() }).collect()
+        let is_weighed = inferred.is_some();
+        found.map(told).map(|f| if is_weighed || shows_gain { f } else { f.without_shown_gain() }).collect()
     };
     let verdict = Verdict::of(&findings, blocked);
     let mut traces = Traces::of(workbench, &baseline, &improved);

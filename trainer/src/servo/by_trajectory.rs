@@ -27,6 +27,8 @@ const FIRST_WINDOW_S: f64 = 0.5;
 /// Where the search begins beside what torque space says: a gear that turns this share of the torque into friction, with gains so much larger.
 /// In torque space the gain makes up for friction that is proportional to it, and from there the way is long.
 const LOSSY: (f64, f64) = (0.5, 1.4);
+/// Where the search for the limit of a motor begins, over the largest torque that its commands ask for: below it, so that it shows.
+const FIRST_LIMIT: f64 = 0.9;
 /// The model never puts out more than this multiple of the largest friction that the recordings ask for.
 const LIMIT_OVER_LARGEST: f64 = 1.5;
 
@@ -62,14 +64,18 @@ pub(super) fn by_trajectory(
     let applied: Vec<f64> = commanded.iter().flat_map(|one| torques(one, identified)).collect();
     let velocities: Vec<f64> = commanded.iter().flat_map(Commanded::velocities).collect();
     let (torque, speed) = (root_mean_square(&applied), top_speed(&velocities));
-    let delay_is_open = joint.actuator.constants.get(&Constant::Delay).is_none_or(|known| known.given().is_none());
+    let is_open = |constant| joint.actuator.constants.get(&constant).is_none_or(|known| known.given().is_none());
     let kind = joint.actuator.kind;
+    let delay_is_open = is_open(Constant::Delay);
+    let range = applied.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
+    let limit = (kind.is_motor() && is_open(Constant::TorqueLimit)).then_some(FIRST_LIMIT * range);
     let window_s = default_window_s(kind);
     let mut best: Option<Shot> = None;
     let mut failure = None;
     let own = identified.load.clamp(0.0, LOSSY.0);
     for (load, gain) in [(own, 1.0), LOSSY] {
         let begin = begin(start, identified, &all, (load, gain), torque);
+        let begin = Candidate { torque_limit: limit.map(|limit| gain * limit), ..begin };
         let moved = moved(&begin, open, torque, speed, delay_is_open && kind.follows_position());
         let first = shoot(&commanded, begin, &moved, Some(FIRST_WINDOW_S));
         let whole = first.and_then(|first| match window_s {
@@ -82,10 +88,10 @@ pub(super) fn by_trajectory(
             Err(error) => failure = Some(error),
         }
     }
-    let Some(shot) = best else {
+    let Some(mut shot) = best else {
         return Err(failure.unwrap_or_else(|| Error::new(&codes::DIVERGED, "no start could be simulated")));
     };
-    let range = applied.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
+    shot.forget_unreached_limit();
     let model = model(start, &shot.candidate, speed, range)?;
     let identified = told(identified, &shot, open);
     let parameters = parameters(&shot, joint);
@@ -131,6 +137,7 @@ fn begin(
         open: values,
         back_emf: identified.back_emf,
         delay_s: identified.partial.actuator.delay_s,
+        torque_limit: None,
     }
 }
 
@@ -174,7 +181,7 @@ fn told(identified: &Identified, shot: &Shot, open: &[Open]) -> Identified {
             after.set(*constant, value);
         }
     }
-    after.set_rest(shot.candidate.back_emf, shot.candidate.delay_s);
+    after.set_rest(shot.candidate.back_emf, shot.candidate.delay_s, shot.candidate.torque_limit);
     after
 }
 
@@ -185,6 +192,7 @@ fn parameters(shot: &Shot, joint: &Joint) -> Vec<Parameter> {
             What::Actuator(constant) => super::torque_space::described(kind, *constant),
             What::BackEmf => ("back_emf", "k²/R", "N m s/rad"),
             What::Delay => ("delay", "T_d", "s"),
+            What::TorqueLimit => ("torque_limit", "τ_max", "N m"),
             What::Inertia => ("inertia", "J", "kg m²"),
             What::Offset => ("torque_offset", "τ_0", "N m"),
             What::Coulomb => ("coulomb_torque", "F_c", "N m"),

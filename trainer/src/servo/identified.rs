@@ -26,6 +26,8 @@ pub struct Identified {
     pub(super) back_emf: Option<f64>,
     /// Delay where that was identified, s.
     pub(super) delay_s: Option<f64>,
+    /// Largest torque of a motor where that was identified, N m.
+    pub(super) torque_limit: Option<f64>,
     /// Friction of the gear per torque of its actuator.
     pub(super) load: f64,
 }
@@ -54,8 +56,12 @@ impl Identified {
         self.partial = self.partial.clone().with(open, value);
     }
 
-    /// The same with another loss and delay.
-    pub(super) fn set_rest(&mut self, back_emf: Option<f64>, delay_s: f64) {
+    /// The same with another loss, delay and limit.
+    pub(super) fn set_rest(&mut self, back_emf: Option<f64>, delay_s: f64, torque_limit: Option<f64>) {
+        self.torque_limit = torque_limit;
+        if let Some(limit) = torque_limit {
+            self.partial.actuator.limits.torque = limit;
+        }
         self.back_emf = back_emf;
         if let Some(back_emf) = back_emf {
             self.partial.actuator.back_emf = back_emf;
@@ -77,6 +83,9 @@ impl Identified {
         }
         if let Some(delay_s) = self.delay_s {
             complete.actuator.delay_s = delay_s;
+        }
+        if let Some(limit) = self.torque_limit {
+            complete.actuator.limits.torque = limit;
         }
         complete
     }

@@ -24,6 +24,9 @@ const ROBUST_DEVIATIONS: f64 = 1.5;
 /// Errors of the position within this time tell the same, s: from the decay of a joint's own motion.
 const CORRELATION_S: f64 = 0.2;
 
+/// Least limit of a torque over the one where the search begins: without torque nothing moves and no constant shows.
+const LEAST_LIMIT: f64 = 0.1;
+
 /// A constant that is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Moved {
@@ -40,6 +43,7 @@ pub(super) enum What {
     Actuator(Open),
     BackEmf,
     Delay,
+    TorqueLimit,
     Inertia,
     Offset,
     Coulomb,
@@ -62,6 +66,8 @@ pub(super) struct Candidate {
     /// Loss of a motor by its velocity where coasting shows it, N m s/rad.
     pub(super) back_emf: Option<f64>,
     pub(super) delay_s: f64,
+    /// Largest torque of a motor where that is not given, N m.
+    pub(super) torque_limit: Option<f64>,
 }
 
 /// Where shooting ended.
@@ -73,6 +79,17 @@ pub(super) struct Shot {
     pub(super) converged: bool,
     /// Mean absolute error of the position, rad.
     pub(super) mae: f64,
+}
+
+impl Shot {
+    /// A limit that the torque stays below changes nothing and is none.
+    pub(super) fn forget_unreached_limit(&mut self) {
+        let is_unreached = |(what, half): &(What, f64)| *what == What::TorqueLimit && !half.is_finite();
+        if self.half_widths.iter().any(is_unreached) {
+            self.candidate.torque_limit = None;
+            self.half_widths.retain(|told| !is_unreached(told));
+        }
+    }
 }
 
 pub(super) fn place(open: Open) -> usize {
@@ -89,6 +106,7 @@ impl Candidate {
             What::Actuator(open) => self.open[place(open)].unwrap_or(0.0),
             What::BackEmf => self.back_emf.unwrap_or(0.0),
             What::Delay => self.delay_s,
+            What::TorqueLimit => self.torque_limit.unwrap_or(f64::INFINITY),
             What::Inertia => self.inertia,
             What::Offset => self.offset,
             What::Coulomb => self.friction.coulomb,
@@ -104,6 +122,7 @@ impl Candidate {
             What::Actuator(open) => self.open[place(open)] = Some(value),
             What::BackEmf => self.back_emf = Some(value),
             What::Delay => self.delay_s = value,
+            What::TorqueLimit => self.torque_limit = Some(value),
             What::Inertia => self.inertia = value,
             What::Offset => self.offset = value,
             What::Coulomb => self.friction.coulomb = value,
@@ -127,6 +146,9 @@ impl Candidate {
             complete.actuator.back_emf = back_emf;
         }
         complete.actuator.delay_s = self.delay_s;
+        if let Some(limit) = self.torque_limit {
+            complete.actuator.limits.torque = limit;
+        }
         complete
     }
 
@@ -165,6 +187,9 @@ pub(super) fn moved(start: &Candidate, open: &[Open], torque: f64, speed: f64, d
         positive(What::Viscous, 0.1 * torque / speed),
         Moved { what: What::Load, scale: 0.1, low: 0.0, high: 0.95 },
     ]);
+    moved.extend(
+        start.torque_limit.map(|limit| Moved { low: LEAST_LIMIT * limit, ..positive(What::TorqueLimit, limit) }),
+    );
     moved.extend(start.back_emf.map(|_| positive(What::BackEmf, 0.1 * torque / speed)));
     moved.extend(delay_is_open.then_some(Moved { what: What::Delay, scale: 0.01, low: 0.0, high: 0.1 }));
     moved

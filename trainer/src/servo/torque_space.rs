@@ -55,6 +55,7 @@ pub(super) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identi
         open: open.clone(),
         back_emf: None,
         delay_s: None,
+        torque_limit: None,
         load: 0.0,
     };
     let kind = first.partial.actuator.kind;

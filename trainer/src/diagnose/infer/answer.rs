@@ -9,7 +9,7 @@ use crate::inference::sets::{Member, Set};
 use crate::physics::EffectId;
 use serde::Serialize;
 
-/// Probability of an effect together with all that may stand in for it, above which it is told: more likely than not.
+/// Probability above which an effect is named: more likely than not.
 const TOLD_FROM: f64 = 0.5;
 
 /// Torque of an effect beyond what base and common columns could take, over the friction (root mean squares), below which it is listed
@@ -47,7 +47,7 @@ impl Inferred {
         sets
     }
 
-    /// The members of the likeliest set of which something is more likely than not to be missing; and effects that do not exceed the share
+    /// The members of the likeliest set that are more likely than not to be missing; and effects that do not exceed the share
     /// `least` of the friction with 95 %, with their torque (root mean square).
     pub fn accepted(&self, least: f64) -> (Vec<Accepted>, Vec<(EffectId, f64)>) {
         let Some(set) = self.posterior.likeliest() else { return (Vec::new(), Vec::new()) };
@@ -80,8 +80,7 @@ impl Inferred {
                 None => alternatives.push((effect, *of_rival)),
             }
         }
-        let together = probability + alternatives.iter().map(|(_, probability)| probability).sum::<f64>();
-        if together < TOLD_FROM {
+        if probability < TOLD_FROM {
             return None;
         }
         let without: Vec<usize> = set.key().into_iter().filter(|other| *other != member.candidate).collect();

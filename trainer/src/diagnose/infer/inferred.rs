@@ -10,6 +10,7 @@ use crate::diagnose::noise::autoregression::Noise;
 use crate::inference::evidence::Model;
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
+use crate::numerics::least_squares::weighted;
 use crate::physics::Hypothesis;
 
 /// Rounds of noise, sets and refined shapes: the second has the noise of what the first found. A limit of the computing time.
@@ -64,13 +65,14 @@ pub(crate) fn infer(
             null = Some(weighing.null(&weighed, &likeliest, seed));
         }
         let left = weighing.left(&candidates, real, &weighed, &likeliest);
+        let of_members = weighted(&candidates.real, &weighing.own(&weighed, &likeliest));
         refine_shapes(hypotheses, &mut candidates, (real, simulated), &weighing, &field, &posterior, &noise);
         candidates = candidates.only(|member| {
             weighed[member.candidate].variants.len() <= member.variant
                 || useful.binary_search(&member).is_ok()
                 || weighing.shown.contains(&member)
         });
-        noise = Noise::fit(&left, &real.runs, &real.features);
+        noise = Noise::fit(&left, &real.runs, &real.features_beside(&of_members, &left));
         weighing = Weighing::new(&candidates, real, simulated, &noise, friction);
     }
     let weighed = candidates.weighed(friction, weighing.random());

@@ -4,6 +4,7 @@ use crate::diagnose::comparison::base::{Base, Delay};
 use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
+use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Hypothesis, JointState};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -76,6 +77,14 @@ impl<'a> Side<'a> {
     /// Columns behind the noise's whitening filter, on the weighed rows alone.
     pub fn whitened(&self, columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
         columns.par_iter().map(|column| self.on_rows(&noise.whitened(column, &self.runs))).collect()
+    }
+
+    /// What the variance of the noise depends on beside effects of some torque, which leave a residual: a joint follows the formula of a strong
+    /// effect only roughly, and what the formula leaves where the effect acts is no other effect.
+    pub fn features_beside(&self, effects: &[f64], left: &[f64]) -> Vec<Vec<f64>> {
+        let noise = root_mean_square(&self.on_rows(left)).max(f64::MIN_POSITIVE);
+        let feature = effects.iter().map(|torque| (torque / noise).powi(2).ln_1p()).collect();
+        self.features.iter().cloned().chain([feature]).collect()
     }
 
     /// A column on the weighed rows alone.

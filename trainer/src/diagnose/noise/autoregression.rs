@@ -62,7 +62,7 @@ impl Noise {
         Self { colour, deviation, rms: (energy / count.max(1) as f64).sqrt(), spread }
     }
 
-    /// The same noise at other rows, by their features.
+    /// The same noise at other rows, by their features; those that are not given there are zero.
     #[must_use]
     pub(crate) fn at_rows_of(&self, features: &[Vec<f64>]) -> Self {
         let rows = features.first().map_or(0, Vec::len);
