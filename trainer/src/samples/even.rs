@@ -26,12 +26,20 @@ impl EvenClock {
     /// # Errors
     /// `FRK-D009` when there is no clock.
     pub fn of(recording: &Recording) -> Result<Self> {
+        Self::at(recording, None)
+    }
+
+    /// The same with a period (s) for a clock that jitters.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn at(recording: &Recording, jittering_s: Option<f64>) -> Result<Self> {
         let time = recording.values(Quantity::Time).ok_or_else(|| {
             Error::new(&codes::MISSING_COLUMN, "a diagnosis needs the time of every sample")
                 .in_file(recording.file())
                 .in_column("time_s")
         })?;
-        let grid = Grid::of(recording, time);
+        let grid = Grid::at(recording, time, jittering_s);
         let mut even = Self {
             period_s: grid.period_s,
             time: Vec::new(),

@@ -34,6 +34,11 @@ pub(super) struct Segment {
 impl Grid {
     /// The grid of the mean period; a gap of the clock and a new `trajectory` begin a new segment.
     pub(super) fn of(recording: &Recording, time: &[f64]) -> Self {
+        Self::at(recording, time, None)
+    }
+
+    /// The grid of a period (s) where the clock jitters and values are interpolated anyway, else of the mean one.
+    pub(super) fn at(recording: &Recording, time: &[f64], jittering_s: Option<f64>) -> Self {
         let health = &recording.health;
         let resampled = health.jitter > UNIFORM_JITTER;
         let mut bounds: Vec<usize> = std::iter::once(0).chain(health.gaps.iter().copied()).collect();
@@ -51,7 +56,8 @@ impl Grid {
             span += time[pair[1] - 1] - time[pair[0]];
             steps += pair[1] - pair[0] - 1;
         }
-        let period_s = if steps > 0 { span / steps as f64 } else { 1.0 };
+        let mean_s = if steps > 0 { span / steps as f64 } else { 1.0 };
+        let period_s = jittering_s.filter(|_| resampled).unwrap_or(mean_s);
         let segments = bounds
             .windows(2)
             .map(|pair| {

@@ -25,7 +25,7 @@ pub(super) fn reference_inertia(recordings: &[Recording], joint: &Joint) -> f64 
 ///
 /// # Errors
 /// As `identify`.
-pub(super) fn known_torque(
+pub(crate) fn known_torque(
     recording: &Recording,
     joint: &Joint,
     identified: &Identified,

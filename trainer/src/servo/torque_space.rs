@@ -35,7 +35,7 @@ const ENABLED: &str = "actuator_enabled";
 ///
 /// # Errors
 /// `FRK-D009` and `FRK-D014` for columns and constants that are missing, `FRK-N005` for a constant that the recordings do not determine.
-pub(super) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identified> {
+pub(crate) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identified> {
     let commanded = recordings.iter().map(|recording| Commanded::of(recording, joint)).collect::<Result<Vec<_>>>()?;
     let first = commanded.first().ok_or_else(|| Error::new(&codes::RECORDINGS_DISAGREE, "no recording is given"))?;
     let all = open_constants(&commanded);

@@ -59,8 +59,16 @@ impl Signals {
     /// `FRK-D009` when clock, motion or actuator is missing, `FRK-D010` when its unit is not understood, `FRK-D014` for a rigid body
     /// given in N m beside a current without a torque constant.
     pub fn of(recording: &Recording, joint: &Joint) -> Result<Self> {
+        Self::behind(None, recording, joint)
+    }
+
+    /// The same of a recording that is put behind an earlier one: where both clocks jitter, on the period of that.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn behind(before: Option<&Self>, recording: &Recording, joint: &Joint) -> Result<Self> {
         let (recording, spikes) = &without_spikes(recording);
-        let even = EvenClock::of(recording)?;
+        let even = EvenClock::at(recording, before.filter(|before| before.resampled).map(|before| before.period))?;
         let owned = |quantity| even.values(quantity).map(<[f64]>::to_vec);
         let actuator = recording.actuator();
         let channel = actuator.or_else(|| recording.separated_friction());

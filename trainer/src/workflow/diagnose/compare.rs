@@ -1,5 +1,6 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
+use super::commanded::under_torque;
 use super::one_joint::{refuse_diverged, refuse_other_joint};
 use super::request::{Against, Request};
 use crate::diagnose::comparison::from_model;
@@ -13,6 +14,7 @@ use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{Quantity, Recording};
+use crate::servo::Identified;
 use crate::workflow::recordings::{Source, motion, units};
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
@@ -45,9 +47,13 @@ impl Compared {
 }
 
 /// The real recordings and what they are compared with.
-pub(super) fn comparison(request: &Request<'_>, real: &[Recording], joint: &Joint) -> Result<(Comparison, Compared)> {
+pub(super) fn comparison(
+    request: &Request<'_>,
+    (real, actuator): (&[Recording], Option<&Identified>),
+    joint: &Joint,
+) -> Result<(Comparison, Compared)> {
     if let Against::Simulation(source) = request.against {
-        let simulated = simulated(source, &real[0], joint)?;
+        let simulated = simulated(source, &real[0], joint, actuator)?;
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
@@ -85,9 +91,9 @@ fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> 
 }
 
 /// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.
-fn simulated(source: Source<'_>, real: &Recording, joint: &Joint) -> Result<Recording> {
+fn simulated(source: Source<'_>, real: &Recording, joint: &Joint, known: Option<&Identified>) -> Result<Recording> {
     let joint = joint.of_simulation();
-    let mut simulated = motion(source.read(&joint)?, &joint)?.0;
+    let mut simulated = under_torque(motion(source.read(&joint)?, &joint)?.0, &joint, known)?;
     let actuator = |recording: &Recording| recording.actuator().map(|channel| channel.unit);
     let beside_current = actuator(real) == Some("A") && matches!(actuator(&simulated), Some("Nm" | "N"));
     if beside_current && joint.drive.torque_constant_nm_a.is_some() {
@@ -104,7 +110,7 @@ fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
     let mut all = first.clone();
     for next in &real[1..] {
         same_units(&real[0], next)?;
-        let signals = Signals::of(next, joint)?;
+        let signals = Signals::behind(Some(&first), next, joint)?;
         refuse_other_joint(&first, &signals, [&real[0], next])?;
         all.append(signals)
             .map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()).in_file(next.file()))?;

@@ -1,5 +1,6 @@
 //! From recordings and what they are compared with to a diagnosis that tells itself.
 
+mod commanded;
 mod compare;
 mod one_joint;
 mod request;
@@ -34,6 +35,8 @@ use crate::recording::{Quantity, Recording};
 use crate::report::tell::evidence::planned_motion;
 use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
+use crate::servo::Identified;
+use commanded::under_torque;
 use compare::{Compared, comparison};
 pub use request::{Against, BaseKind, Request};
 use sealed::sealed_score;
@@ -58,6 +61,8 @@ pub struct Diagnosed {
     story: Story,
     units: Units,
     seed: u64,
+    /// What is known of the actuator of a joint that reports no torque.
+    actuator: Option<Identified>,
 }
 
 /// The improved model of a diagnosis.
@@ -89,8 +94,14 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let begin = Instant::now();
     let (recordings, warnings) =
         load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint))?;
-    let real = recordings.first().ok_or_else(|| Error::new(&codes::USAGE, "there is no recording to diagnose"))?;
-    let (comparison, compared) = comparison(request, &recordings, joint)?;
+    if recordings.is_empty() {
+        return Err(Error::new(&codes::USAGE, "there is no recording to diagnose"));
+    }
+    let actuator = commanded::actuator(request, &recordings, joint)?;
+    let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref()));
+    let recordings = recordings.collect::<Result<Vec<_>>>()?;
+    let real = &recordings[0];
+    let (comparison, compared) = comparison(request, (&recordings, actuator.as_ref()), joint)?;
     let units = units(real);
     let options = Options {
         base: match request.against {
@@ -127,6 +138,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         advice,
         story,
         units,
+        actuator,
     })
 }
 
@@ -134,7 +146,8 @@ impl Diagnosed {
     /// The result for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
-        text_of(&self.story, self.advice.as_ref())
+        let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", commanded::sentence(actuator)));
+        text_of(&self.story, self.advice.as_ref()) + &actuator.unwrap_or_default()
     }
 
     /// The result as JSON, schema `frikan.diagnose/1`.
@@ -147,7 +160,11 @@ impl Diagnosed {
             sealed: self.sealed(),
             units: self.units,
         };
-        summary(&told, self.seconds, self.seed)
+        let mut summary = summary(&told, self.seconds, self.seed);
+        if let Some(actuator) = &self.actuator {
+            summary["actuator"] = commanded::constants(actuator);
+        }
+        summary
     }
 
     /// The result as one HTML page; `compared_with` names what the recording was compared with, `remarks` are sentences on the image,
