@@ -111,7 +111,8 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         lock: request.lock,
         settings: Settings { seed: request.seed, ..Settings::default() },
         least_effect: request.least_effect,
-        by_likelihood: request.by_likelihood,
+        // Errors of a torque that follows from position are those of both sides, and common columns take them up.
+        by_likelihood: request.by_likelihood || actuator.is_some() && matches!(request.against, Against::Simulation(_)),
     };
     stage("weighing every effect against the noise");
     let mut diagnosis = run::diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
