@@ -63,7 +63,7 @@ fn riscv32imc_steps_as_the_reference() {
 
 #[test]
 fn an_integer_step_is_small_and_constant_on_cortex_m0plus() {
-    small_and_constant_on("cortex-m0plus", 2_080);
+    small_and_constant_on("cortex-m0plus", 2_048);
 }
 
 #[test]
