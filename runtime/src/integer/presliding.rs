@@ -6,6 +6,7 @@ use crate::laws::integer_table::{positive_part, sign};
 
 /// Why a presliding is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PreslidingError {
     /// The torque is more than the least friction while sliding, or that is 0 or more than [`LARGEST_TORQUE_COUNTS`].
     Torque,
