@@ -1,7 +1,7 @@
 //! The integer compensator on the emulated drives without floating-point unit: the bits of the reference at every count, and what it costs.
 
 use frikan_runtime::integer::Units;
-use frikan_tests::cost::{UNITS, count_integer_steps, run_integer_steps};
+use frikan_tests::cost::{Documented, UNITS, count_integer_steps, run_integer_steps};
 use frikan_tests::models::{integer_table, sided_integer_table};
 use frikan_trainer::compile::cost::integer_step;
 use frikan_trainer::compile::integers::steps::{compare_integer_answers, integer_calls};
@@ -47,6 +47,7 @@ fn small_and_constant_on(target: &str, flash_bytes: u64) {
         // What `fit` and `verify` say.
         assert_eq!(integer_step(target), Some(most), "{name} on {target}");
         assert!(stack[0] <= START_STACK_BYTES && stack[1] <= STEP_STACK_BYTES, "{name}: {stack:?} bytes of stack");
+        Documented::of(target, "integer compensator, its table in flash").holds("step, instructions", most.into());
     }
     assert!(flash <= flash_bytes, "{flash} bytes of flash on {target}");
 }

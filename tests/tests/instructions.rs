@@ -3,7 +3,7 @@
 
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::model::Law;
-use frikan_tests::cost::{count, count_integer, count_steps};
+use frikan_tests::cost::{Documented, count, count_integer, count_steps};
 use frikan_tests::models;
 use frikan_trainer::compile::cost::{float_step, float_term, instructions};
 use frikan_trainer::emulator::{Emulator, Firmware};
@@ -56,6 +56,10 @@ fn every_step_is_constant_on(target: &str, budgets: &[(&str, u32)]) {
         all.map(|(name, model)| (name, count_steps(&emulator, &model).unwrap().instruction_range().unwrap())).collect();
     for (name, (fewest, most)) in &counted {
         assert_eq!(fewest, most, "a step of {name} on {target} is not constant");
+        // The page has no row for what no drive has.
+        if !["every operation", "integer table"].contains(&name.as_str()) {
+            Documented::of(target, name).holds("step, instructions", (*most).into());
+        }
     }
     for (name, budget) in budgets {
         let (_, (_, most)) = counted.iter().find(|(counted, _)| counted == name).unwrap();

@@ -725,25 +725,6 @@ FrikanStatus frikan_integer_replace(FrikanIntegerCompensator *compensator,
 int32_t frikan_integer_step(FrikanIntegerCompensator *compensator,
                             int32_t velocity);
 
-// Starts a presliding, relaxed: of `torque` counts, which turn over across `distance` counts of the position after a reversal (1 to 2^20);
-// `least_friction`, at least `torque`, is the least that the table has while the joint slides. BadLimits leaves the memory as it was.
-//
-// # Safety
-// The pointer is null or good.
-FrikanStatus frikan_integer_preslide(FrikanIntegerPresliding *presliding,
-                                     uint16_t torque,
-                                     uint32_t distance,
-                                     uint16_t least_friction);
-
-// As frikan_integer_step, with presliding; `position` in counts, which may wrap. 0 without a table or a presliding.
-//
-// # Safety
-// Pointers are null or good.
-int32_t frikan_integer_step_with(FrikanIntegerCompensator *compensator,
-                                 FrikanIntegerPresliding *presliding,
-                                 int32_t velocity,
-                                 int32_t position);
-
 // The friction of the table at a velocity, both in counts, without limits; 0 without a table.
 //
 // # Safety
@@ -775,6 +756,25 @@ FrikanStatus frikan_integer_status(FrikanIntegerCompensator *compensator);
 // # Safety
 // The pointer is null or good.
 uint32_t frikan_integer_model_crc(FrikanIntegerCompensator *compensator);
+
+// Starts a presliding, relaxed: of `torque` counts, which turn over across `distance` counts of the position after a reversal (1 to 2^20);
+// `least_friction`, at least `torque`, is the least that the table has while the joint slides. BadLimits leaves the memory as it was.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_integer_preslide(FrikanIntegerPresliding *presliding,
+                                     uint16_t torque,
+                                     uint32_t distance,
+                                     uint16_t least_friction);
+
+// As frikan_integer_step, with presliding; `position` in counts, which may wrap. 0 without a table or a presliding.
+//
+// # Safety
+// Pointers are null or good.
+int32_t frikan_integer_step_with(FrikanIntegerCompensator *compensator,
+                                 FrikanIntegerPresliding *presliding,
+                                 int32_t velocity,
+                                 int32_t position);
 
 #ifdef __cplusplus
 }  // extern "C"

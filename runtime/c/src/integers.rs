@@ -1,6 +1,6 @@
 //! The integer compensator as C calls it. Audit: every pointer is tested for null, every length is the caller's word, no reference outlives its call.
 
-use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, IntegerPresliding, IntegerTableInPlace, Units};
+use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, IntegerTableInPlace, Units};
 use frikan_runtime::shared::image::ImageError;
 #[cfg(feature = "slots")]
 use frikan_runtime::slots::{Which, newest_usable, next_write_beside};
@@ -16,9 +16,6 @@ pub const FRIKAN_INTEGER_ONE: u16 = 32768;
 
 /// Words of an integer compensator's memory.
 pub const FRIKAN_INTEGER_STORAGE_WORDS: usize = 24;
-
-/// Words of a presliding's memory.
-pub const FRIKAN_INTEGER_PRESLIDING_WORDS: usize = 8;
 
 /// Friction compensation of one joint in whole numbers, for drives without floating-point unit: its table lies in flash. Its memory is the
 /// firmware's; its content is the library's. One that lies in zeroed memory is off until it is started.
@@ -44,31 +41,6 @@ unsafe impl Memory for FrikanIntegerCompensator {
     const MARK: u32 = u32::from_le_bytes(*b"FRKI");
 
     fn parts(memory: *mut Self) -> (*mut u32, *mut Inner) {
-        // SAFETY: places of fields, nothing is read.
-        unsafe { (&raw mut (*memory).started, (&raw mut (*memory).storage).cast()) }
-    }
-}
-
-/// A contact that bends before it slides, in the firmware's memory. Zeroed memory holds none.
-#[repr(C)]
-pub struct FrikanIntegerPresliding {
-    /// Whether there is a contact in the memory.
-    started: u32,
-    /// Its memory.
-    storage: [u32; FRIKAN_INTEGER_PRESLIDING_WORDS],
-}
-
-const _: () = {
-    assert!(size_of::<IntegerPresliding>() == 4 * FRIKAN_INTEGER_PRESLIDING_WORDS);
-    assert!(align_of::<IntegerPresliding>() <= align_of::<u32>());
-};
-
-// SAFETY: both fields lie in the memory; size and alignment are asserted above.
-unsafe impl Memory for FrikanIntegerPresliding {
-    type Content = IntegerPresliding;
-    const MARK: u32 = u32::from_le_bytes(*b"FRKP");
-
-    fn parts(memory: *mut Self) -> (*mut u32, *mut IntegerPresliding) {
         // SAFETY: places of fields, nothing is read.
         unsafe { (&raw mut (*memory).started, (&raw mut (*memory).storage).cast()) }
     }
@@ -257,41 +229,6 @@ pub unsafe extern "C" fn frikan_integer_replace(
 pub unsafe extern "C" fn frikan_integer_step(compensator: *mut FrikanIntegerCompensator, velocity: i32) -> i32 {
     // SAFETY: the caller's word.
     unsafe { content(compensator) }.map_or(0, |compensator| compensator.step(velocity))
-}
-
-/// Starts a presliding, relaxed: of `torque` counts, which turn over across `distance` counts of the position after a reversal (1 to 2^20);
-/// `least_friction`, at least `torque`, is the least that the table has while the joint slides. BadLimits leaves the memory as it was.
-///
-/// # Safety
-/// The pointer is null or good.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_integer_preslide(
-    presliding: *mut FrikanIntegerPresliding,
-    torque: u16,
-    distance: u32,
-    least_friction: u16,
-) -> FrikanStatus {
-    let Ok(contact) = IntegerPresliding::new(torque, distance, least_friction) else { return FrikanStatus::BadLimits };
-    // SAFETY: the caller's word.
-    if unsafe { memory::start(presliding, contact) } { FrikanStatus::Active } else { FrikanStatus::NotStarted }
-}
-
-/// As frikan_integer_step, with presliding; `position` in counts, which may wrap. 0 without a table or a presliding.
-///
-/// # Safety
-/// Pointers are null or good.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn frikan_integer_step_with(
-    compensator: *mut FrikanIntegerCompensator,
-    presliding: *mut FrikanIntegerPresliding,
-    velocity: i32,
-    position: i32,
-) -> i32 {
-    // SAFETY: the caller's word.
-    match unsafe { (content(compensator), content(presliding)) } {
-        (Some(compensator), Some(presliding)) => compensator.step_with(presliding, velocity, position),
-        _ => 0,
-    }
 }
 
 /// The friction of the table at a velocity, both in counts, without limits; 0 without a table.

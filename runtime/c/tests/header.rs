@@ -15,6 +15,7 @@ fn generated() -> String {
         "src/supervised.rs",
         "src/keep.rs",
         "src/integers.rs",
+        "src/presliding.rs",
     ]
     .into_iter()
     .fold(builder, |builder, file| builder.with_src(folder.join(file)));

@@ -7,11 +7,12 @@ use std::ptr::{null, null_mut};
 
 use frikan::admission::{FrikanFacts, FrikanTrust, frikan_facts};
 use frikan::integers::{
-    FRIKAN_INTEGER_ONE, FrikanIntegerCompensator, FrikanIntegerLimits, FrikanIntegerPresliding, FrikanUnits,
-    frikan_integer_friction, frikan_integer_model_crc, frikan_integer_next_write, frikan_integer_preslide,
-    frikan_integer_replace, frikan_integer_reset, frikan_integer_set_limits, frikan_integer_start,
-    frikan_integer_start_from_slots, frikan_integer_status, frikan_integer_step, frikan_integer_step_with,
+    FRIKAN_INTEGER_ONE, FrikanIntegerCompensator, FrikanIntegerLimits, FrikanUnits, frikan_integer_friction,
+    frikan_integer_model_crc, frikan_integer_next_write, frikan_integer_replace, frikan_integer_reset,
+    frikan_integer_set_limits, frikan_integer_start, frikan_integer_start_from_slots, frikan_integer_status,
+    frikan_integer_step,
 };
+use frikan::presliding::{FrikanIntegerPresliding, frikan_integer_preslide, frikan_integer_step_with};
 use frikan::slots::frikan_slot_header;
 use frikan::types::{FrikanSlotWrite, FrikanStatus};
 use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, IntegerTableInPlace, Units};
