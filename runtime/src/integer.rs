@@ -20,9 +20,11 @@
 //! As any bare compensator on a measured velocity it hunts where the gain is too high for the joint: the velocity of the reference is the better input.
 
 mod limits;
+mod presliding;
 mod table;
 
 pub use limits::{IntegerLimits, ONE};
+pub use presliding::{IntegerPresliding, LARGEST_DISTANCE_COUNTS, PreslidingError};
 pub use table::{IntegerTableInPlace, LARGEST_TORQUE_COUNTS, LARGEST_VELOCITY_COUNTS, Units};
 
 use frikan_shared::image::ImageError;
@@ -76,6 +78,21 @@ impl<'a> IntegerCompensator<'a> {
         let Ok(table) = &self.table else { return 0 };
         self.torque = self.limits.approach(self.torque, table.friction(velocity));
         self.torque
+    }
+
+    /// As [`IntegerCompensator::step`], with the contact that bends before it slides; `position` in counts, which may wrap.
+    #[must_use]
+    #[inline]
+    pub fn step_with(&mut self, presliding: &mut IntegerPresliding, velocity: i32, position: i32) -> i32 {
+        let Ok(table) = &self.table else { return 0 };
+        self.torque = self.limits.approach(self.torque, presliding.friction(table.friction(velocity), position));
+        self.torque
+    }
+
+    /// The friction of the table at a velocity, both in counts, without limits; 0 without a table.
+    #[must_use]
+    pub fn friction(&self, velocity: i32) -> i32 {
+        self.table.as_ref().map_or(0, |table| table.friction(velocity))
     }
 
     /// CRC-32 of the table as it is now in flash: one that differs from that at the start is damaged. Not for the control loop.

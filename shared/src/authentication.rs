@@ -1,10 +1,11 @@
-//! Who made an image: an optional tag behind it, by a key that trainer and drive share. A table is torque; a CRC finds damage, not
+//! Who made an image: an optional tag behind it, by a key that trainer and drive share, or a signature, by a secret that no drive has. A table is torque; a CRC finds damage, not
 //! forgery.
 //!
 //! The tag is HMAC-SHA-256 (RFC 2104, FIPS 180-4) over every byte before it, which makes `openssl dgst -sha256 -mac HMAC` a second
 //! opinion. It says who made the image; the number of a release, between image and tag, says which of two is the later one.
 
 pub mod admission;
+pub mod signature;
 
 #[cfg(feature = "auth")]
 use hmac::{Hmac, KeyInit, Mac};
@@ -14,6 +15,7 @@ use sha2::Sha256;
 #[cfg(feature = "models")]
 use crate::image::{Image, decode};
 use crate::image::{ImageError, image_bytes};
+use signature::{PublicKey, SIGNATURE_BYTES};
 
 /// Bytes of a key.
 pub const KEY_BYTES: usize = 32;
@@ -106,15 +108,18 @@ pub enum Trust<'a> {
     Anyone,
     /// Those of whoever has the key: images with their tag behind them. A plain image is refused.
     Key(&'a Key),
+    /// Those of whoever has the secret of this public key: images with their signature behind them. A plain image is refused.
+    Signed(&'a PublicKey),
 }
 
 impl Trust<'_> {
-    /// Bytes that stand behind an image.
+    /// Bytes of the tag or the signature behind an image.
     #[must_use]
     pub const fn tag_bytes(self) -> usize {
         match self {
             Self::Anyone => 0,
             Self::Key(_) => TAG_BYTES,
+            Self::Signed(_) => SIGNATURE_BYTES,
         }
     }
 
@@ -149,6 +154,15 @@ impl Trust<'_> {
             Self::Key(key) => {
                 let (tagged, tag) = bytes.split_last_chunk::<TAG_BYTES>().ok_or(ImageError::NotAuthentic)?;
                 if key.has_made(tagged, tag) { Ok(without_release(tagged)) } else { Err(ImageError::NotAuthentic) }
+            }
+            Self::Signed(key) => {
+                let (signed, signature) =
+                    bytes.split_last_chunk::<SIGNATURE_BYTES>().ok_or(ImageError::NotAuthentic)?;
+                if key.has_signed(signed, signature) {
+                    Ok(without_release(signed))
+                } else {
+                    Err(ImageError::NotAuthentic)
+                }
             }
         }
     }

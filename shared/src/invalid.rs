@@ -2,6 +2,7 @@
 
 /// Why a model is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum InvalidModel {
     /// The model has no input.
@@ -36,6 +37,7 @@ pub enum InvalidModel {
 
 /// What is wrong with a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ProgramFault {
     /// The program has no operation.
     Empty,

@@ -4,14 +4,18 @@ use std::path::{Path, PathBuf};
 
 use frikan_runtime::evaluate::evaluate;
 use frikan_runtime::friction::{FrictionState, Measurement};
+use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, IntegerTableInPlace, Units};
 use frikan_runtime::shared::expression::{Operation, Program};
 use frikan_runtime::shared::model::{Input, Law, MAX_INPUTS};
 use frikan_runtime::shared::units::{Quantity, Unit};
 use frikan_tests::c::{cortex_m4f_assembly, firmware, floats_through, host_program};
+use frikan_tests::cost::UNITS;
 use frikan_tests::models::{self, TestModel};
 use frikan_tests::vectors::{one_input, space_filling};
+use frikan_trainer::compile::integers::steps::{IntegerCall, integer_calls, integer_step};
 use frikan_trainer::emulator::{Emulator, Firmware, Mode, Request};
 use frikan_trainer::export::source::c::evaluator;
+use frikan_trainer::export::source::{integers, python, rust};
 use frikan_trainer::fit::model::from_bytes;
 
 const ROWS: usize = 200_000;
@@ -60,7 +64,7 @@ fn every_operation() -> Vec<(String, TestModel)> {
 
 /// Every model that has a form in C.
 fn exportable() -> Vec<(String, TestModel)> {
-    let has_form = |law: &Law| !matches!(law, Law::Network(_) | Law::IntegerTable(_));
+    let has_form = |law: &Law| !matches!(law, Law::IntegerTable(_));
     let laws = models::every_law().into_iter().filter(|(_, model)| has_form(&model.law));
     laws.map(|(name, model)| (name.to_owned(), model)).collect()
 }
@@ -68,9 +72,11 @@ fn exportable() -> Vec<(String, TestModel)> {
 fn rows(model: &TestModel, count: usize) -> Vec<f32> {
     match model.inputs.as_slice() {
         [input] => one_input(count, input.high, 4),
-        _ => {
-            let mut values = space_filling(count, &[100.0, 1.0e4]);
-            // Any bit pattern in either input.
+        inputs => {
+            let is_network = matches!(model.law, Law::Network(_));
+            let ranges: Vec<f32> = inputs.iter().map(|input| 1.5 * input.high).collect();
+            let mut values = space_filling(count, if is_network { &ranges } else { &[100.0, 1.0e4] });
+            // Any bit pattern in every input.
             let wild = one_input(count, 50.0, 5);
             values[..count].copy_from_slice(&wild);
             values
@@ -79,9 +85,10 @@ fn rows(model: &TestModel, count: usize) -> Vec<f32> {
 }
 
 fn expected(model: &TestModel, values: &[f32]) -> Vec<f32> {
-    // Velocity, and the load where there are two.
+    // Velocity, load and temperature, as far as there are so many.
     let step = |row: &[f32]| {
-        let measurement = Measurement { velocity: row[0], load: row[row.len() - 1], ..Measurement::MISSING };
+        let [load, temperature] = [1, 2].map(|place| row.get(place).copied().unwrap_or(f32::NAN));
+        let measurement = Measurement { velocity: row[0], load, temperature, ..Measurement::MISSING };
         FrictionState::new().step(model, &measurement, 1.0e-3).torque
     };
     values.chunks_exact(model.inputs.len()).map(step).collect()
@@ -140,6 +147,9 @@ fn the_cortex_m4f_computes_the_bits_of_the_runtime() {
     let at = folder.path();
     let square_root = ("SquareRoot".to_owned(), expression(&[Operation::Input(0), Operation::SquareRoot]));
     for (name, mut model) in exportable().into_iter().chain([square_root]) {
+        if matches!(model.law, Law::Network(_)) && model.inputs.len() > 1 {
+            continue;
+        }
         model.inputs.truncate(1);
         let drive = at.join("drive.c");
         let text = "#include \"drive.h\"\n#include \"law.h\"\n\
@@ -224,11 +234,57 @@ fn options_that_change_the_arithmetic_are_refused() {
     }
 }
 
-/// What has no form in C is refused, and says where to turn.
+/// From counts to counts: every count of the range, odd and sided, finer and coarser than the steps of the table, with limits that bind.
 #[test]
-fn networks_are_refused() {
+fn an_integer_table_computes_the_counts_of_the_integer_compensator() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let main = at.join("main.c");
+    let text = "#include \"law.h\"\n#include <stdio.h>\nint main(void) {\n    int32_t x[5], torque = 0;\n    \
+        while (fread(x, sizeof x, 1, stdin) == 1) {\n        \
+        torque = law_step(x[0] ? 0 : torque, x[4], (uint16_t)x[1], (uint16_t)x[2], (uint16_t)x[3]);\n        \
+        fwrite(&torque, sizeof torque, 1, stdout);\n    }\n    return 0;\n}\n";
+    std::fs::write(&main, text).unwrap();
+    let units =
+        [UNITS, Units { velocity: 1.0 / 1_048_576.0, torque: 1.0e-3 * 64.0 }, Units { torque: 1.0e-3, ..UNITS }];
+    for (name, mut model) in [("odd", models::integer_table()), ("sided", models::sided_integer_table())] {
+        // Ranges that end before the table does, on either side elsewhere.
+        model.inputs[0].low = -1.5;
+        let image = models::image(&model);
+        for units in units {
+            let files = integers::evaluator("law", "test", &from_bytes(&image).unwrap().model, units).unwrap();
+            std::fs::write(at.join("law.h"), files.header).unwrap();
+            std::fs::write(at.join("law.c"), files.source).unwrap();
+            let program = at.join("program");
+            host_program(&[at.join("law.c"), main.clone()], &program);
+            let calls = integer_calls(&model, units, 1 << 18).unwrap();
+            let word = |number: i32| f32::from_bits(number.cast_unsigned());
+            let words = |call: &IntegerCall| {
+                let [gain, torque, slew] = call.limits.map(i32::from);
+                [i32::from(call.reset), gain, torque, slew, call.velocity].map(word)
+            };
+            let values: Vec<f32> = calls.iter().flat_map(words).collect();
+            let answers = floats_through(&program, &values).into_iter().map(|torque| torque.to_bits().cast_signed());
+            let table = IntegerTableInPlace::new(&image, units).unwrap();
+            let mut drive = IntegerCompensator::new(Ok(table), IntegerLimits::OFF);
+            let mut moved = 0;
+            for (call, answer) in calls.iter().zip(answers) {
+                let expected = integer_step(&mut drive, call);
+                assert_eq!(answer, expected, "{name} in {units:?}: {call:?}");
+                moved += usize::from(expected != 0);
+            }
+            assert!(moved > calls.len() / 2, "{name} in {units:?}: {moved}");
+        }
+    }
+}
+
+/// What has no form in a language is refused, and says where to turn.
+#[test]
+fn networks_have_a_form_in_c_alone() {
     let image = from_bytes(&models::image(&models::network_1_5_1())).unwrap();
-    let error = evaluator("law", "test", &image).unwrap_err();
-    assert_eq!(error.code().id, "FRK-U005");
-    assert!(error.to_string().contains("network"), "{error}");
+    for refused in [rust::module("test", &image), python::module("test", &image)] {
+        let error = refused.unwrap_err();
+        assert_eq!(error.code().id, "FRK-U005");
+        assert!(error.to_string().contains("export it to C"), "{error}");
+    }
 }

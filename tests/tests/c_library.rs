@@ -11,9 +11,11 @@ use frikan_runtime::shared::model::Input;
 use frikan_runtime::shared::units::{Quantity, Unit};
 use frikan_runtime::supervised::{Sample, Supervised, Supervision, Supervisor};
 use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS as INPUTS, example, example_of_nothing, library_folder};
+use frikan_tests::cost::Documented;
 use frikan_tests::models::{CELLS, TestModel, image, sided_table, stribeck_expression, symmetric_table};
-use frikan_trainer::emulator::{Answer, Emulator, Firmware, Mode, Request, footprint};
+use frikan_trainer::emulator::{Answer, Emulator, Firmware, Mode, Request, footprint, forbidden_symbols};
 use frikan_trainer::error::Result;
+use frikan_trainer::export::c_array::c_header;
 
 const ROWS: usize = 20_000;
 
@@ -134,9 +136,13 @@ fn the_library_is_small_by_default() {
     let elf = example(folder.path(), None, &[]);
     let flash = footprint(&elf).unwrap().beyond(footprint(&example_of_nothing(folder.path())).unwrap()).flash_bytes;
     assert!(flash <= FLASH_BYTES, "{flash} bytes of flash");
+    let documented = Documented::of("The C library on cortex-m4f", "by default");
+    documented.holds("flash B", flash);
     let answer = torques(&emulator(elf), &image(&symmetric_table()), &[0.0; INPUTS]).unwrap();
     let stack = answer.decode_stack_bytes.max(answer.evaluate_stack_bytes);
     assert!(stack <= STACK_BYTES && answer.decode_stack_bytes > 100, "{answer:?}");
+    documented.holds("stack, start B", answer.decode_stack_bytes.into());
+    documented.holds("stack, step B", answer.evaluate_stack_bytes.into());
 }
 
 /// By `find_package(Frikan)`, with features and a number of cells that the header has to be told of.
@@ -153,6 +159,64 @@ fn cmake_builds_the_example() {
     let emulator = emulator(folder.path().join("build/drive.elf"));
     let torque = torques(&emulator, &image(&symmetric_table()), &[0.3; INPUTS]).unwrap().outputs[0];
     assert!(torque > 0.0, "{torque}");
+}
+
+/// What the module of Zephyr takes for a processor, by a project that is configured and has nothing of Zephyr but the function that links.
+#[test]
+fn zephyr_takes_the_library_of_its_processor() {
+    let folder = tempfile::tempdir().unwrap();
+    let project = "cmake_minimum_required(VERSION 3.20)\nproject(application NONE)\n\
+        function(zephyr_link_libraries library)\n    get_target_property(place ${library} IMPORTED_LOCATION)\n    \
+        message(STATUS \"linked: ${place}\")\nendfunction()\n\
+        add_subdirectory(${MODULE} module)\n";
+    std::fs::write(folder.path().join("CMakeLists.txt"), project).unwrap();
+    let module = library_folder().join("../../zephyr");
+    for (target, options) in [
+        ("thumbv6m-none-eabi", &["ARMV6_M_ARMV8_M_BASELINE"][..]),
+        ("thumbv7m-none-eabi", &["CPU_CORTEX_M3", "ARMV7_M_ARMV8_M_MAINLINE"]),
+        ("thumbv7em-none-eabi", &["ARMV7_M_ARMV8_M_MAINLINE"]),
+        ("thumbv7em-none-eabihf", &["ARMV7_M_ARMV8_M_MAINLINE", "FP_HARDABI"]),
+        ("thumbv8m.main-none-eabihf", &["ARMV7_M_ARMV8_M_MAINLINE", "ARMV8_M_MAINLINE", "FP_HARDABI"]),
+        ("riscv32imc-unknown-none-elf", &["RISCV"]),
+        ("riscv32imac-unknown-none-elf", &["RISCV", "RISCV_ISA_EXT_A"]),
+    ] {
+        let mut cmake = Command::new("cmake");
+        cmake.current_dir(folder.path()).args(["-S", ".", "-B", target]).arg(format!("-DMODULE={}", module.display()));
+        cmake.args(["FRIKAN"].iter().chain(options).map(|option| format!("-DCONFIG_{option}=y")));
+        let output = cmake.output().unwrap();
+        let told = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(told.contains(&format!("/{target}/drive/libfrikan.a")), "{options:?}: {told}");
+    }
+}
+
+/// The library of the Arduino IDE, as a board with a Cortex-M4F links it with its sketch.
+#[test]
+fn the_arduino_library_is_packed_and_its_sketch_links() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let succeeds = |command: &mut Command| {
+        let output = command.current_dir(at).output().unwrap();
+        assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let script = library_folder().join("arduino/package.cmake");
+    succeeds(Command::new("cmake").args(["-DPROCESSORS=cortex-m4", "-P"]).arg(script));
+    succeeds(Command::new("cmake").args(["-E", "tar", "xf", "Frikan.zip"]));
+    serde_json::from_slice::<serde_json::Value>(&std::fs::read(at.join("Frikan/library.json")).unwrap()).unwrap();
+    let image = c_header("elbow", &image(&symmetric_table()), "test");
+    std::fs::write(at.join("elbow.h"), image).unwrap();
+    let of_arduino = "#include <stdint.h>\n#define NAN __builtin_nanf(\"\")\nextern \"C\" uint32_t micros(void);\n";
+    std::fs::write(at.join("Arduino.h"), of_arduino).unwrap();
+    let core = "void setup();\nvoid loop();\nextern \"C\" uint32_t micros(void) { return 0; }\n\
+        int main() { setup(); for (;;) loop(); }\n";
+    std::fs::write(at.join("core.cpp"), core).unwrap();
+    let mut compiler = Command::new("arm-none-eabi-g++");
+    compiler.args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "-Os", "-ffreestanding"]);
+    compiler.args(["-fno-exceptions", "-fno-threadsafe-statics", "-Wall", "-Werror", "-nostdlib", "-Wl,--gc-sections"]);
+    compiler.args(["-Wl,--entry=main", "-I.", "-IFrikan/src", "-include", "Arduino.h", "-x", "c++", "core.cpp"]);
+    compiler.args(["Frikan/examples/Elbow/Elbow.ino", "-x", "none", "-LFrikan/src/cortex-m4/fpv4-sp-d16-hard"]);
+    succeeds(compiler.args(["-lfrikan", "-lgcc", "-o", "sketch.elf"]));
+    assert_eq!(forbidden_symbols(&at.join("sketch.elf")).unwrap(), [""; 0]);
 }
 
 #[test]

@@ -200,6 +200,26 @@ fn a_dump_is_told_from_another() {
 }
 
 #[test]
+fn a_signature_is_checked_by_the_public_key_alone() {
+    let bench = bench();
+    let at = bench.path();
+    let signed = export(at, "bin", "s.bin", &["--signing-key-file", "drive.key", "--release", "5"]);
+    let public_key = signed.messages.trim().strip_prefix("public key ").expect("it is printed").to_owned();
+    assert_ne!(public_key.as_str(), KEY.trim());
+    std::fs::write(at.join("public.key"), public_key).unwrap();
+    let show = |file: &str, key: &str| run(at, &["show", file, "--compare", "stribeck.frk", "--public-key-file", key]);
+    let sound = show("s.bin", "public.key");
+    assert!(sound.status == 0 && sound.output.contains("authentic, release 5"), "{}", sound.output);
+    let mut forged = std::fs::read(at.join("s.bin")).unwrap();
+    assert_eq!(forged.len(), std::fs::read(at.join("stribeck.frk")).unwrap().len() + 8 + 64);
+    *forged.last_mut().unwrap() ^= 1;
+    std::fs::write(at.join("forged.bin"), forged).unwrap();
+    for refused in [show("forged.bin", "public.key"), show("stribeck.frk", "public.key"), show("s.bin", "drive.key")] {
+        assert!(refused.status == 1 && refused.output.contains("NOT authentic"), "{}", refused.output);
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     let bench = bench();
     let at = bench.path();
@@ -208,6 +228,7 @@ fn what_does_not_fit_is_refused() {
         ("bin", &["--key-file", "absent.key"], 5, "FRK-I002"),
         ("json", &["--slot", "1"], 2, "FRK-U001"),
         ("bin", &["--release", "1"], 2, "--key-file"),
+        ("bin", &["--key-file", "drive.key", "--signing-key-file", "drive.key"], 2, "cannot be used with"),
         ("c", &["--key-file", "drive.key"], 2, "FRK-U001"),
         ("c", &[], 2, "FRK-U001"),
     ] {

@@ -31,10 +31,12 @@ fn json(at: &Path, arguments: &[&str]) -> Value {
 fn a_drive_without_floating_point_unit_gets_a_table_of_integers() {
     let folder = bench();
     let at = folder.path();
-    let done = fit(at, &["--json", "m.json"]);
+    let done = fit(at, &["--json", "m.json", "--report", "m.html"]);
     assert_eq!((done.status, done.messages.as_str()), (0, ""));
     assert!(done.output.contains("integers    a table of ") && done.output.contains("in floats a "), "{}", done.output);
     let fitted: Value = serde_json::from_slice(&std::fs::read(at.join("m.json")).unwrap()).unwrap();
+    let page = std::fs::read_to_string(at.join("m.html")).unwrap();
+    assert!(page.contains("In integers on cortex-m0plus") && page.contains("A table of "));
     let integers = &fitted["integers"];
     println!("{integers:#}");
     assert_eq!((&integers["target"], &fitted["inputs"][0]), (&Value::from("cortex-m0plus"), &Value::from("velocity")));
@@ -70,9 +72,13 @@ fn the_counts_are_those_of_the_joint_file() {
     assert!(integers["error"]["largest"].as_f64().unwrap() < 0.1);
     let verified = json(at, &["verify", "m.frk", "--joint", "counts.toml", "--json"])["integers"].take();
     assert_eq!(verified["steps"], verified["steps_equal"]);
+    let export = |joint: &str| run(at, &["export", "m.frk", "--to", "c", "--joint", joint, "-o", "m.c"]);
+    assert_eq!(export("counts.toml").status, 0);
+    assert!(std::fs::read_to_string(at.join("m.h")).unwrap().contains("in counts of 0.05 N m and of 0.001 rad/s"));
     std::fs::write(at.join("others.toml"), COUNTS.replace("0.05", "0.07")).unwrap();
-    let refused = run(at, &["verify", "m.frk", "--joint", "others.toml"]);
-    assert!(refused.status == 2 && refused.messages.contains("not for these counts"), "{}", refused.messages);
+    for refused in [run(at, &["verify", "m.frk", "--joint", "others.toml"]), export("others.toml")] {
+        assert!(refused.status == 2 && refused.messages.contains("not for these counts"), "{}", refused.messages);
+    }
 }
 
 #[test]

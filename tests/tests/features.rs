@@ -25,12 +25,19 @@ fn every_feature_compiles_alone() {
         "slots",
         "embedded-storage",
         "auth",
+        "signature",
+        "defmt",
         "nalgebra",
         "models",
     ];
-    check(&firmware, &target, "frikan-shared", &["models", "elementary", "auth"]);
+    check(&firmware, &target, "frikan-shared", &["models", "elementary", "auth", "signature", "defmt"]);
     check(&firmware, &target, "frikan-runtime", &runtime);
-    check(&firmware, &target, "frikan-c", &["supervised", "slots", "auth", "expression", "network", "effects"]);
+    check(
+        &firmware,
+        &target,
+        "frikan-c",
+        &["supervised", "slots", "integer", "auth", "expression", "network", "effects"],
+    );
 }
 
 /// Without a floating-point unit, and without atomic instructions that read and write.
@@ -39,5 +46,5 @@ fn the_smallest_and_the_largest_compile_for_the_smallest_drive() {
     let firmware = Firmware::find().unwrap();
     let target = firmware.target("cortex-m0plus").unwrap();
     firmware.check(&target, "frikan-runtime", "table").unwrap();
-    firmware.check(&target, "frikan-c", "supervised,slots,auth,expression,network,effects").unwrap();
+    firmware.check(&target, "frikan-c", "supervised,slots,integer,auth,expression,network,effects").unwrap();
 }

@@ -23,7 +23,7 @@ fn images_of_earlier_formats_keep_their_bits() {
 
 #[test]
 fn golden_images_keep_their_bits() {
-    for name in ["elbow", "stribeck"] {
+    for name in ["elbow", "stribeck", "integers"] {
         let (bytes, image) = model::load(&folder().join(name).with_extension("frk")).unwrap();
         let expected = std::fs::read_to_string(folder().join(name).with_extension("bits")).unwrap();
         assert!(output_bits(&image.model) == expected, "{name}: outputs have changed");

@@ -1,5 +1,5 @@
-//! Every command of README.md runs in a checkout as a user has it, and prints what README shows. `FRIKAN_WRITE=1` writes what it prints
-//! into README.
+//! Every command of README.md and of docs/demo.md runs in a checkout as a user has it, and prints what is shown. `FRIKAN_WRITE=1` writes what it prints
+//! into the page.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,19 +29,12 @@ fn printed(at: &Path, line: &str) -> String {
     String::from_utf8(shell.stdout).unwrap()
 }
 
-#[test]
-fn every_command_prints_what_is_shown() {
-    let checkout = tempfile::tempdir().unwrap();
-    let at = checkout.path();
-    std::fs::create_dir(at.join("fixtures")).unwrap();
-    for entry in std::fs::read_dir(folder()).unwrap() {
-        let file = entry.unwrap();
-        if file.file_type().unwrap().is_dir() {
-            continue;
-        }
-        std::fs::copy(file.path(), at.join("fixtures").join(file.file_name())).unwrap();
-    }
-    let text = std::fs::read_to_string(readme()).unwrap();
+/// What stands at the start of a command by which a machine gets what the tests have already.
+const ALREADY_DONE: [&str; 2] = ["git clone ", "cargo install "];
+
+/// Runs the commands of a page in `at` and says how many it has.
+fn prints_what_it_shows(page: &Path, at: &Path) -> usize {
+    let text = std::fs::read_to_string(page).unwrap();
     let mut written = String::new();
     let mut lines = text.lines().peekable();
     let mut count = 0;
@@ -55,17 +48,48 @@ fn every_command_prints_what_is_shown() {
             let _ = writeln!(written, "{next}");
             command = format!("{} {}", command.trim_end_matches('\\'), next.trim_start());
         }
+        count += 1;
+        if ALREADY_DONE.iter().any(|start| command.starts_with(start)) {
+            continue;
+        }
         while lines.next_if(|next| next.starts_with("    ") && !next.starts_with(PROMPT)).is_some() {}
         printed(at, &command).lines().for_each(|line| {
             let _ = writeln!(written, "    {line}");
         });
-        count += 1;
     }
-    assert!(count >= 3, "README shows commands");
     if std::env::var_os("FRIKAN_WRITE").is_some() {
-        std::fs::write(readme(), &written).unwrap();
+        std::fs::write(page, &written).unwrap();
     }
-    assert!(written == text, "README shows what is no longer printed; FRIKAN_WRITE=1 writes it again:\n{written}");
+    let page = page.display();
+    assert!(written == text, "{page} shows what is no longer printed; FRIKAN_WRITE=1 writes it again:\n{written}");
+    count
+}
+
+#[test]
+fn every_command_prints_what_is_shown() {
+    let checkout = tempfile::tempdir().unwrap();
+    let at = checkout.path();
+    std::fs::create_dir(at.join("fixtures")).unwrap();
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let file = entry.unwrap();
+        if file.file_type().unwrap().is_dir() {
+            continue;
+        }
+        std::fs::copy(file.path(), at.join("fixtures").join(file.file_name())).unwrap();
+    }
+    assert!(prints_what_it_shows(&readme(), at) >= 3);
+}
+
+/// In a checkout of its own, whose files are those of this one.
+#[test]
+fn a_demo_in_c_takes_few_commands() {
+    let checkout = tempfile::tempdir().unwrap();
+    let (at, root) = (checkout.path(), std::fs::canonicalize(folder().join("..")).unwrap());
+    for name in ["Cargo.toml", "Cargo.lock", "fixtures", "shared", "runtime", "trainer", "tests"] {
+        std::os::unix::fs::symlink(root.join(name), at.join(name)).unwrap();
+    }
+    let commands = prints_what_it_shows(&root.join("docs/demo.md"), at);
+    assert!((2..=5).contains(&commands), "{commands}");
 }
 
 #[test]

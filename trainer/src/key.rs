@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use frikan_shared::authentication::signature::{PublicKey, Signer};
 use frikan_shared::authentication::{KEY_BYTES, Key};
 
 use crate::error::{Error, Result, codes};
@@ -10,13 +11,33 @@ use crate::files::read_whole;
 /// Largest file that is read; digits and some blanks.
 const LIMIT_BYTES: u64 = 1024;
 
-/// The key in a file.
+/// The key in a file that trainer and drive share.
 ///
 /// # Errors
 /// `FRK-D022` for anything but 64 hexadecimal digits; the message says nothing of what is there. `FRK-I...` where it cannot be read.
 pub fn load(path: &Path) -> Result<Key> {
+    digits(path).map(Key::new)
+}
+
+/// The secret of whoever signs images, from the seed in a file.
+///
+/// # Errors
+/// As [`load`].
+pub fn signer(path: &Path) -> Result<Signer> {
+    digits(path).map(Signer::new)
+}
+
+/// The public key in a file, as `export --signing-key-file` prints it.
+///
+/// # Errors
+/// As [`load`].
+pub fn public(path: &Path) -> Result<PublicKey> {
+    digits(path).map(PublicKey::new)
+}
+
+fn digits(path: &Path) -> Result<[u8; KEY_BYTES]> {
     let bytes = read_whole(path, LIMIT_BYTES)?;
-    parse(&bytes).map(Key::new).ok_or_else(|| {
+    parse(&bytes).ok_or_else(|| {
         Error::new(&codes::BAD_KEY, "64 hexadecimal digits are expected").in_file(path.display().to_string())
     })
 }

@@ -19,7 +19,7 @@ if(NOT FRIKAN_CARGO)
 endif()
 
 if(NOT TARGET Frikan::frikan)
-    get_filename_component(_frikan_c "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+    get_filename_component(_frikan_c "${CMAKE_CURRENT_LIST_DIR}/.." REALPATH)
     set(_frikan_folder "${CMAKE_BINARY_DIR}/frikan")
     set(_frikan_library "${_frikan_folder}/${FRIKAN_TARGET}/drive/libfrikan.a")
     set(_frikan_features)

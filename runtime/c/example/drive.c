@@ -25,7 +25,9 @@ static const FrikanTrust trust = {
 
 /* Inertia and friction of the joint, roughly: what the supervisor compares with; and what a count of its encoder of 20 bits is. */
 #define INERTIA_KGM2 0.5f
+#ifndef FRICTION_NM
 #define FRICTION_NM 20.0f
+#endif
 #define COUNT_RAD (6.2831853f / 1048576.0f)
 
 static FrikanCompensator elbow;

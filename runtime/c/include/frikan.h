@@ -83,6 +83,15 @@
 #define FRIKAN_EFFECTS 8
 #endif
 
+// Gain of one.
+#define FRIKAN_INTEGER_ONE 32768
+
+// Words of an integer compensator's memory.
+#define FRIKAN_INTEGER_STORAGE_WORDS 24
+
+// Words of a presliding's memory.
+#define FRIKAN_INTEGER_PRESLIDING_WORDS 8
+
 // Whether a torque is a compensation, and why not.
 enum FrikanStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -374,6 +383,41 @@ typedef struct {
   float means[9];
 } FrikanLearnt;
 
+// Friction compensation of one joint in whole numbers, for drives without floating-point unit: its table lies in flash. Its memory is the
+// firmware's; its content is the library's. One that lies in zeroed memory is off until it is started.
+typedef struct {
+  // Whether there is a compensator in the memory.
+  uint32_t started;
+  // Its memory.
+  size_t storage[FRIKAN_INTEGER_STORAGE_WORDS];
+} FrikanIntegerCompensator;
+
+// What a count of the drive is worth, both above 0: an image whose steps are not counts times powers of two is refused as one of another unit.
+typedef struct {
+  // A count of the velocity, rad/s or m/s.
+  float velocity;
+  // A count of the torque, in the unit of the model's output.
+  float torque;
+} FrikanUnits;
+
+// Limits of the firmware in counts; no image changes them.
+typedef struct {
+  // Share of the friction that is compensated, in 2^-15: at most FRIKAN_INTEGER_ONE.
+  uint16_t gain;
+  // Largest torque put out, counts, at most 32767.
+  uint16_t torque;
+  // Its largest change in a step, counts, at least 1.
+  uint16_t slew;
+} FrikanIntegerLimits;
+
+// A contact that bends before it slides, in the firmware's memory. Zeroed memory holds none.
+typedef struct {
+  // Whether there is a contact in the memory.
+  uint32_t started;
+  // Its memory.
+  uint32_t storage[FRIKAN_INTEGER_PRESLIDING_WORDS];
+} FrikanIntegerPresliding;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -622,6 +666,115 @@ FrikanLearnt frikan_learnt(FrikanSupervisor *supervisor);
 // Pointers are null or good.
 void frikan_restore_learnt(FrikanSupervisor *supervisor,
                            const FrikanLearnt *learnt);
+
+// Starts an integer compensator with the image at an address, which has to stay there. An image that is refused leaves it off; limits that are
+// refused leave the memory as it was.
+//
+// @param flash  where the image begins
+// @param bytes  bytes that may be read there; what follows image and tag is not looked at
+// @param trust  as for frikan_start
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_integer_start(FrikanIntegerCompensator *compensator,
+                                  const uint8_t *flash,
+                                  size_t bytes,
+                                  const FrikanTrust *trust,
+                                  const FrikanUnits *units,
+                                  const FrikanIntegerLimits *limits);
+
+// As frikan_integer_start with the newest usable image of two slots of flash.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_integer_start_from_slots(FrikanIntegerCompensator *compensator,
+                                             const uint8_t *first,
+                                             size_t first_bytes,
+                                             const uint8_t *second,
+                                             size_t second_bytes,
+                                             const FrikanTrust *trust,
+                                             const FrikanUnits *units,
+                                             const FrikanIntegerLimits *limits);
+
+// As frikan_next_write, beside the slot that frikan_integer_start_from_slots takes.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanSlotWrite frikan_integer_next_write(const uint8_t *first,
+                                          size_t first_bytes,
+                                          const uint8_t *second,
+                                          size_t second_bytes,
+                                          const FrikanTrust *trust,
+                                          const FrikanUnits *units);
+
+// Goes on with the image at another address, which has to stay there, without a stop: at the torque put out last, from where the slew limit leads. An
+// image that is refused leaves the one before in force.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_integer_replace(FrikanIntegerCompensator *compensator,
+                                    const uint8_t *flash,
+                                    size_t bytes,
+                                    const FrikanTrust *trust,
+                                    const FrikanUnits *units);
+
+// The torque to add, in counts, at a velocity in counts, whatever it is; 0 without a table. Call it at a fixed rate.
+//
+// # Safety
+// The pointer is null or good.
+int32_t frikan_integer_step(FrikanIntegerCompensator *compensator,
+                            int32_t velocity);
+
+// The friction of the table at a velocity, both in counts, without limits; 0 without a table.
+//
+// # Safety
+// The pointer is null or good.
+int32_t frikan_integer_friction(FrikanIntegerCompensator *compensator, int32_t velocity);
+
+// Changes the limits between two steps; the slew limit holds across the change. BadLimits leaves those before in force.
+//
+// # Safety
+// Pointers are null or good for what their names say.
+FrikanStatus frikan_integer_set_limits(FrikanIntegerCompensator *compensator,
+                                       const FrikanIntegerLimits *limits);
+
+// Starts from zero torque: for a drive that has no velocity, since no number says so.
+//
+// # Safety
+// The pointer is null or good.
+void frikan_integer_reset(FrikanIntegerCompensator *compensator);
+
+// Active, or why there is no table.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_integer_status(FrikanIntegerCompensator *compensator);
+
+// CRC-32 of the table as it is now in memory and flash: one that differs from that after the start is damaged. 0 where there is none. Not for the
+// control loop.
+//
+// # Safety
+// The pointer is null or good.
+uint32_t frikan_integer_model_crc(FrikanIntegerCompensator *compensator);
+
+// Starts a presliding, relaxed: of `torque` counts, which turn over across `distance` counts of the position after a reversal (1 to 2^20);
+// `least_friction`, at least `torque`, is the least that the table has while the joint slides. BadLimits leaves the memory as it was.
+//
+// # Safety
+// The pointer is null or good.
+FrikanStatus frikan_integer_preslide(FrikanIntegerPresliding *presliding,
+                                     uint16_t torque,
+                                     uint32_t distance,
+                                     uint16_t least_friction);
+
+// As frikan_integer_step, with presliding; `position` in counts, which may wrap. 0 without a table or a presliding.
+//
+// # Safety
+// Pointers are null or good.
+int32_t frikan_integer_step_with(FrikanIntegerCompensator *compensator,
+                                 FrikanIntegerPresliding *presliding,
+                                 int32_t velocity,
+                                 int32_t position);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -87,7 +87,7 @@ pub(crate) struct Trusted<'a> {
 
 impl Trusted<'_> {
     /// The same with a key that is borrowed.
-    fn admission(&self) -> Admission<'_> {
+    pub(crate) fn admission(&self) -> Admission<'_> {
         Admission { trust: self.key.as_ref().map_or(Trust::Anyone, Trust::Key), demands: self.demands }
     }
 

@@ -1,5 +1,5 @@
-//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `admission.rs`, `slots.rs`, `flash.rs`, `supervised.rs` and
-//! `keep.rs`; these but the first, `memory.rs` and `model.rs` are the only files with `unsafe`.
+//! The compensator for firmware in C. `include/frikan.h` is generated from `types.rs`, `ffi.rs`, `admission.rs`, `slots.rs`, `flash.rs`, `supervised.rs`,
+//! `keep.rs`, `integers.rs` and `presliding.rs`; these but the first, `memory.rs` and `model.rs` are the only files with `unsafe`.
 //!
 //! The static library for a target:
 //!
@@ -20,6 +20,9 @@ pub mod ffi;
 #[cfg(feature = "slots")]
 #[allow(unsafe_code)]
 pub mod flash;
+#[cfg(feature = "integer")]
+#[allow(unsafe_code)]
+pub mod integers;
 #[cfg(any(feature = "models", feature = "supervised"))]
 #[allow(unsafe_code)]
 pub mod keep;
@@ -27,6 +30,9 @@ pub mod keep;
 mod memory;
 #[allow(unsafe_code)]
 mod model;
+#[cfg(feature = "integer")]
+#[allow(unsafe_code)]
+pub mod presliding;
 #[cfg(feature = "slots")]
 #[allow(unsafe_code)]
 pub mod slots;

@@ -42,7 +42,11 @@ pub(crate) fn with_facts<T>(
     #[cfg(feature = "models")]
     let image = admission.decode::<{ crate::types::FRIKAN_CELLS }>(bytes)?;
     #[cfg(not(feature = "models"))]
-    let image = admission.table(bytes)?;
+    let image = match admission.table(bytes) {
+        #[cfg(feature = "integer")]
+        Err(ImageError::NotBuiltIn) => return Ok(told(&admission.integer_table(bytes)?.facts(release))),
+        table => table?,
+    };
     Ok(told(&image.facts(release)))
 }
 

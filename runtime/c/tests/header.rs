@@ -14,6 +14,8 @@ fn generated() -> String {
         "src/flash.rs",
         "src/supervised.rs",
         "src/keep.rs",
+        "src/integers.rs",
+        "src/presliding.rs",
     ]
     .into_iter()
     .fold(builder, |builder, file| builder.with_src(folder.join(file)));

@@ -19,6 +19,7 @@ pub struct Limits {
 
 /// Which limit cannot be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LimitError {
     /// The gain is negative or not finite.
     Gain,
@@ -98,6 +99,7 @@ fn not_negative(limit: f32) -> Option<f32> {
 
 /// Whether a torque is a compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
     /// The torque compensates friction.
     Active,

@@ -41,7 +41,7 @@ impl IntegerLimits {
     }
 
     /// As near to the gain's share of `friction` as the torque limit allows and a change of at most the slew from `torque`. `friction` is at most
-    /// [`LARGEST_TORQUE_COUNTS`], and so is `torque`, so that no product and no sum overflows.
+    /// twice [`LARGEST_TORQUE_COUNTS`], and `torque` at most that, so that no product and no sum overflows.
     #[inline(always)]
     pub(super) fn approach(&self, torque: i32, friction: i32) -> i32 {
         let share = friction.wrapping_mul(self.gain).wrapping_add(1 << (GAIN_BITS - 1)) >> GAIN_BITS;
@@ -55,7 +55,7 @@ const LARGEST_CHANGE: i32 = 2 * LARGEST_TORQUE_COUNTS;
 
 /// A number of at most `2^30` held to `[-limit, limit]`, `limit` being at least 0 and at most `2^17`, without a comparison.
 #[inline(always)]
-fn within(number: i32, limit: i32) -> i32 {
+pub(super) fn within(number: i32, limit: i32) -> i32 {
     let above_least = positive_part(number.wrapping_add(limit));
     limit.wrapping_sub(positive_part(limit.wrapping_add(limit).wrapping_sub(above_least)))
 }

@@ -160,10 +160,8 @@ fn bits_between(unit: f32, step: f32) -> i32 {
 #[inline(never)]
 fn quotient(end: f32, unit: f32) -> i32 {
     let [end, unit] = [end, unit].map(|number| number.to_bits() as i32);
-    if end <= 0 {
-        return 0;
-    }
     let mantissa = |number: i32| (number & MANTISSA) | (MANTISSA + 1);
+    // Negative for an end that is not positive, too.
     let doublings = (end >> MANTISSA_BITS) - (unit >> MANTISSA_BITS);
     let (mut rest, unit) = (mantissa(end), mantissa(unit));
     let mut quotient = 0;

@@ -27,6 +27,7 @@ pub struct AdaptationSettings {
 
 /// Which setting of an adaptation cannot be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum AdaptationError {
     /// The bounds of the level are not `0 <= low <= 1 <= high <= 4`.
     Level,

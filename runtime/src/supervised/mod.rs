@@ -44,6 +44,7 @@ pub struct Sample {
 
 /// Whether the torque is a compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Supervised {
     /// As the compensator says. Where it gives none, the torque falls to 0 within its slew limit.
     Compensator(Status),

@@ -121,6 +121,7 @@ const LARGEST: f32 = 1.0e9;
 
 /// Which setting of a supervision cannot be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SupervisionError {
     /// The inertia is not from 0 to 1e9 kg m^2.
     Inertia,

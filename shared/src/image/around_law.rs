@@ -68,10 +68,9 @@ impl<'a> BehindLaw<'a> {
     /// Trained range of the input.
     #[inline(always)]
     pub(super) fn range(&self) -> [f32; 2] {
-        match self.input.first_chunk() {
-            Some(&[_unit, a, b, c, d, e, f, g, h]) => [[a, b, c, d], [e, f, g, h]].map(f32::from_le_bytes),
-            None => [0.0; 2],
-        }
+        let fields = &mut Fields::new(self.input);
+        let _unit = fields.bytes(1);
+        [fields.float(), fields.float()]
     }
 
     /// So many cells from one on.

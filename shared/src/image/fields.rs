@@ -19,10 +19,13 @@ impl<'a> Fields<'a> {
     /// So many bytes; none where there are not so many.
     #[inline(never)]
     pub(super) fn bytes(&mut self, count: usize) -> &'a [u8] {
-        let (bytes, rest) = self.rest.split_at_checked(count).unwrap_or_default();
-        self.were_there &= bytes.len() == count;
-        self.rest = rest;
-        bytes
+        if let Some((bytes, rest)) = self.rest.split_at_checked(count) {
+            self.rest = rest;
+            bytes
+        } else {
+            *self = Self { rest: &[], were_there: false };
+            &[]
+        }
     }
 
     /// One byte.

@@ -28,6 +28,7 @@ pub(super) const COVERED_HEADER_BYTES: usize = 12;
 
 /// Why an image is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImageError {
     /// The bytes end before the image does.

@@ -62,9 +62,10 @@ impl<'a> TableImage<'a> {
         let layout = Geometric::new(shape);
         ensure(layout.fits(), InvalidModel::TableShape)?;
         let column = behind.column(shape.first_cell, layout.cells())?;
+        let (words, _) = column.as_flattened().as_chunks();
         // Behind a black box the loop stays as short as it is written.
-        let words = black_box(column.as_flattened().as_chunks().0);
-        ensure(words.iter().all(|word| is_usable(u32::from_le_bytes(*word))), InvalidModel::Coefficient)?;
+        let are_usable = words.iter().all(|word| is_usable(black_box(u32::from_le_bytes(*word))));
+        ensure(are_usable, InvalidModel::Coefficient)?;
         Ok(Self { layout, cells: behind.cells, output_unit: behind.output_unit, joint: before.joint })
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use frikan_tests::c::{EVERY_FEATURE, EXAMPLE_INPUTS, example, example_of_nothing};
-use frikan_tests::cost::{count, count_integer, count_integer_steps, count_rows, count_steps};
+use frikan_tests::cost::{count, count_integer, count_integer_steps, count_rows, count_steps, count_supervised};
 use frikan_tests::models::{self, TestModel, stribeck_friction};
 use frikan_tests::vectors::one_input;
 use frikan_trainer::emulator::{Answer, Emulator, Firmware, Footprint, Mode, Request, footprint};
@@ -71,6 +71,7 @@ fn main() -> Result<()> {
         append_target(&mut page, &firmware, &name)?;
     }
     append_features(&mut page, &firmware)?;
+    append_supervised(&mut page, &firmware)?;
     append_c_library(&mut page)?;
     append_peers(&mut page, &firmware)?;
     write_whole(Path::new(PAGE), page.as_bytes())?;
@@ -159,6 +160,26 @@ fn append_features(page: &mut String, firmware: &Firmware) -> Result<()> {
                 "| {shown} | {flash} | {model_bytes} | {decode_stack_bytes} | {evaluate_stack_bytes} | {step} | {decode_instructions} |\n"
             ),
         );
+    }
+    Ok(())
+}
+
+/// The supervised step on Cortex-M4F.
+fn append_supervised(page: &mut String, firmware: &Firmware) -> Result<()> {
+    append(
+        page,
+        format_args!(
+            "\n## The supervised step on cortex-m4f\n\n\
+         The symmetric table in flash under a supervisor, over 4096 samples of a sine behind its reference, with rests. RAM is compensator, supervisor, last\n\
+         sample and answer.\n\n\
+         | step | step, instructions | stack, step B | RAM B |\n|---|---|---|---|\n"
+        ),
+    );
+    let emulator = Emulator::with_binary(&firmware.with_features("table,watched"), "cortex-m4f", "emulate-supervised")?;
+    for (step, learns) in [("supervised", false), ("supervised, with `--adapt`", true)] {
+        let answer = count_supervised(&emulator, &models::symmetric_table(), learns)?;
+        let (range, stack, ram) = (range(&answer), answer.evaluate_stack_bytes, answer.model_bytes);
+        append(page, format_args!("| {step} | {range} | {stack} | {ram} |\n"));
     }
     Ok(())
 }

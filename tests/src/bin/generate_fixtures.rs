@@ -17,7 +17,7 @@ fn recordings(folder: &Path) -> Result<()> {
 }
 
 fn bits(folder: &Path) -> Result<()> {
-    for name in ["elbow", "stribeck"] {
+    for name in ["elbow", "stribeck", "integers"] {
         let (_, image) = model::load(&folder.join(name).with_extension("frk"))?;
         write_whole(&folder.join(name).with_extension("bits"), output_bits(&image.model).as_bytes())?;
     }

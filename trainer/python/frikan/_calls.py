@@ -37,7 +37,8 @@ def fit(
     """Fits the friction law of one joint.
 
     ``test`` is only scored; ``inputs`` of the law are chosen by relevance when absent; ``representation`` is ``"table"`` or
-    ``"expression"``; ``rate`` of the samples in Hz; ``target`` is the drive that has to have room for the image. ``progress`` is called
+    ``"expression"``; ``rate`` of the samples in Hz; ``target`` is the drive that has to have room for the image; one without floating-point unit gets a table of integers
+    (``Fitted.integers``). ``progress`` is called
     with stage, steps and error while it works. One seed, one result.
     """
     native = _frikan.fit(

@@ -73,6 +73,11 @@ class Fitted:
         return Image(self._native.image())
 
     @property
+    def integers(self) -> Optional[dict[str, Any]]:
+        """The table of integers for a drive without floating-point unit: counts, error and instructions; ``None`` where it is none."""
+        return self.json["integers"]
+
+    @property
     def doubt(self) -> Optional[tuple[str, str]]:
         """Code and sentence of why the fit may not be relied upon; ``None`` where it may."""
         return self._native.doubt()

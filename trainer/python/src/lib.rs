@@ -50,8 +50,10 @@ fn fit(
         Some("expression") => Some(Representation::Expression),
         Some(other) => return Err(unknown("representation", other)),
     };
-    let budget = Budget { bytes: max_bytes, instructions: max_instructions, target: profile(target)? };
-    let options = Options { seed, inputs, representation, rate_hz: rate, budget, ..Options::default() };
+    let target = profile(target)?;
+    let budget = Budget { bytes: max_bytes, instructions: max_instructions, target: target.unwrap_or_default() };
+    let integers = target.is_some_and(|target| !target.has_floats);
+    let options = Options { seed, inputs, representation, rate_hz: rate, budget, integers, ..Options::default() };
     let done = watched(py, progress, move |progress: &Progress| {
         let [recordings, tests] =
             [&recordings, &tests].map(|all| all.iter().map(Recording::source).collect::<Vec<_>>());
@@ -153,7 +155,7 @@ fn arm(
 ) -> PyResult<ArmObject> {
     let prepared = source::arm_file(arm_file).and_then(|file| Ok((file, source::text(&urdf)?)));
     let (file, urdf) = prepared.map_err(|error| raise(py, &error))?;
-    let budget = Budget { target: profile(target)?, ..Budget::default() };
+    let budget = Budget { target: profile(target)?.unwrap_or_default(), ..Budget::default() };
     let options = Options { seed, budget, ..Options::default() };
     let done = watched(py, progress, move |progress: &Progress| {
         let [recordings, tests] =
@@ -201,8 +203,8 @@ fn simulate(
     done.map_err(|error| raise(py, &error.into()))
 }
 
-fn profile(name: Option<&str>) -> PyResult<Profile> {
-    name.map_or(Ok(Profile::default()), |name| Profile::named(name).ok_or_else(|| unknown("target", name)))
+fn profile(name: Option<&str>) -> PyResult<Option<Profile>> {
+    name.map(|name| Profile::named(name).ok_or_else(|| unknown("target", name))).transpose()
 }
 
 fn unknown(what: &str, name: &str) -> PyErr {

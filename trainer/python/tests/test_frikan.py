@@ -198,6 +198,13 @@ def test_a_regressor_goes_through_scikit_learn():
     assert scores.min() > 0.98
 
 
+def test_a_drive_without_floating_point_unit_gets_integers():
+    fitted = frikan.fit(FIXTURES / "stribeck.csv", target="cortex-m0plus")
+    assert fitted.integers["target"] == "cortex-m0plus" and fitted.integers["error"]["share"] < 0.01
+    assert "integers    a table of" in str(fitted)
+    assert frikan.fit(FIXTURES / "stribeck.csv", target="cortex-m4f").integers is None
+
+
 def test_what_is_refused_is_an_exception_with_its_place(tmp_path):
     (tmp_path / "bad.csv").write_text("time_s,position_rad,torque_Nm\n" + "0.1,oops,1\n" * 30)
     with pytest.raises(frikan.Error) as refused:

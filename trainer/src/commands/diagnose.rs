@@ -110,7 +110,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         recordings: arguments.recordings.iter().map(Source::from).collect(),
         against,
         lock: arguments.lock,
-        target: arguments.target.unwrap_or_default(),
+        target: arguments.target,
         least_effect: arguments.least_effect,
         by_likelihood: arguments.by_likelihood,
         seed: arguments.seed,

@@ -15,12 +15,13 @@ use frikan_shared::model::Law;
 use self::model_file::ModelFileArguments;
 use self::number::number;
 use self::slot::FlashArguments;
+use super::measurement::{joint, table_in_counts};
 use super::output::{Outputs, print, refuse_unwritable, say};
 use crate::error::{Error, Result, codes};
 use crate::export::elf::{Processor, object_file};
 use crate::export::flashing::{Addressing, commands};
 use crate::export::simulator::Simulator;
-use crate::export::source::{c, python, rust};
+use crate::export::source::{c, integers, python, rust};
 use crate::export::{c_array, hex, readable, title, uf2};
 use crate::fit::{CELLS, model};
 use crate::key;
@@ -47,8 +48,11 @@ pub struct Export {
     /// Put the tag of the key in this file behind the image, for drives that ask for one
     #[arg(long, value_name = "KEY")]
     pub key_file: Option<PathBuf>,
-    /// Number the release, under the tag: a drive refuses an older one than its firmware has seen
-    #[arg(long, value_parser = number, value_name = "NUMBER", requires = "key_file")]
+    /// Put a signature by the secret in this file, 64 hexadecimal digits, behind the image, and print the public key for the drives
+    #[arg(long, value_name = "SECRET", conflicts_with = "key_file")]
+    pub signing_key_file: Option<PathBuf>,
+    /// Number the release, under tag or signature: a drive refuses an older one than its firmware has seen
+    #[arg(long, value_parser = number, value_name = "NUMBER")]
     pub release: Option<u32>,
     /// Processor family, needed for `uf2`: a boot loader takes no file of another (github.com/microsoft/uf2, `utils/uf2families.json`)
     #[arg(long, value_parser = number, value_name = "NUMBER")]
@@ -80,7 +84,7 @@ pub enum Format {
     Elf,
     /// The bytes as the array FILE_image for a C compiler
     CHeader,
-    /// Law and effects as C source that needs nothing else, the very bits of the drive: FILE.c and FILE.h
+    /// Law and effects as C source that needs nothing else, the very bits of the drive: FILE.c and FILE.h; an integer table from counts to counts
     C,
     /// Everything that the image says, readable
     Json,
@@ -130,6 +134,7 @@ pub enum ElfProcessor {
 pub fn run(arguments: &Export) -> Result<()> {
     let mut read = vec![arguments.model.as_path()];
     read.extend(arguments.key_file.as_deref());
+    read.extend(arguments.signing_key_file.as_deref());
     read.extend(arguments.model_file.inputs());
     let header = (arguments.to == Format::C).then(|| c_names(&arguments.output)).transpose()?.map(|(_, header)| header);
     refuse_unwritable([Some(&arguments.output), header.as_ref()].into_iter().flatten(), &read)?;
@@ -166,7 +171,11 @@ pub fn run(arguments: &Export) -> Result<()> {
         }
         Format::C => {
             let (name, header) = c_names(&arguments.output)?;
-            let evaluator = c::evaluator(&name, &title, &image)?;
+            let joint = joint(arguments.model_file.joint.as_deref(), false)?;
+            let evaluator = match table_in_counts(&image_bytes, &image.model, &joint.drive)? {
+                Some((units, _)) => integers::evaluator(&name, &title, &image.model, units)?,
+                None => c::evaluator(&name, &title, &image)?,
+            };
             outputs.add(&header, evaluator.header);
             evaluator.source.into_bytes()
         }
@@ -203,15 +212,29 @@ fn is_of_flash(format: Format) -> bool {
 
 /// What goes to flash: the image, its tag behind it and the header of its slot in front, as asked for.
 fn flashed(arguments: &Export, image: Vec<u8>) -> Result<Vec<u8>> {
-    let dressed = arguments.slot.is_some() || arguments.key_file.is_some();
+    let is_signed = arguments.key_file.is_some() || arguments.signing_key_file.is_some();
+    if arguments.release.is_some() && !is_signed {
+        return Err(Error::new(
+            &codes::USAGE,
+            "a release has a number under a tag or a signature: `--key-file` or `--signing-key-file`",
+        ));
+    }
+    let dressed = arguments.slot.is_some() || is_signed;
     if dressed && !is_of_flash(arguments.to) {
         return Err(Error::new(&codes::USAGE, "this form is not the bytes of flash: it takes neither slot nor key"));
     }
     let mut bytes = image;
+    bytes.extend(arguments.release.iter().flat_map(|number| release_block(*number)));
     if let Some(path) = &arguments.key_file {
-        bytes.extend(arguments.release.iter().flat_map(|number| release_block(*number)));
         let tag = key::load(path)?.tag(&bytes);
         bytes.extend(tag);
+    }
+    if let Some(path) = &arguments.signing_key_file {
+        let signer = key::signer(path)?;
+        let signature = signer.sign(&bytes);
+        bytes.extend(signature);
+        let public_key: String = signer.public_key().iter().map(|byte| format!("{byte:02x}")).collect();
+        say(&format!("public key {public_key}"));
     }
     match arguments.slot {
         Some(sequence) => arguments.flash.slot(sequence, &bytes, arguments.address),

@@ -2,12 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use frikan_runtime::integer::{IntegerTableInPlace, Units};
+
 use super::output::say;
 use crate::actuator::Kind;
+use crate::compile::integers::steps::units;
 use crate::compile::profile::{PROFILES, Profile};
 use crate::did_you_mean::hint;
-use crate::error::{Result, codes};
-use crate::joint::Joint;
+use crate::error::{Error, Result, codes};
+use crate::fit::HostModel;
+use crate::joint::{Drive, Joint};
 
 pub(super) use crate::workflow::recordings::{Source, motion};
 use crate::workflow::recordings::{load_all, load_with_faults};
@@ -38,6 +42,23 @@ pub(super) fn rehearse(recordings: &[Source<'_>], joint: &Joint, written: &[&Pat
     lines.extend(warnings.iter().map(|warning| format!("             {warning}")));
     lines.extend(written.iter().map(|path| format!("would write  {}", path.display())));
     Ok(lines.join("\n") + "\n")
+}
+
+/// The integer table of an image in the counts of a drive; none where its law is another.
+///
+/// # Errors
+/// `FRK-U001` where the image is for other counts than those of the joint file.
+pub(super) fn table_in_counts<'a>(
+    image: &'a [u8],
+    model: &HostModel,
+    drive: &Drive,
+) -> Result<Option<(Units, IntegerTableInPlace<'a>)>> {
+    let Some(units) = units(model, [drive.velocity_count_rad_s, drive.torque_count_nm]) else { return Ok(None) };
+    let table = IntegerTableInPlace::new(image, units).map_err(|error| {
+        let message = format!("the table of integers is not for these counts: {error}");
+        Error::new(&codes::USAGE, message).with_value(format!("{:?} and {:?}", units.velocity, units.torque))
+    })?;
+    Ok(Some((units, table)))
 }
 
 /// The file in which `fit` writes what it identified of the actuator, beside its image.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use frikan_shared::authentication::Trust;
 use frikan_shared::image::{FORMAT_VERSION, Image, image_crc32, image_version};
 use frikan_shared::model::{Law, LawError, RIGID_BODY_CONSTANTS, RigidBodyError};
 
@@ -38,6 +39,9 @@ pub struct Show {
     /// Ask for the tag of the key in this file, as the drive does
     #[arg(long, value_name = "KEY")]
     pub key_file: Option<PathBuf>,
+    /// Ask for a signature by the secret of the public key in this file, as the drive does
+    #[arg(long, value_name = "KEY", conflicts_with = "key_file")]
+    pub public_key_file: Option<PathBuf>,
 }
 
 /// Runs the command and returns its exit status.
@@ -45,12 +49,19 @@ pub struct Show {
 /// # Errors
 /// `FRK-D020` for what holds no image, `FRK-D022` for what is no key, `FRK-I...` when a file cannot be read.
 pub fn run(arguments: &Show) -> Result<u8> {
-    let read = [Some(&arguments.model), arguments.compare.as_ref(), arguments.key_file.as_ref()];
+    let read = [
+        Some(&arguments.model),
+        arguments.compare.as_ref(),
+        arguments.key_file.as_ref(),
+        arguments.public_key_file.as_ref(),
+    ];
     refuse_unwritable(&arguments.json, &read.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let key = arguments.key_file.as_deref().map(key::load).transpose()?;
+    let public_key = arguments.public_key_file.as_deref().map(key::public).transpose()?;
+    let trust = key.as_ref().map(Trust::Key).or_else(|| public_key.as_ref().map(Trust::Signed));
     let wanted = arguments.compare.as_deref().map(model::load).transpose()?;
     let bytes = read_whole(&arguments.model, DUMP_LIMIT_BYTES)?;
-    let found = images(&bytes, key.as_ref());
+    let found = images(&bytes, trust);
     if !found.iter().any(|found| found.image.is_ok()) {
         // Nothing to show: what a decoder says of the file as a whole.
         return model::from_bytes(&bytes).map(|_| 0).map_err(|e| e.in_file(arguments.model.display().to_string()));

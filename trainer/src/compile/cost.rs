@@ -6,6 +6,8 @@ use frikan_shared::expression::{Operation, Program};
 use frikan_shared::model::{Law, Model};
 use frikan_shared::network::Network;
 
+use super::profile::Profile;
+
 /// Of a program of no operations, the call included.
 const PROGRAM: u32 = 74;
 /// Of a table with cells that grow from zero, of equal cells, and of integers from and to floating point.
@@ -56,6 +58,11 @@ const FLOAT_STEPS: [(&str, Rows); 3] = [
 const RISCV_FLOAT_STEPS: Rows =
     [(TABLE_ROW, [647, 944]), (UNIFORM_ROW, [945, 1298]), (FORMULA_ROW, [2373, 4022]), (NETWORK_ROW, [836, 1177])];
 
+/// Fewest and most instructions by which the rows of docs/drive-cost.md with one correction term, of four elements at most, are above that of [`TABLE_ROW`].
+const FLOAT_TERMS: [(&str, [u32; 2]); 3] =
+    [("cortex-m0plus", [1050, 20591]), ("riscv32imac", RISCV_FLOAT_TERMS), ("riscv32imc", RISCV_FLOAT_TERMS)];
+const RISCV_FLOAT_TERMS: [u32; 2] = [777, 11396];
+
 /// Instructions of a step of the integer compensator, the same for every count; `tests/tests/emulation_integer.rs` counts them again.
 const INTEGER_STEPS: [(&str, u32); 3] = [("cortex-m0plus", 139), ("riscv32imac", 124), ("riscv32imc", 124)];
 
@@ -71,6 +78,30 @@ pub fn float_step(target: &str, law: &Law) -> Option<FloatStep> {
     let (_, rows) = FLOAT_STEPS.into_iter().find(|(name, _)| *name == target)?;
     let (row, instructions) = rows.into_iter().find(|(kind, _)| *kind == row)?;
     Some(FloatStep { row, instructions })
+}
+
+/// By how many instructions, at least and at most, a correction term makes a step in floats longer on a drive without floating-point unit; none for other
+/// drives.
+#[must_use]
+pub fn float_term(target: &str) -> Option<[u32; 2]> {
+    FLOAT_TERMS.into_iter().find_map(|(name, instructions)| (name == target).then_some(instructions))
+}
+
+/// What a step of a model in floats takes on a drive without floating-point unit, in a sentence; none for other drives.
+#[must_use]
+pub fn in_floats<const CELLS: usize>(target: Profile, model: &Model<CELLS>) -> Option<String> {
+    let name = target.name;
+    let FloatStep { row, instructions: [least, most] } = float_step(name, &model.law)?;
+    let terms = match (model.effects.len(), float_term(name)?) {
+        (0, _) => String::new(),
+        (1, [least, most]) => format!(", the correction beside it {least} to {most} more"),
+        (many, [least, most]) => format!(", each of the {many} corrections beside it {least} to {most} more"),
+    };
+    let in_integers = integer_step(name)?;
+    Some(format!(
+        "{name} has no floating-point unit: in floats a step of a {row} takes {least} to {most} instructions there{terms} (docs/drive-cost.md; `trainer verify \
+         --target {name}` counts those of the image). A law of the velocity alone takes {in_integers} as a table of integers (`trainer fit --target {name}`)"
+    ))
 }
 
 /// Instructions of a step of the integer compensator on a drive without floating-point unit; none for other drives.

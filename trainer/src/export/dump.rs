@@ -1,7 +1,7 @@
 //! What flash holds: finds the images in a dump, wherever they begin, with their slots and tags.
 
 use frikan_runtime::slots::{SLOT_HEADER_BYTES, valid_slots};
-use frikan_shared::authentication::{Key, Trust};
+use frikan_shared::authentication::Trust;
 use frikan_shared::image::{Image, ImageError, MAGIC, decode};
 
 use crate::fit::CELLS;
@@ -18,7 +18,7 @@ pub struct Found<'a> {
     pub sequence: Option<u32>,
     /// The image's bytes and content, or why it is none.
     pub image: Result<(&'a [u8], Box<Image<CELLS>>), ImageError>,
-    /// Whether the tag of the key stands behind it, where a key was given.
+    /// Whether the tag or the signature that is asked for stands behind it, where one is.
     pub authentic: Option<bool>,
     /// Number of the release, where the tag says so; 0 for none.
     pub release: u32,
@@ -32,9 +32,9 @@ impl Found<'_> {
     }
 }
 
-/// Every image in `dump`, in the order of addresses.
+/// Every image in `dump`, in the order of addresses; `trust` is that of a drive which asks for a tag or a signature.
 #[must_use]
-pub fn images<'a>(dump: &'a [u8], key: Option<&Key>) -> Vec<Found<'a>> {
+pub fn images<'a>(dump: &'a [u8], trust: Option<Trust<'_>>) -> Vec<Found<'a>> {
     let starts = (0..dump.len()).filter(|&offset| dump[offset..].starts_with(&MAGIC));
     let found = |offset: usize| {
         let stored = Trust::Anyone.stored(&dump[offset..]);
@@ -43,8 +43,7 @@ pub fn images<'a>(dump: &'a [u8], key: Option<&Key>) -> Vec<Found<'a>> {
             let header = dump.get(offset.checked_sub(before)?..)?.get(..SLOT_HEADER_BYTES)?;
             valid_slots(&[header, &dump[offset..]].concat(), &[])[0].map(|slot| slot.sequence)
         });
-        let released = key.map(|key| {
-            let trust = Trust::Key(key);
+        let released = trust.map(|trust| {
             let (image, release) = trust.stored(&dump[offset..]).and_then(|bytes| trust.released(bytes))?;
             decode::<CELLS>(image).map(|_| release)
         });
@@ -74,7 +73,7 @@ pub fn in_use<'a, 'b>(found: &'b [Found<'a>]) -> Option<&'b Found<'a>> {
 mod tests {
     use super::*;
     use frikan_runtime::slots::slot_header;
-    use frikan_shared::authentication::release_block;
+    use frikan_shared::authentication::{Key, release_block};
 
     const KEY: Key = Key::new([3; 32]);
 
@@ -87,7 +86,7 @@ mod tests {
         let mut release = [&golden("elbow")[..], &release_block(7)].concat();
         release.extend(KEY.tag(&release));
         let dump = slot(1, &release);
-        let found = |key| images(&dump, key).remove(0);
+        let found = |key: Option<&Key>| images(&dump, key.map(Trust::Key)).remove(0);
         assert_eq!((found(Some(&KEY)).release, found(Some(&KEY)).authentic), (7, Some(true)));
         assert_eq!((found(None).release, found(Some(&Key::new([4; 32]))).release), (0, 0));
     }
@@ -103,7 +102,7 @@ mod tests {
         let (elbow, stribeck) = (golden("elbow"), golden("stribeck"));
         let tagged = [&stribeck[..], &KEY.tag(&stribeck)].concat();
         let dump = [vec![0xFF; 100], slot(u32::MAX, &elbow), slot(0, &tagged)].concat();
-        let found = images(&dump, Some(&KEY));
+        let found = images(&dump, Some(Trust::Key(&KEY)));
         let places: Vec<_> = found.iter().map(|image| (image.offset, image.sequence, image.authentic)).collect();
         assert_eq!(places, [(116, Some(u32::MAX), Some(false)), (2164, Some(0), Some(true))]);
         assert_eq!(found[0].image.as_ref().unwrap().0, elbow);

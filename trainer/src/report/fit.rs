@@ -5,6 +5,7 @@ use super::ink::Ink;
 use super::page::{Origin, PARAMETER_HEADER, Page, Plot, Size, columns, parameter_rows};
 use crate::figures::{digits, quantity};
 use crate::fit::outcome::{Outcome, Soundness, Trace};
+use crate::physics::names::capital;
 use crate::recording::Axis;
 
 /// Pictures of activations at most.
@@ -29,6 +30,7 @@ pub fn fit(outcome: &Outcome, warnings: &[String], origin: &Origin<'_>) -> Strin
     law(&mut page, outcome);
     page.html("</div>");
     scores(&mut page, outcome);
+    integers(&mut page, outcome);
     for trace in outcome.train.iter().chain(&outcome.tests) {
         over_time(&mut page, trace, outcome.unit);
     }
@@ -73,6 +75,16 @@ fn scores(page: &mut Page, outcome: &Outcome) {
         .chain(outcome.tests.iter().map(|trace| row("test", trace)))
         .collect();
     page.table(&["use", "recording", "rows", "R2", "error (RMS)", "relative error, filtered"], &rows);
+}
+
+/// The table of integers, where the image holds one.
+fn integers(page: &mut Page, outcome: &Outcome) {
+    if let Some(integers) = &outcome.integers {
+        page.heading(&format!("In integers on {}", integers.target));
+        let of_velocity = outcome.inputs.first().map_or("", |velocity| velocity.unit);
+        let sentences = integers.told([of_velocity, outcome.unit]).map(|told| format!("{}.", capital(&told)));
+        page.list(&sentences, "facts");
+    }
 }
 
 fn velocity_label(outcome: &Outcome) -> &'static str {

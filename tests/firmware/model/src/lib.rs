@@ -10,6 +10,8 @@ mod integer;
 mod joint;
 #[cfg(feature = "models")]
 mod laws;
+#[cfg(feature = "watched")]
+mod watched;
 
 #[cfg(any(feature = "models", feature = "table"))]
 pub use drive::Drive;
@@ -19,6 +21,8 @@ pub use integer::CountingDrive;
 pub use joint::{Joint, Model, joint, read};
 #[cfg(feature = "models")]
 pub use laws::{IntegerDrive, StaticLaw};
+#[cfg(feature = "watched")]
+pub use watched::WatchedDrive;
 
 use frikan_shared::image::ImageError;
 #[cfg(feature = "models")]

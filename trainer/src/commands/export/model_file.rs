@@ -34,7 +34,7 @@ pub struct ModelFileArguments {
     /// tried; where nothing is said, a `position` actuator of the file, or a soft and a stiff controller
     #[arg(long, value_name = "KP,KV", requires = "into", value_parser = gains)]
     pub gains: Option<[f64; 2]>,
-    /// joint.toml: torque constant and gear ratio, for a law of the current; `[actuator]`, of which simulators of the MuJoCo family and Isaac Lab
+    /// joint.toml: the counts of `[drive]`, for `c` of an integer table; torque constant and gear ratio, for a law of the current; `[actuator]`, of which simulators of the MuJoCo family and Isaac Lab
     /// get gains and limit, with what `fit` identified of it beside the image
     #[arg(long, value_name = "JOINT.toml")]
     pub joint: Option<PathBuf>,

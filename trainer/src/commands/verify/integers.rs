@@ -1,15 +1,16 @@
 //! An integer table in the counts of a drive: the integer compensator against its reference.
 
-use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, IntegerTableInPlace, Units};
+use frikan_runtime::integer::{IntegerCompensator, IntegerLimits, Units};
 use serde_json::{Value, json};
 
 use super::told::{Cost, line};
+use crate::commands::measurement::table_in_counts;
 use crate::compile::integers::steps::{
-    INTEGER_CALL_WORDS, IntegerDifference, compare_integer_answers, integer_calls, integer_step, units,
+    INTEGER_CALL_WORDS, IntegerDifference, compare_integer_answers, integer_calls, integer_step,
 };
 use crate::compile::verify::Comparison;
 use crate::emulator::{Emulator, Firmware, Mode, Request, footprint};
-use crate::error::{Error, Result, codes};
+use crate::error::Result;
 use crate::fit::HostModel;
 use crate::joint::Drive;
 
@@ -42,11 +43,7 @@ pub(super) struct InIntegers {
 /// # Errors
 /// `FRK-U001` where the image is for other counts than those of the joint file; those of the emulator.
 pub(super) fn compare(place: Place<'_>, image: &[u8], model: &HostModel, drive: &Drive) -> Result<Option<InIntegers>> {
-    let Some(units) = units(model, [drive.velocity_count_rad_s, drive.torque_count_nm]) else { return Ok(None) };
-    let table = IntegerTableInPlace::new(image, units).map_err(|error| {
-        let message = format!("the table of integers is not for these counts: {error}");
-        Error::new(&codes::USAGE, message).with_value(format!("{:?} and {:?}", units.velocity, units.torque))
-    })?;
+    let Some((units, table)) = table_in_counts(image, model, drive)? else { return Ok(None) };
     let counts = match place {
         Place::Host { exhaustively: true } => ALL_COUNTS,
         Place::Host { exhaustively: false } => COUNTS,

@@ -48,7 +48,7 @@ pub struct Library {
 /// where effects move the link, the correction of the position its outputs.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no form in C: networks and integer tables.
+/// `FRK-U005` for an integer table.
 pub fn unit(image: &Image<CELLS>, title: &str, crc32: u32) -> Result<CoSimulation> {
     let identifier = identifier(crc32);
     let c::Evaluator { header, source } = c::evaluator(&identifier, title, image)?;

@@ -4,11 +4,12 @@
 use std::fmt::Write;
 
 use frikan_shared::image::Image;
-use frikan_shared::model::Model;
+use frikan_shared::model::{Law, Model};
 
 use super::language::Language;
 use super::law::{identifier, law, no_law, parameters, reads_position, step, unusable};
 use super::library;
+use super::network;
 use crate::error::Result;
 use crate::fit::CELLS;
 
@@ -25,7 +26,7 @@ pub struct Evaluator {
 /// `NAME_step` of a `NAME_state`. What of `name` C does not take becomes `_`.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no such form: networks and integer tables need the library.
+/// `FRK-U005` for an integer table: [`super::integers`] has it.
 pub fn evaluator(name: &str, title: &str, image: &Image<CELLS>) -> Result<Evaluator> {
     let model = &image.model;
     let stem = identifier(name);
@@ -38,11 +39,13 @@ pub fn evaluator(name: &str, title: &str, image: &Image<CELLS>) -> Result<Evalua
         let _ = write!(functions, "\n{prototype} {{\n{}}}\n", indented(&body_of_step(model, &stem)));
         prototypes.push((state(model, &stem), prototype));
     }
-    let cells = if model.cells.is_empty() { String::new() } else { cells(model) };
+    let edges = if matches!(model.law, Law::Network(_)) { network::edges(model) } else { String::new() };
+    // Of a network only effects read cells as floats.
+    let cells = if functions.contains("(cells, ") { cells(model) } else { String::new() };
     let library = library::needed(Language::C, &functions);
     Ok(Evaluator {
-        header: header(&stem, title, &prototypes),
-        source: format!("{}{library}{cells}{functions}", preamble(name, title)),
+        header: header(&stem, title, "", &prototypes),
+        source: format!("{}{library}{edges}{cells}{functions}", preamble(name, title)),
     })
 }
 
@@ -101,10 +104,12 @@ fn preamble(name: &str, title: &str) -> String {
     )
 }
 
-fn header(stem: &str, title: &str, prototypes: &[(String, String)]) -> String {
+/// The header of functions, each behind its comment; `includes` stands in front.
+pub(super) fn header(stem: &str, title: &str, includes: &str, prototypes: &[(String, String)]) -> String {
     let guard = format!("{}_H", stem.to_ascii_uppercase());
     let mut text = format!("/* {title}. Made by `trainer export --to c`; do not edit. */\n");
-    let _ = write!(text, "#ifndef {guard}\n#define {guard}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n");
+    let _ =
+        write!(text, "#ifndef {guard}\n#define {guard}\n\n{includes}#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n");
     for (comment, prototype) in prototypes {
         let _ = write!(text, "{comment}{prototype};\n\n");
     }
@@ -114,7 +119,9 @@ fn header(stem: &str, title: &str, prototypes: &[(String, String)]) -> String {
 fn cells(model: &Model<CELLS>) -> String {
     let mut text = format!("static const float cells[{}][4] = {{\n", model.cells.len());
     for cell in model.cells.iter() {
-        let row = Language::C.inner(&cell.floats().map(|value| Language::C.number(value)));
+        // What is no number is an edge of a network, and read by no table.
+        let number = |value: f32| Language::C.number(if value.is_finite() { value } else { 0.0 });
+        let row = Language::C.inner(&cell.floats().map(number));
         let _ = writeln!(text, "    {row},");
     }
     text + "};\n\n"

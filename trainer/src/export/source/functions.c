@@ -205,6 +205,39 @@ static float uniform(const float table[][4], float x, float low, float scale, co
     return cubic(table[place[0] + (product >> 32)], way(product));
 }
 
+/* where a value lies among the rows of its edges, and the way through the row, 2^32 for the whole of it */
+struct spot {
+    uint32_t row, way;
+};
+
+static struct spot spot_of(uint32_t position, uint32_t rows) {
+    const uint64_t product = (uint64_t)position * rows;
+    const struct spot spot = {(uint32_t)(product >> 32), (uint32_t)product};
+    return spot;
+}
+
+static struct spot spot_geometric(float x, float offset, const uint32_t sides[2][4]) {
+    const uint32_t *side = sides[bits_of(x) >> 31];
+    const uint32_t distance = bits_of(magnitude_of(x) + offset) - side[0];
+    return spot_of(distance < side[1] ? distance : side[1], side[2]);
+}
+
+static struct spot spot_uniform(float x, float low, float scale, uint32_t rows) {
+    return spot_of(saturated((x - low) * scale), rows);
+}
+
+/* the high word of a product */
+static int32_t high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
+
+/* edges from a spot on, each a cubic of the way, onto the sums in which they end */
+static void add_edges(uint32_t sums[], uint32_t targets, const int32_t edges[][4], struct spot spot) {
+    const int32_t x = (int32_t)(spot.way >> 1);
+    for (uint32_t target = 0; target < targets; target++) {
+        const int32_t *a = edges[spot.row * targets + target];
+        sums[target] += (uint32_t)a[0] + (uint32_t)high(a[1] + high(a[2] + high(a[3], x), x), x);
+    }
+}
+
 /* a sample within the trained ranges; angle is the position as measured */
 struct motion {
     float velocity, position, load, temperature, angle, law, dt, travel;

@@ -7,6 +7,7 @@ use frikan_shared::units::Quantity;
 use super::effects::statements_of_effect;
 use super::language::Language;
 use super::lookup::lookup;
+use super::network;
 use super::program;
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;
@@ -59,7 +60,8 @@ fn is_no_law(language: Language, model: &Model<CELLS>) -> String {
     let names = parameters(model).into_iter();
     if !model.effects.is_empty() {
         // A table reads its first input alone.
-        let read = if matches!(model.law, Law::Expression(_)) { model.inputs.len() } else { 1 };
+        let reads_all = matches!(model.law, Law::Expression(_) | Law::Network(_));
+        let read = if reads_all { model.inputs.len() } else { 1 };
         return language.any(&names.take(read).map(is_nan).collect::<Vec<_>>());
     }
     let not_finite = names.map(|name| language.not(&format!("is_finite({name})")));
@@ -70,7 +72,7 @@ fn is_no_law(language: Language, model: &Model<CELLS>) -> String {
 /// Statements of the static law, the last of which returns it.
 ///
 /// # Errors
-/// `FRK-U005` for networks and integer tables.
+/// `FRK-U005` for networks but in C, and for integer tables, which [`super::integers`] has.
 pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String>> {
     let names = parameters(model);
     let nothing = language.return_where(&is_no_law(language, model), 0.0);
@@ -95,8 +97,13 @@ pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String
             statements.push(language.last(&format!("limited({result}, {limit})")));
             Ok(statements)
         }
-        Law::Network(_) => refusal("a network has no form in source code; it needs the library"),
-        Law::IntegerTable(_) => refusal("an integer table has no form in source code; it needs the library"),
+        Law::Network(network) if language == Language::C => {
+            Ok([vec![nothing], network::statements(network, &names)].concat())
+        }
+        Law::Network(_) => refusal("a network has no form in this language: export it to C, or take the library"),
+        Law::IntegerTable(_) => refusal(
+            "an integer table has no such form: `trainer export --to c` writes it in counts, or take the library",
+        ),
     }
 }
 

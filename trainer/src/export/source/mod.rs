@@ -1,12 +1,14 @@
 //! An image as source code without dependency, state and range hold included: C and Rust with the very bits of the runtime, Python in double
-//! precision. One list of statements is written in the three languages.
+//! precision. One list of statements is written in the three languages; networks and integer tables have a form in C.
 
 pub mod c;
 mod effects;
+pub mod integers;
 mod language;
 mod law;
 mod library;
 mod lookup;
+mod network;
 mod program;
 pub mod python;
 pub mod rust;

@@ -15,7 +15,7 @@ use crate::fit::CELLS;
 /// `Friction.step`, of numbers.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no such form: networks and integer tables need the library.
+/// `FRK-U005` for a law that has no such form: networks and integer tables have one in C.
 pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
     let model = &image.model;
     let names = parameters(model).join(", ");

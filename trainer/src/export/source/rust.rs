@@ -15,7 +15,7 @@ use crate::fit::CELLS;
 /// `Friction::step`. It needs nothing but `core`.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no such form: networks and integer tables need the library.
+/// `FRK-U005` for a law that has no such form: networks and integer tables have one in C.
 pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
     let model = &image.model;
     let names: Vec<String> = parameters(model).into_iter().map(|name| format!("{name}: f32")).collect();

@@ -16,6 +16,7 @@ use frikan_shared::units::Unit;
 use serde_json::Value;
 
 use super::recordings::{Warning, load_all, load_with_faults, units};
+use crate::compile::cost::in_floats;
 use crate::compile::improved::{Origin, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
@@ -278,8 +279,10 @@ fn improved_image(
         "A" => Unit::Ampere,
         _ => Unit::NewtonMetre,
     };
-    let improved = improve(diagnosis, comparison, origin, unit, request.target)
+    let mut improved = improve(diagnosis, comparison, origin, unit, request.target.unwrap_or_default())
         .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
+    // Of a drive that nobody named there is nothing to say.
+    improved.remarks.extend(request.target.and_then(|target| in_floats(target, &improved.model)));
     let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
     // What is scored is what a drive would decode.
     let after = fit::model::from_bytes(&image)?.model;

@@ -17,8 +17,8 @@ pub struct Request<'a> {
     pub against: Against<'a>,
     /// What is locked away for the proof.
     pub lock: Lock,
-    /// Drive that has to have room for the improved image.
-    pub target: Profile,
+    /// Drive that has to have room for the improved image; the smallest documented one where `None`.
+    pub target: Option<Profile>,
     /// Smallest effect worth acting on, as a share (0..1) of the torque beside the rigid body; the default where `None`.
     pub least_effect: Option<f64>,
     /// Whether sets of effects are weighed by one likelihood.
@@ -46,7 +46,7 @@ impl<'a> Request<'a> {
             recordings: recordings.to_vec(),
             against,
             lock: Lock::Spread,
-            target: Profile::default(),
+            target: None,
             least_effect: None,
             by_likelihood: false,
             seed: 0,

@@ -4,10 +4,6 @@ use serde_json::{Value, json};
 
 use crate::compile::integers::q_format;
 use crate::fit::{IntegerSummary, Outcome};
-use crate::law::significant;
-
-/// Significant digits of printed figures.
-const DIGITS: usize = 3;
 
 /// The unit of the velocity.
 fn velocity_unit(outcome: &Outcome) -> &'static str {
@@ -16,29 +12,8 @@ fn velocity_unit(outcome: &Outcome) -> &'static str {
 
 /// What `trainer fit` prints of it.
 pub(super) fn text(integers: &IntegerSummary, outcome: &Outcome) -> String {
-    let IntegerSummary { target, cells, counts, error, instructions, in_floats } = integers;
-    let (unit, of_velocity) = (outcome.unit, velocity_unit(outcome));
-    let count = |count: f32, unit: &str| {
-        let format = q_format(count).map_or(String::new(), |format| format!("{format}, "));
-        format!("{format}counts of {} {unit}", significant(f64::from(count), DIGITS))
-    };
-    let instructions =
-        instructions.map_or(String::new(), |number| format!(" takes {number} instructions a step on {target}"));
-    let in_floats = in_floats.map_or(String::new(), |step| {
-        let [least, most] = step.instructions;
-        format!("; in floats a {} takes {least} to {most} there (docs/drive-cost.md)", step.row)
-    });
-    format!(
-        "\nintegers    a table of {cells} cells{instructions}{in_floats}\n            velocity in {}, torque in {}\n            \
-         at every one of {} counts within {} {unit} of the law ({} % of the largest friction), furthest at {} {of_velocity}; root mean square {} {unit}\n",
-        count(counts.velocity, of_velocity),
-        count(counts.torque, unit),
-        error.counts,
-        significant(error.largest, DIGITS),
-        significant(100.0 * error.share(), DIGITS),
-        significant(error.at, DIGITS),
-        significant(error.rms, DIGITS),
-    )
+    let [table, counts, error] = integers.told([velocity_unit(outcome), outcome.unit]);
+    format!("\nintegers    {table}\n            {counts}\n            {error}\n")
 }
 
 /// The same for `--json`.
