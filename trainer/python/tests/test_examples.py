@@ -19,3 +19,11 @@ def test_a_gymnasium_joint_keeps_the_manners_of_an_environment_and_its_friction_
     without, compensated = (gymnasium_joint.left_after(joint, compensates) for compensates in (False, True))
     # Two newton metres of Coulomb friction hold what 20 N m/rad pull at.
     assert without == pytest.approx(0.1, abs=0.01) and compensated < 0.01
+
+
+def test_what_a_mujoco_model_leaves_out_is_named():
+    pytest.importorskip("mujoco")
+    import mujoco_difference
+
+    found = mujoco_difference.compared(FIXTURES / "elbow.toml")
+    assert {finding["effect"] for finding in found.findings} == {"stribeck", "presliding"}
