@@ -15,7 +15,6 @@ pub mod paper;
 pub mod published;
 pub mod sealed_coverage;
 pub mod second_opinion;
-pub mod shell;
 pub mod table;
 pub mod training_cost;
 pub mod vectors;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use frikan_tests::command::{checkout, printed};
 use frikan_tests::fixtures::folder;
-use frikan_tests::shell::{checkout, printed};
 
 /// Files that pages name and no command of theirs makes: page, name, and the fixture that is called so.
 const FILES: [(&str, &str, &str); 16] = [

@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use frikan_tests::command::{checkout, printed};
 use frikan_tests::fixtures::folder;
-use frikan_tests::shell::{checkout, printed};
 
 /// What a command stands behind.
 const PROMPT: &str = "    $ ";
