@@ -111,6 +111,17 @@ fn json_on_standard_output_is_nothing_but_json() {
     assert_eq!(serde_json::from_str::<Value>(&fit.output).unwrap()["schema"], "frikan.fit/1");
 }
 
+/// The published law hardly bends, so that its smoothing grows without end.
+#[test]
+fn a_law_that_hardly_bends_has_a_band() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = frikan_tests::fixtures::folder().join("stribeck-test.csv");
+    let fit = run(folder.path(), &["fit", recording.to_str().unwrap(), "-o", "m.frk", "--json", "-", "--quiet"]);
+    assert_eq!(fit.status, 0, "{}", fit.messages);
+    let band = serde_json::from_str::<Value>(&fit.output).unwrap()["band"]["points"].take();
+    assert!(band.as_array().unwrap().iter().flat_map(|point| point.as_array().unwrap()).all(Value::is_number));
+}
+
 #[test]
 fn results_never_replace_an_input_or_each_other() {
     let folder = bench();

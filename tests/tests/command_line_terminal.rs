@@ -163,3 +163,24 @@ fn a_dry_run_reads_what_there_is_and_writes_nothing() {
     assert_eq!(std::fs::read_dir(at).unwrap().count(), 1);
     assert_eq!(run(at, &["fit", "absent.csv", "-o", "m.frk", "--dry-run"]).status, 5);
 }
+
+/// Whether anything is coloured (SGR, `ESC [ ... m`) of what a terminal is shown.
+fn is_coloured(folder: &Path, line: &str, no_color: Option<&str>) -> bool {
+    let mut terminal = Command::new("script");
+    terminal.current_dir(folder).args(["-qec", &format!("{} {line}", trainer().display()), "/dev/null"]);
+    terminal.env("TERM", "xterm").env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
+    let shown = String::from_utf8_lossy(&terminal.output().unwrap().stdout).into_owned();
+    assert!(!shown.is_empty(), "{line}");
+    let mut sequences = shown.split("\x1b[").skip(1);
+    sequences.any(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';').starts_with('m'))
+}
+
+#[test]
+fn colours_respect_no_color() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(frikan_tests::fixtures::folder().join("elbow.csv"), folder.path().join("elbow.csv")).unwrap();
+    assert!(is_coloured(folder.path(), "diagnoze", None), "on a terminal there are colours to leave out");
+    for line in ["diagnoze", "--help", "check elbow.csv"] {
+        assert!(!is_coloured(folder.path(), line, Some("1")), "{line}");
+    }
+}

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use frikan_trainer::commands::fit::watch;
 use frikan_trainer::commands::fleet::{gather, plan, run as run_task};
 use frikan_trainer::commands::output::{print, say};
 use frikan_trainer::commands::terminal::{configuration, shell};
@@ -28,6 +29,7 @@ enum Command {
     Init(init::Init),
     Check(check::Check),
     Fit(fit::Fit),
+    Watch(watch::Watch),
     Arm(arm::Arm),
     Show(show::Show),
     Predict(predict::Predict),
@@ -50,6 +52,7 @@ fn run(command: &Command) -> Result<u8> {
         Command::Init(arguments) => init::run(arguments).map(|()| 0),
         Command::Check(arguments) => check::run(arguments),
         Command::Fit(arguments) => fit::run(arguments),
+        Command::Watch(arguments) => watch::run(arguments).map(|()| 0),
         Command::Arm(arguments) => arm::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Predict(arguments) => predict::run(arguments).map(|()| 0),

@@ -2,8 +2,6 @@
 
 import html
 import json
-import os
-import pathlib
 import signal
 import subprocess
 import sys
@@ -12,18 +10,9 @@ import time
 
 import numpy as np
 import pytest
+from command_line import FIXTURES, conforms, trainer
 
 import frikan
-
-ROOT = pathlib.Path(__file__).parents[3]
-FIXTURES = ROOT / "fixtures"
-TRAINER = os.environ.get("FRIKAN_TRAINER", str(ROOT / "target/debug/trainer"))
-
-
-def trainer(folder, line):
-    done = subprocess.run([TRAINER, *line.split()], cwd=folder, capture_output=True, text=True)
-    assert done.returncode <= 1, done.stderr
-    return done.stdout
 
 
 def without_time(said):
@@ -59,6 +48,7 @@ def test_a_fit_is_that_of_the_command_line(fitted, tmp_path):
     assert "coulomb_torque" in fitted.parameters._repr_html_()
     shown = html.unescape(fitted._repr_html_())
     assert shown.startswith("<iframe") and (tmp_path / "own.html").read_text(encoding="utf-8") in shown
+    assert conforms(fitted.json) == "fit"
     assert fitted.curve.shape[1] == 2 and fitted.band.shape[1] == 3
 
 

@@ -1,5 +1,7 @@
 //! `trainer fit`: recordings in, a friction image out.
 
+pub mod watch;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};

@@ -26,11 +26,12 @@ const STEPS: usize = 2;
 const LEAST_T_STATISTIC: f64 = 2.33;
 
 /// The delay with which rigid body and friction, identified anew, leave least of the torque where the joint slides, s; 0 where the samples do not
-/// show one, or one longer than the sampling's own.
+/// show one, or one longer than the sampling's own. Friction that was separated before has no rigid body that tells it.
 pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> f64 {
     let periods = recordings.iter().filter_map(|recording| recording.health.period_s);
     let period = periods.fold(f64::INFINITY, f64::min);
-    if preparation.sigma_s.is_none() || !period.is_finite() {
+    let is_separated = recordings.iter().any(|recording| recording.separated_friction().is_some());
+    if is_separated || preparation.sigma_s.is_none() || !period.is_finite() {
         return 0.0;
     }
     let in_samples = |sliding: &Sliding| {
@@ -160,6 +161,18 @@ mod tests {
             assert!((put_back - 1.2).abs() < 0.015, "{put_back} N m s/rad");
             assert!((as_recorded - 1.2).abs() > 0.03, "{as_recorded} N m s/rad: there is nothing to put back");
         }
+    }
+
+    #[test]
+    fn friction_that_was_separated_before_has_no_delay() {
+        let mut text = String::from("time_s,position_rad,velocity_rad_s,friction_torque_Nm\n");
+        for i in 0..2000 {
+            let t = PERIOD_S * f64::from(i);
+            let velocity = (2.3 * t).cos();
+            text += &format!("{t},{},{velocity},{}\n", (2.3 * t).sin() / 2.3, 2.0 * velocity.signum() + 1.2 * velocity);
+        }
+        let recording = parse("separated.csv", text.as_bytes(), &Joint::default()).unwrap();
+        assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), 0.0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `trainer gather`: the results of all tasks as one table, and which joints differ from their siblings.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 use rayon::prelude::*;
@@ -12,6 +13,7 @@ use super::table::{self, table};
 use super::task::{Done, FLEET_FILE, Task, Tasks};
 use super::told::{json, text};
 use crate::commands::output::{Outputs, command_line, refuse_unwritable};
+use crate::commands::progress::Reporter;
 use crate::error::{Error, Result, codes};
 use crate::files::{create_folder, refuse_folder};
 use crate::fleet::{FittedLaw, Measured, Ripple, survey};
@@ -41,6 +43,9 @@ pub struct Gather {
     /// Also write the result as JSON here; `-` for standard output, in place of the text
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Say nothing on standard error
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Runs the command and returns its exit status.
@@ -52,7 +57,14 @@ pub fn run(arguments: &Gather) -> Result<u8> {
     refuse_folder(&arguments.output)?;
     let tasks = Tasks::load(&arguments.tasks)?;
     let list = tasks.all()?;
-    let results: Vec<Option<Done>> = list.par_iter().map(|task| tasks.result(task)).collect::<Result<_>>()?;
+    let reporter = Reporter::new(arguments.quiet);
+    let (read, all) = (AtomicUsize::new(0), list.len());
+    let result = |task: &Task| {
+        reporter.say(&format!("reading result {} of {all}", read.fetch_add(1, Ordering::Relaxed) + 1));
+        tasks.result(task)
+    };
+    let results: Vec<Option<Done>> = list.par_iter().map(result).collect::<Result<_>>()?;
+    reporter.say("comparing joints with their siblings");
     let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());
     for (task, done) in list.iter().zip(results) {
         match done {
@@ -64,6 +76,7 @@ pub fn run(arguments: &Gather) -> Result<u8> {
     let measured = fitted.iter().map(|(task, done)| measured(task, done)).collect::<Result<Vec<_>>>()?;
     let survey = survey(&measured, arguments.false_share);
     let gathered = Gathered { survey, fitted, unfitted };
+    reporter.say("writing tables");
     let columns = table(&gathered);
     let mut outputs = Outputs::default();
     let at = |name: &str| arguments.output.join(name);
@@ -84,6 +97,7 @@ pub fn run(arguments: &Gather) -> Result<u8> {
     }
     outputs.refuse_overwriting(&[&arguments.tasks])?;
     create_folder(&arguments.output)?;
+    drop(reporter);
     outputs.write()?;
     let is_well = gathered.unfitted.is_empty() && !gathered.survey.members.iter().any(|member| member.is_outlier);
     Ok(u8::from(!is_well))

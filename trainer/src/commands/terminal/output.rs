@@ -97,11 +97,18 @@ pub fn say(line: &str) {
 /// # Errors
 /// `FRK-I001` when it cannot be written.
 pub fn print(text: &str) -> Result<()> {
+    is_read(text).map(drop)
+}
+
+/// Writes to standard output and says whether a reader is still there.
+///
+/// # Errors
+/// As [`print`].
+pub(crate) fn is_read(text: &str) -> Result<bool> {
     let mut console = std::io::stdout().lock();
     match console.write_all(text.as_bytes()).and_then(|()| console.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::from_io(Path::new("standard output"), &error))
-        }
-        _ => Ok(()),
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Error::from_io(Path::new("standard output"), &error)),
     }
 }

@@ -37,9 +37,10 @@ pub fn standard_errors(
     let mut freedom = 0.0;
     let mut factor = None;
     for _ in 0..ROUNDS {
-        factor = Cholesky::new(&penalised(&normal, &penalties, ridge, &values).0, normal.size);
-        let Some(factor) = &factor else { break };
-        freedom = reestimate(&mut penalties, &normal, factor, ridge, &values, samples);
+        // A smoothing so strong that rounding hides the data beside it changes nothing more: the one before stands.
+        let Some(made) = Cholesky::new(&penalised(&normal, &penalties, ridge, &values).0, normal.size) else { break };
+        freedom = reestimate(&mut penalties, &normal, &made, ridge, &values, samples);
+        factor = Some(made);
     }
     let count = points.first().map_or(0, Vec::len);
     let Some(factor) = factor else { return Ok(vec![f64::INFINITY; count]) };

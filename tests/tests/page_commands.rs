@@ -1,0 +1,105 @@
+//! Every command of the pages of `docs` runs as it stands there, in a folder where the files that it names are.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use frikan_tests::command::{checkout, printed};
+use frikan_tests::fixtures::folder;
+
+/// Files that pages name and no command of theirs makes: page, name, and the fixture that is called so.
+const FILES: [(&str, &str, &str); 16] = [
+    ("command-line.md", "recording.csv", "stribeck.csv"),
+    ("diagnosis.md", "real.csv", "elbow.csv"),
+    ("diagnosis.md", "simulated.csv", "elbow-test.csv"),
+    ("diagnosis.md", "joint.toml", "elbow.toml"),
+    ("drive.md", "elbow.csv", "elbow.csv"),
+    ("drive.md", "elbow.toml", "elbow.toml"),
+    ("fit.md", "recording.csv", "elbow.csv"),
+    ("fit.md", "joint.toml", "elbow.toml"),
+    ("fit.md", "axis.csv", "stribeck.csv"),
+    ("fit.md", "other-run.csv", "stribeck-test.csv"),
+    ("fleet.md", "recordings/a.csv", "stribeck.csv"),
+    ("fleet.md", "recordings/b.csv", "stribeck-test.csv"),
+    ("recording.md", "recording.csv", "elbow.csv"),
+    ("simulate.md", "joint.toml", "elbow.toml"),
+    ("drive.md", "elbow.frk", "elbow.frk"),
+    ("fit.md", "elbow.frk", "elbow.frk"),
+];
+
+/// Lines that make what the line of a page beginning so reads.
+const BEFORE: [(&str, &str); 4] = [
+    (
+        "trainer export elbow.frk --to mujoco",
+        r#"echo '<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/><joint name="elbow" axis="0 1 0"/></body></worldbody></mujoco>' > robot.xml"#,
+    ),
+    ("trainer export elbow.frk --to hex", "printf '%064d\n' 7 > drive.key"),
+    (
+        "trainer show dump.bin",
+        "trainer export elbow.frk --to bin --address 0x08060000 --slot 7 --key-file drive.key --release 3 -o dump.bin",
+    ),
+    ("trainer gather", "for task in 0 1; do trainer run --tasks tasks.jsonl --index $task; done"),
+];
+
+/// Lines that are not run here, by what they begin with, and why.
+const ELSEWHERE: [(&str, &str); 13] = [
+    ("trainer arm", "tests/arm.rs and the tests of the Python package identify arms"),
+    ("trainer fit a-kp100.csv", "trainer/src/servo and tests/rollout.rs fit servos, which takes minutes"),
+    ("trainer rollout servo.frk", "tests/rollout.rs"),
+    ("hq submit", "tests/fleet runs HyperQueue and Slurm"),
+    ("trainer watch", "tests/command_line_watch.rs; it ends by an interrupt alone"),
+    ("trainer verify elbow.frk --target cortex-m4f", "tests/emulation.rs"),
+    ("trainer verify counts.frk --target cortex-m0plus", "tests/emulation_integer.rs"),
+    (
+        "trainer loop fixtures/elbow.toml --effect presliding=2 --image improved.frk --target cortex-m4f",
+        "tests/emulation_steps.rs",
+    ),
+    ("trainer diagnose emps/", "`real-recordings` writes that page from other people's recordings"),
+    ("trainer diagnose odrive_cogging/", "`real-recordings`"),
+    ("trainer diagnose tribometer/", "`real-recordings`"),
+    ("trainer diagnose kr300/", "`real-recordings`"),
+    ("trainer diagnose xl330_pendulum/", "`real-recordings`"),
+];
+
+fn docs() -> PathBuf {
+    folder().join("../docs")
+}
+
+/// Lines of a page that a shell runs: indented, and beginning with a program.
+fn commands(page: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(page).unwrap();
+    let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
+    let is_command = |line: &&str| ["trainer ", "hq ", "FRIKAN_"].iter().any(|start| line.starts_with(start));
+    lines.filter(is_command).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_command_of_a_page_runs() {
+    let pages = std::fs::read_dir(docs()).unwrap().map(|entry| entry.unwrap().path());
+    let mut pages: Vec<PathBuf> = pages.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect();
+    pages.sort();
+    let mut left_out = BTreeSet::new();
+    let mut run = 0;
+    for page in &pages {
+        let checkout = checkout();
+        let at = checkout.path();
+        let name = page.file_name().unwrap().to_string_lossy();
+        for (_, file, fixture) in FILES.iter().filter(|(of, ..)| *of == name) {
+            std::fs::create_dir_all(at.join(file).parent().unwrap()).unwrap();
+            std::fs::copy(folder().join(fixture), at.join(file)).unwrap();
+        }
+        for line in commands(page) {
+            if let Some((start, _)) = ELSEWHERE.iter().find(|(start, _)| line.starts_with(start)) {
+                left_out.insert(*start);
+                continue;
+            }
+            for (_, before) in BEFORE.iter().filter(|(start, _)| line.starts_with(start)) {
+                let _ = printed(at, before);
+            }
+            let _ = printed(at, &line);
+            run += 1;
+        }
+    }
+    assert!(run >= 20, "{run} commands");
+    let unused: Vec<_> = ELSEWHERE.iter().filter(|(start, _)| !left_out.contains(start)).collect();
+    assert!(unused.is_empty(), "no page has these lines any more: {unused:?}");
+}
