@@ -41,10 +41,14 @@ const BEFORE: [(&str, &str); 4] = [
 ];
 
 /// Lines that are not run here, by what they begin with, and why.
-const ELSEWHERE: [(&str, &str); 13] = [
+const ELSEWHERE: [(&str, &str); 14] = [
     ("trainer arm", "tests/arm.rs and the tests of the Python package identify arms"),
     ("trainer fit a-kp100.csv", "trainer/src/servo and tests/rollout.rs fit servos, which takes minutes"),
     ("trainer rollout servo.frk", "tests/rollout.rs"),
+    (
+        "trainer diagnose real.csv --simulation simulated.csv --joint servo.toml",
+        "tests/command_line_servo.rs; the recordings are a servo's",
+    ),
     ("hq submit", "tests/fleet runs HyperQueue and Slurm"),
     ("trainer watch", "tests/command_line_watch.rs; it ends by an interrupt alone"),
     ("trainer verify elbow.frk --target cortex-m4f", "tests/emulation.rs"),
