@@ -27,13 +27,13 @@ pub struct Arm {
     /// Recordings that are only scored
     #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
     pub tests: Vec<PathBuf>,
-    /// The robot: joints, and the masses that are known of its links
-    #[arg(long, value_name = "ARM.urdf")]
+    /// The robot as URDF or MJCF: joints, and the masses that are known of its links
+    #[arg(long, visible_alias = "mjcf", value_name = "ARM.urdf")]
     pub urdf: PathBuf,
     /// arm.toml: column names, drives, gravity, joints that are held
     #[arg(long, value_name = "ARM.toml")]
     pub joint: Option<PathBuf>,
-    /// Folder for an image of each joint, arm.json and the URDF with their friction; made where it does not exist
+    /// Folder for an image of each joint, arm.json and the robot's file with their friction; made where it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         let path = path.display().to_string();
         move |error: Error| error.in_file(path)
     };
-    let urdf = text(&arguments.urdf)?;
+    let robot = text(&arguments.urdf)?;
     let file = match &arguments.joint {
         None => ArmFile::default(),
         Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arm) -> Result<u8> {
     let options = Options { seed: arguments.seed, budget, ..Options::default() };
     let [recordings, tests] =
         [&arguments.recordings, &arguments.tests].map(|paths| paths.iter().map(Source::from).collect::<Vec<_>>());
-    let recorded = Recorded { recordings: &recordings, tests: &tests, urdf: &urdf, file: &file };
+    let recorded = Recorded { recordings: &recordings, tests: &tests, robot: &robot, file: &file };
     let reporter = Reporter::new(arguments.quiet);
     let fitted = in_pool(arguments.threads, || {
         arm(&recorded, &options, &|joint, progress| {
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         }
         _ => error,
     })?;
-    write(arguments, &fitted, &urdf)?;
+    write(arguments, &fitted, &robot)?;
     let doubtful = fitted.outcome.joints.iter().filter_map(|joint| Some((&joint.name, joint_doubt(joint)?)));
     let doubts: Vec<String> = doubtful.map(|(name, doubt)| format!("{name}: {doubt}")).collect();
     if !arguments.quiet {
@@ -112,7 +112,7 @@ pub fn run(arguments: &Arm) -> Result<u8> {
     Ok(if doubts.is_empty() { 0 } else { codes::NOT_IDENTIFIABLE.class.exit_status() })
 }
 
-fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
+fn write(arguments: &Arm, fitted: &FittedArm, robot: &str) -> Result<()> {
     create_folder(&arguments.output)?;
     let mut outputs = Outputs::default();
     let place = |name: &str| arguments.output.join(name);
@@ -123,7 +123,8 @@ fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
     let images: Vec<Option<String>> = images.into_iter().map(|image| image.map(|(name, _)| name)).collect();
     let json = fitted.json(&images);
     outputs.add_json(&place("arm.json"), json.clone());
-    outputs.add(&place("arm.urdf"), fitted.patched(urdf, arguments.force)?);
+    let ending = arguments.urdf.extension().map_or_else(|| "urdf".into(), |ending| ending.to_string_lossy());
+    outputs.add(&place(&format!("arm.{ending}")), fitted.patched(robot, arguments.force)?);
     if arguments.split {
         fitted.recordings().into_iter().for_each(|(name, content)| outputs.add(&place(&name), content));
     }
