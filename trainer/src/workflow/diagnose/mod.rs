@@ -101,6 +101,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         settings: Settings { seed: request.seed, ..Settings::default() },
         least_effect: request.least_effect,
         by_likelihood: request.by_likelihood,
+        measured_wrong: warnings.iter().any(Warning::is_blocking),
     };
     stage("weighing every effect against the noise");
     let mut diagnosis = run::diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
