@@ -13,7 +13,7 @@ use crate::error::{Error, Result, codes};
 use crate::files::{create_folder, read_text, refuse_folder};
 use crate::fit::{Budget, Options};
 use crate::joint::ArmFile;
-use crate::workflow::arm::{FittedArm, Recorded, arm, joint_doubt};
+use crate::workflow::arm::{FittedArm, Recorded, advise, arm, joint_doubt};
 
 /// Largest `arm.toml` and URDF that are read, in bytes.
 const FILE_LIMIT_BYTES: u64 = 64 << 20;
@@ -22,7 +22,7 @@ const FILE_LIMIT_BYTES: u64 = 64 << 20;
 #[derive(Args, Clone, Debug)]
 pub struct Arm {
     /// Recordings of all joints to learn from
-    #[arg(required = true, value_name = "RECORDING")]
+    #[arg(required_unless_present = "advise", value_name = "RECORDING")]
     pub recordings: Vec<PathBuf>,
     /// Recordings that are only scored
     #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
@@ -34,8 +34,11 @@ pub struct Arm {
     #[arg(long, value_name = "ARM.toml")]
     pub joint: Option<PathBuf>,
     /// Folder for an image of each joint, arm.json and the robot's file with their friction; made where it does not exist
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    #[arg(short, long, required_unless_present = "advise", value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Plan a motion that tells everything apart, within [limits] of arm.toml, instead of fitting; as CSV, `-` for standard output
+    #[arg(long, conflicts_with_all = ["recordings", "tests", "output", "split", "json"], value_name = "FILE")]
+    pub advise: Option<PathBuf>,
     /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`
     #[arg(long)]
     pub split: bool,
@@ -73,7 +76,7 @@ impl Arm {
 /// As [`arm`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Arm) -> Result<u8> {
     refuse_unwritable(&arguments.json, &arguments.inputs())?;
-    refuse_folder(&arguments.output)?;
+    refuse_unwritable(&arguments.advise, &arguments.inputs())?;
     let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
     let in_file = |path: &Path| {
         let path = path.display().to_string();
@@ -84,6 +87,10 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         None => ArmFile::default(),
         Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
     };
+    if let Some(path) = &arguments.advise {
+        return plan(arguments, path, &robot, &file);
+    }
+    refuse_folder(&folder(arguments))?;
     let budget = Budget { target: arguments.target.unwrap_or_default(), ..Budget::default() };
     let options = Options { seed: arguments.seed, budget, ..Options::default() };
     let [recordings, tests] =
@@ -112,10 +119,29 @@ pub fn run(arguments: &Arm) -> Result<u8> {
     Ok(if doubts.is_empty() { 0 } else { codes::NOT_IDENTIFIABLE.class.exit_status() })
 }
 
-fn write(arguments: &Arm, fitted: &FittedArm, robot: &str) -> Result<()> {
-    create_folder(&arguments.output)?;
+/// Where the images go; clap asks for it unless a motion is planned.
+fn folder(arguments: &Arm) -> PathBuf {
+    arguments.output.clone().unwrap_or_default()
+}
+
+/// Writes a planned motion.
+fn plan(arguments: &Arm, path: &Path, robot: &str, file: &ArmFile) -> Result<u8> {
+    let advised = advise(robot, file, arguments.seed)?;
     let mut outputs = Outputs::default();
-    let place = |name: &str| arguments.output.join(name);
+    outputs.add(path, advised.trajectory);
+    outputs.refuse_overwriting(&arguments.inputs())?;
+    outputs.write()?;
+    if path != Path::new("-") {
+        print(&advised.text)?;
+    }
+    Ok(0)
+}
+
+fn write(arguments: &Arm, fitted: &FittedArm, robot: &str) -> Result<()> {
+    let folder = folder(arguments);
+    create_folder(&folder)?;
+    let mut outputs = Outputs::default();
+    let place = |name: &str| folder.join(name);
     let images = fitted.images(arguments.force);
     for (name, bytes) in images.iter().flatten() {
         outputs.add(&place(name), *bytes);

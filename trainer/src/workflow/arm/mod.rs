@@ -1,5 +1,6 @@
 //! From recordings of a whole arm to a law for each joint, that tell themselves.
 
+mod advise;
 mod fitted;
 mod json;
 mod recordings;
@@ -20,6 +21,7 @@ use crate::fit::Options;
 use crate::fit::model::from_bytes;
 use crate::joint::Joint;
 use crate::robot::is_mjcf;
+pub use advise::{Advised, advise};
 pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 
 /// Fits an arm.

@@ -25,8 +25,11 @@ use crate::diagnose::request::{Options, Refusal};
 use crate::diagnose::run;
 use crate::diagnose::search::thresholds::Settings;
 use crate::error::{Error, Result, codes};
+use crate::figures::digits;
 use crate::fit;
+use crate::fit::OtherForces;
 use crate::joint::Joint;
+use crate::parameter::Parameter;
 use crate::physics::JointState;
 use crate::physics::names::capital;
 use crate::physics::units::Units;
@@ -54,6 +57,7 @@ pub struct Diagnosed {
     pub samples: usize,
     /// Time that it took, s.
     pub seconds: f64,
+    forces: OtherForces,
     advice: Option<Plan>,
     story: Story,
     units: Units,
@@ -89,6 +93,8 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let begin = Instant::now();
     let (recordings, warnings) =
         load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+    let forces = OtherForces::of(&recordings, joint)?;
+    let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = recordings.first().ok_or_else(|| Error::new(&codes::USAGE, "there is no recording to diagnose"))?;
     let (comparison, compared) = comparison(request, &recordings, joint)?;
     let units = units(real);
@@ -125,6 +131,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         seed: request.seed,
         diagnosis,
         improvement,
+        forces,
         advice,
         story,
         units,
@@ -135,7 +142,18 @@ impl Diagnosed {
     /// The result for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
-        text_of(&self.story, self.advice.as_ref())
+        let factor = |factor: &Parameter| {
+            format!(
+                "Taken off: {} {} ({} to {}).\n",
+                digits(factor.value),
+                factor.unit,
+                digits(factor.ci95[0]),
+                digits(factor.ci95[1])
+            )
+        };
+        let forces: String = self.forces.factors.iter().map(factor).collect();
+        let untold: String = self.forces.remarks.iter().map(|remark| format!("{remark}\n")).collect();
+        text_of(&self.story, self.advice.as_ref()) + &forces + &untold
     }
 
     /// The result as JSON, schema `frikan.diagnose/1`.
