@@ -61,6 +61,9 @@ pub struct Joint {
     /// What differs from recording to recording.
     #[serde(default)]
     pub recordings: OfRecordings,
+    /// Columns in proportion to which something else acts on the joint, such as a pressure; the factors are identified.
+    #[serde(default)]
+    pub forces: Vec<String>,
     /// Tables that other commands read (the simulated plant, for one), untouched.
     #[serde(flatten)]
     pub other: toml::Table,

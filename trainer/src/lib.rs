@@ -29,10 +29,10 @@ pub mod plant;
 pub mod recording;
 pub mod report;
 pub mod rig;
+mod robot;
 pub mod rollout;
 pub mod samples;
 pub mod servo;
-mod urdf;
 pub mod workflow;
 
 pub use workflow::diagnose::diagnose;

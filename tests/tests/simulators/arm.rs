@@ -57,3 +57,23 @@ fn torques_and_their_regressor_are_pinocchios() {
         }
     }
 }
+
+#[test]
+fn a_robot_that_mujoco_wrote_out_is_the_same() {
+    let Some(python) = python("mujoco") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let [urdf, mjcf] = ["arm.urdf", "arm.xml"].map(|name| folder.path().join(name));
+    std::fs::write(&urdf, SIX_AXES).unwrap();
+    script(&python, &["arm_mjcf.py", urdf.to_str().unwrap(), mjcf.to_str().unwrap()]);
+    let ours = Chain::parse(SIX_AXES, &[]).unwrap();
+    let theirs = Chain { gravity: ours.gravity, ..Chain::parse(&std::fs::read_to_string(mjcf).unwrap(), &[]).unwrap() };
+    let state = State { position: &[0.3, -1.0, 0.7, 1.2, -0.4, 2.0], velocity: &[1.0; 6], acceleration: &[-2.0; 6] };
+    let [ours, theirs] = [ours, theirs].map(|chain| {
+        let bodies: Vec<_> = chain.joints.iter().map(|joint| joint.nominal).collect();
+        torques(&chain, &bodies, &state)
+    });
+    for (ours, theirs) in ours.iter().zip(&theirs) {
+        // It writes six digits.
+        assert!((ours - theirs).abs() < 1e-3 * ours.abs().max(1.0), "{ours} {theirs}");
+    }
+}

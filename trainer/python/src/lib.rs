@@ -160,7 +160,7 @@ fn arm(
     let done = watched(py, progress, move |progress: &Progress| {
         let [recordings, tests] =
             [&recordings, &tests].map(|all| all.iter().map(Recording::source).collect::<Vec<_>>());
-        let recorded = Recorded { recordings: &recordings, tests: &tests, urdf: &urdf, file: &file };
+        let recorded = Recorded { recordings: &recordings, tests: &tests, robot: &urdf, file: &file };
         let tell = |joint: Option<&str>, now: &frikan_trainer::fit::Progress| {
             let stage = now.stage.name();
             progress.tell(&joint.map_or(stage.to_owned(), |joint| format!("{joint}: {stage}")), now.steps, now.rmse);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::error::{Error, Result, codes};
-use crate::urdf::{Body, GRAVITY_M_S2, Joint, Kind, Link, Robot};
+use crate::robot::{self, Body, Joint, Kind, Link};
 
 /// A tree of joints on a fixed base; every joint stands behind the one that carries it.
 #[derive(Clone, Debug)]
@@ -59,13 +59,13 @@ pub const NAMES: [(&str, &str); INERTIAL] = [
 ];
 
 impl Chain {
-    /// The chain of a URDF, gravity along -z of its root. Fixed joints, joints that follow another, and those that are `held` stand at
+    /// The chain of a URDF or MJCF file. Fixed joints, joints that follow another, and those that are `held` stand at
     /// zero, and what they carry belongs to the link before them.
     ///
     /// # Errors
-    /// `FRK-D021` when the text is no URDF, has no moving joint, lacks one of those held, or is no tree.
-    pub fn parse(urdf: &str, held: &[String]) -> Result<Self> {
-        let robot = Robot::parse(urdf)?;
+    /// `FRK-D021` when the text describes no robot, has no moving joint, lacks one of those held, or is no tree.
+    pub fn parse(text: &str, held: &[String]) -> Result<Self> {
+        let robot = robot::parse(text)?;
         let can_move = |joint: &&Joint| joint.kind != Kind::Fixed && !joint.is_mimic;
         let movable: Vec<&str> = robot.joints.iter().filter(can_move).map(|joint| joint.name.as_str()).collect();
         if movable.is_empty() {
@@ -76,7 +76,7 @@ impl Chain {
             return Err(Error::new(&codes::BAD_URDF, message).with_value(unknown));
         }
         let moves = |joint: &Joint| movable.contains(&joint.name.as_str()) && !held.contains(&joint.name);
-        let mut chain = Self { joints: Vec::new(), gravity: Vector3::new(0.0, 0.0, -GRAVITY_M_S2) };
+        let mut chain = Self { joints: Vec::new(), gravity: robot.gravity };
         let mut seen = BTreeSet::new();
         let is_root = |link: &&Link| robot.joints.iter().all(|joint| joint.child != link.name);
         for root in robot.links.iter().filter(is_root) {

@@ -158,7 +158,6 @@ pub fn regressor(chain: &Chain, state: &State<'_>, rows: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::urdf::GRAVITY_M_S2;
 
     /// A swinging arm of two links in a vertical plane, axes along y, hanging at zero.
     const TWO_LINKS: &str = r#"<robot name="r"><link name="base"/>
@@ -200,7 +199,7 @@ mod tests {
         ];
         // d(along)/dq2 = across * ... : the Christoffel symbol of the coupling.
         let slope = m2 * length * across;
-        let g = GRAVITY_M_S2;
+        let g = 9.806_65;
         let height = |q: [f64; 2]| {
             let of = |angle: f64, x: f64, z: f64| z * angle.cos() - x * angle.sin();
             m1 * of(q[0], 0.0, -c1) + m2 * (of(q[0], 0.0, -length) + of(q[0] + q[1], x, z))

@@ -4,6 +4,7 @@
 pub mod base;
 pub mod chain;
 pub mod dynamics;
+pub mod excitation;
 pub mod fit;
 pub mod identify;
 pub mod motion;

@@ -13,7 +13,7 @@ use crate::error::{Error, Result, codes};
 use crate::files::{create_folder, read_text, refuse_folder};
 use crate::fit::{Budget, Options};
 use crate::joint::ArmFile;
-use crate::workflow::arm::{FittedArm, Recorded, arm, joint_doubt};
+use crate::workflow::arm::{FittedArm, Recorded, advise, arm, joint_doubt};
 
 /// Largest `arm.toml` and URDF that are read, in bytes.
 const FILE_LIMIT_BYTES: u64 = 64 << 20;
@@ -22,20 +22,23 @@ const FILE_LIMIT_BYTES: u64 = 64 << 20;
 #[derive(Args, Clone, Debug)]
 pub struct Arm {
     /// Recordings of all joints to learn from
-    #[arg(required = true, value_name = "RECORDING")]
+    #[arg(required_unless_present = "advise", value_name = "RECORDING")]
     pub recordings: Vec<PathBuf>,
     /// Recordings that are only scored
     #[arg(long = "test", num_args = 1.., value_name = "RECORDING")]
     pub tests: Vec<PathBuf>,
-    /// The robot: joints, and the masses that are known of its links
-    #[arg(long, value_name = "ARM.urdf")]
+    /// The robot as URDF or MJCF: joints, and the masses that are known of its links
+    #[arg(long, visible_alias = "mjcf", value_name = "ARM.urdf")]
     pub urdf: PathBuf,
     /// arm.toml: column names, drives, gravity, joints that are held
     #[arg(long, value_name = "ARM.toml")]
     pub joint: Option<PathBuf>,
-    /// Folder for an image of each joint, arm.json and the URDF with their friction; made where it does not exist
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    /// Folder for an image of each joint, arm.json and the robot's file with their friction; made where it does not exist
+    #[arg(short, long, required_unless_present = "advise", value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Plan a motion that tells everything apart, within [limits] of arm.toml, instead of fitting; as CSV, `-` for standard output
+    #[arg(long, conflicts_with_all = ["recordings", "tests", "output", "split", "json"], value_name = "FILE")]
+    pub advise: Option<PathBuf>,
     /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`
     #[arg(long)]
     pub split: bool,
@@ -73,22 +76,26 @@ impl Arm {
 /// As [`arm`], and whatever reading or writing reports. Nothing is written unless the fit succeeded.
 pub fn run(arguments: &Arm) -> Result<u8> {
     refuse_unwritable(&arguments.json, &arguments.inputs())?;
-    refuse_folder(&arguments.output)?;
+    refuse_unwritable(&arguments.advise, &arguments.inputs())?;
     let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
     let in_file = |path: &Path| {
         let path = path.display().to_string();
         move |error: Error| error.in_file(path)
     };
-    let urdf = text(&arguments.urdf)?;
+    let robot = text(&arguments.urdf)?;
     let file = match &arguments.joint {
         None => ArmFile::default(),
         Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
     };
+    if let Some(path) = &arguments.advise {
+        return plan(arguments, path, &robot, &file);
+    }
+    refuse_folder(&folder(arguments))?;
     let budget = Budget { target: arguments.target.unwrap_or_default(), ..Budget::default() };
     let options = Options { seed: arguments.seed, budget, ..Options::default() };
     let [recordings, tests] =
         [&arguments.recordings, &arguments.tests].map(|paths| paths.iter().map(Source::from).collect::<Vec<_>>());
-    let recorded = Recorded { recordings: &recordings, tests: &tests, urdf: &urdf, file: &file };
+    let recorded = Recorded { recordings: &recordings, tests: &tests, robot: &robot, file: &file };
     let reporter = Reporter::new(arguments.quiet);
     let fitted = in_pool(arguments.threads, || {
         arm(&recorded, &options, &|joint, progress| {
@@ -103,7 +110,7 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         }
         _ => error,
     })?;
-    write(arguments, &fitted, &urdf)?;
+    write(arguments, &fitted, &robot)?;
     let doubtful = fitted.outcome.joints.iter().filter_map(|joint| Some((&joint.name, joint_doubt(joint)?)));
     let doubts: Vec<String> = doubtful.map(|(name, doubt)| format!("{name}: {doubt}")).collect();
     if !arguments.quiet {
@@ -112,10 +119,29 @@ pub fn run(arguments: &Arm) -> Result<u8> {
     Ok(if doubts.is_empty() { 0 } else { codes::NOT_IDENTIFIABLE.class.exit_status() })
 }
 
-fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
-    create_folder(&arguments.output)?;
+/// Where the images go; clap asks for it unless a motion is planned.
+fn folder(arguments: &Arm) -> PathBuf {
+    arguments.output.clone().unwrap_or_default()
+}
+
+/// Writes a planned motion.
+fn plan(arguments: &Arm, path: &Path, robot: &str, file: &ArmFile) -> Result<u8> {
+    let advised = advise(robot, file, arguments.seed)?;
     let mut outputs = Outputs::default();
-    let place = |name: &str| arguments.output.join(name);
+    outputs.add(path, advised.trajectory);
+    outputs.refuse_overwriting(&arguments.inputs())?;
+    outputs.write()?;
+    if path != Path::new("-") {
+        print(&advised.text)?;
+    }
+    Ok(0)
+}
+
+fn write(arguments: &Arm, fitted: &FittedArm, robot: &str) -> Result<()> {
+    let folder = folder(arguments);
+    create_folder(&folder)?;
+    let mut outputs = Outputs::default();
+    let place = |name: &str| folder.join(name);
     let images = fitted.images(arguments.force);
     for (name, bytes) in images.iter().flatten() {
         outputs.add(&place(name), *bytes);
@@ -123,7 +149,8 @@ fn write(arguments: &Arm, fitted: &FittedArm, urdf: &str) -> Result<()> {
     let images: Vec<Option<String>> = images.into_iter().map(|image| image.map(|(name, _)| name)).collect();
     let json = fitted.json(&images);
     outputs.add_json(&place("arm.json"), json.clone());
-    outputs.add(&place("arm.urdf"), fitted.patched(urdf, arguments.force)?);
+    let ending = arguments.urdf.extension().map_or_else(|| "urdf".into(), |ending| ending.to_string_lossy());
+    outputs.add(&place(&format!("arm.{ending}")), fitted.patched(robot, arguments.force)?);
     if arguments.split {
         fitted.recordings().into_iter().for_each(|(name, content)| outputs.add(&place(&name), content));
     }

@@ -19,6 +19,8 @@ pub struct Options {
     pub least_effect: Option<f64>,
     /// Whether sets of effects are weighed by one likelihood, in place of the search by scores.
     pub by_likelihood: bool,
+    /// Whether the recording was found to be wrong as a measurement: then no physics is looked for.
+    pub measured_wrong: bool,
 }
 
 /// Share (0..1) of the torque beside the rigid body (root mean squares), below which an effect is not acted on unless
@@ -34,6 +36,7 @@ impl Default for Options {
             settings: Settings::default(),
             least_effect: None,
             by_likelihood: false,
+            measured_wrong: false,
         }
     }
 }

@@ -32,6 +32,7 @@ use crate::diagnose::proof::discarded::{
     Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
 };
 use crate::diagnose::proof::locked_rows::{Proof, prove, rest};
+use crate::diagnose::proof::part::tell_by_a_part;
 use crate::diagnose::proof::refit::{polish, refit};
 use crate::diagnose::proof::rollout::roll_out;
 use crate::diagnose::realign::{Realignment, Trial, is_better, joined, next_delay_s};
@@ -165,9 +166,9 @@ fn diagnose_locked(
     health.extend(coarse_position(signals, &prepared));
     health.extend(scattered_sampling(signals, &prepared));
     // What the measurement got wrong is not dressed up as friction: then no physics is looked for.
-    let blocked = health.iter().any(|note| note.blocking);
+    let blocked = options.measured_wrong || health.iter().any(|note| note.blocking);
     let found = match inferred {
-        _ if blocked => Confirmed::nothing(&search),
+        _ if blocked || as_recorded.explains(baseline.noise.rms) => Confirmed::nothing(&search),
         Some(inferred) => Confirmed::by_likelihood(inferred, options.least_effect.unwrap_or(LEAST_NAMED_SHARE)),
         None => Confirmed::of(&mut search, &baseline),
     };
@@ -182,7 +183,8 @@ fn diagnose_locked(
             discarded.withdrawn.extend(withdraw_without_shown_gain(workbench, &baseline, &mut accepted));
         }
     }
-    if !discarded.is_empty() {
+    let is_plainer = !options.by_likelihood && tell_by_a_part(workbench, &mut accepted, &baseline);
+    if is_plainer || !discarded.is_empty() {
         polish(workbench, &mut accepted, &noise);
     }
     let mut improved = refit(workbench, &accepted).ok_or(Refusal::Undetermined)?;

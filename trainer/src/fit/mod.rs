@@ -4,6 +4,7 @@
 
 mod choice;
 mod data;
+mod forces;
 mod gate;
 mod integer_summary;
 mod integers;
@@ -17,6 +18,7 @@ mod rigid_body_error;
 mod run;
 pub mod score;
 
+pub use forces::OtherForces;
 pub use gate::{Identifiable, identifiable};
 pub use integer_summary::IntegerSummary;
 pub use laws::activations::label_activations;

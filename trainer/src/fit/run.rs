@@ -12,7 +12,7 @@ use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
 use super::gate::confounded::Identified;
-use super::gate::{ONE_WAY, withheld};
+use super::gate::{fixed, withheld};
 use super::integers::{self, of_velocity};
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
@@ -268,10 +268,7 @@ fn remarks(
     recordings: &[Recording],
     identified: &Identified,
 ) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if identified.is_one_way() {
-        remarks.push(ONE_WAY.to_owned());
-    }
+    let mut remarks = fixed(material, identified);
     if matches!(form, Form::Found | Form::Network) {
         remarks.extend(turn.found.discovery.remarks.iter().cloned().chain(of_the_sign));
     }

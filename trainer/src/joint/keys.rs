@@ -4,8 +4,8 @@ use super::Joint;
 use crate::did_you_mean::hint;
 
 /// Names at the top of `joint.toml` that are read here.
-const TABLES: [&str; 9] =
-    ["name", "columns", "simulation", "rigid_body", "drive", "limits", "actuator", "payload", "recordings"];
+const TABLES: [&str; 10] =
+    ["name", "forces", "columns", "simulation", "rigid_body", "drive", "limits", "actuator", "payload", "recordings"];
 
 /// Tables that others read: the simulated plant.
 const READ_ELSEWHERE: [&str; 1] = ["plant"];

@@ -1,12 +1,12 @@
-//! The body that moves with one joint of a URDF: inertia about the joint's axis and gravity over its angle, all other
-//! joints standing at zero and gravity along -z of the root.
+//! The body that moves with one joint of a URDF or MJCF file: inertia about the joint's axis and gravity over its angle, all other
+//! joints standing at zero and gravity as the file has it, along -z of the root in a URDF.
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 
 use crate::error::{Error, Result, codes};
-use crate::urdf::{Body, GRAVITY_M_S2, Joint, Kind, Robot};
+use crate::robot::{Body, Joint, Kind, Robot, parse};
 
 /// What moves with a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +21,12 @@ pub(super) struct MovedBody {
 /// The body moved by the joint of this name, or by the only moving joint.
 ///
 /// # Errors
-/// `FRK-D021` with its row when the file is no URDF, lacks the joint, or nothing that moves has a mass.
+/// `FRK-D021` with its row when the file describes no robot, lacks the joint, or nothing that moves has a mass.
 pub(super) fn moved_body(text: &str, name: Option<&str>) -> Result<MovedBody> {
-    let robot = Robot::parse(text)?;
+    let robot = parse(text)?;
     let joint = find_joint(&robot, name)?;
     let axis = joint.axis;
-    let down = pose_in_root(&robot, joint)?.rotation.inverse() * Vector3::new(0.0, 0.0, -GRAVITY_M_S2);
+    let down = pose_in_root(&robot, joint)?.rotation.inverse() * robot.gravity;
 
     let (mut mass, mut inertia, mut sine, mut cosine) = (0.0, 0.0, 0.0, 0.0);
     for body in moved_bodies(&robot, joint)? {
@@ -110,7 +110,7 @@ mod tests {
         let (amplitude, phase) = body.gravity.unwrap();
         // Potential of each part at angle q about y: m g z.
         let potential = |q: f64| {
-            let part = |m: f64, x: f64, z: f64| m * GRAVITY_M_S2 * (z * q.cos() - x * q.sin());
+            let part = |m: f64, x: f64, z: f64| m * 9.806_65 * (z * q.cos() - x * q.sin());
             part(2.0, 0.0, -0.2) + part(1.0, 0.0, -0.5) + part(0.5, 0.1, -0.6)
         };
         for q in [-2.0, -0.3, 0.0, 0.9, 3.0] {

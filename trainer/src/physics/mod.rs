@@ -125,6 +125,11 @@ pub trait Hypothesis: Sync {
         false
     }
 
+    /// Whether coefficients are a joint's: friction of its own takes energy from every motion.
+    fn is_passive(&self, _state: &JointState, _shape: &[f64], _coefficients: &[f64]) -> bool {
+        true
+    }
+
     /// Whether the effect may be found again with another shape (a ripple has several orders).
     fn repeats(&self) -> bool {
         false

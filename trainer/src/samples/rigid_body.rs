@@ -107,7 +107,7 @@ pub struct Separation {
     pub friction: Vec<f64>,
     /// Root mean square of what the bending friction law leaves.
     pub rmse: f64,
-    /// Directions in which the columns are collinear; zero when every parameter is determined.
+    /// Directions in which the columns of the terms are collinear with each other or with friction; zero when every parameter is determined.
     pub rank_deficiency: usize,
     given_inertia: f64,
 }
@@ -139,7 +139,8 @@ pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
             *sum += per_nm * inertia * a;
         }
     }
-    if let Some(gravity) = body.gravity_torque_nm {
+    // Without gravity the position does not matter, and a drive's own log may have none.
+    if let Some(gravity) = body.gravity_torque_nm.filter(|gravity| *gravity != 0.0) {
         let position = samples.position.as_deref().ok_or_else(|| {
             Error::new(&codes::MISSING_COLUMN, "the gravity torque of joint.toml needs a position")
                 .in_column("position_rad")
@@ -254,6 +255,13 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
     }
     let taken_off = rigid_body.iter().zip(&bend).map(|(body, bend)| body + bend);
     let friction = actuator.iter().zip(taken_off).map(|(total, off)| total - off).collect();
+    // Of a few constant speeds the law itself has shapes to spare between them.
+    let rank_deficiency = if fit.rank_deficiency > 0 {
+        let of_law = least_squares(&columns[own_column.len()..], &target, &even_blocks(target.len(), ERROR_BLOCKS));
+        fit.rank_deficiency.saturating_sub(of_law.rank_deficiency)
+    } else {
+        0
+    };
     let given_inertia = joint
         .rigid_body
         .inertia_kgm2
@@ -267,7 +275,7 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
         bend,
         friction,
         rmse: fit.rmse,
-        rank_deficiency: fit.rank_deficiency,
+        rank_deficiency,
         given_inertia,
     })
 }

@@ -36,7 +36,9 @@ pub(crate) fn nearest(
             workbench.design.columns[variant.columns.clone()].iter().map(left_beside).collect();
         let coefficients = least_squares(&columns, &torque, &runs)?;
         let rest = residual(&columns, &torque, &coefficients);
-        workbench.is_possible(&group.label, &coefficients).then(|| 1.0 - dot(&rest, &rest, &runs) / energy)
+        workbench
+            .is_possible(&group.label, &variant.shape, &coefficients)
+            .then(|| 1.0 - dot(&rest, &rest, &runs) / energy)
     };
     let largest_share = |group: &Group| {
         let Label::Named(effect) = group.label else { return None };

@@ -42,6 +42,12 @@ impl AsRecorded {
         Self { notes: replaced.chain(clipped_torque(signals, step)).collect(), step }
     }
 
+    /// Whether the steps of the torque explain all that a base leaves of it (root mean square): rounding follows the motion as physics
+    /// does, and beside it there is nothing to look for.
+    pub fn explains(&self, left_by_base: f64) -> bool {
+        self.step.is_some_and(|step| step.share > NOTED_STEP_SHARE && step.error() >= left_by_base)
+    }
+
     /// The notes on it, beside a base that leaves some of it (root mean square).
     pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
         self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base)))
@@ -80,13 +86,13 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
-/// Torque steps of more than the noise hide what happens between them, where they are a sizeable share of the torque or their own
-/// error is as large as all that the base leaves.
-fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
-    (share > NOTED_STEP_SHARE).then(|| HealthNote {
+/// Torque steps of more than the noise hide what happens between them where they are a sizeable share of the torque, unless the base leaves
+/// no more than their own error.
+fn coarse_torque(step: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
+    (step.share > NOTED_STEP_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: share > BLOCKING_STEP_SHARE || step / 12f64.sqrt() >= left_by_base,
-        observation: Observation::CoarseTorque { step },
+        blocking: step.share > BLOCKING_STEP_SHARE && step.error() < left_by_base,
+        observation: Observation::CoarseTorque { step: step.step },
     })
 }
 
@@ -95,6 +101,13 @@ fn coarse_torque(TorqueStep { step, share }: TorqueStep, left_by_base: f64) -> O
 struct TorqueStep {
     step: f64,
     share: f64,
+}
+
+impl TorqueStep {
+    /// Standard deviation of a value that was rounded to it: uniform over the step.
+    fn error(&self) -> f64 {
+        self.step / 12f64.sqrt()
+    }
 }
 
 /// The step in which the torque is recorded, where most of its changes are a single one.
@@ -179,10 +192,14 @@ mod tests {
     }
 
     #[test]
-    fn fine_steps_block_where_they_are_all_that_is_left() {
-        let as_recorded = AsRecorded::of(&in_steps(40.0, 40.0));
-        let blocks = |left_by_base: f64| as_recorded.notes(left_by_base).any(|note| note.blocking);
-        assert!(blocks(0.25) && !blocks(0.35));
+    fn a_base_that_leaves_no_more_than_the_steps_lacks_nothing() {
+        for largest in [5.0, 40.0] {
+            let as_recorded = AsRecorded::of(&in_steps(largest, largest));
+            assert!(as_recorded.explains(0.25) && !as_recorded.explains(0.35));
+            let notes: Vec<HealthNote> = as_recorded.notes(0.25).collect();
+            assert!(notes.len() == 1 && !notes[0].blocking, "{notes:?}");
+        }
+        assert!(!AsRecorded::of(&in_steps(400.0, 400.0)).explains(0.1), "fine steps are no fault");
     }
 
     #[test]

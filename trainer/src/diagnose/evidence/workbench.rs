@@ -60,9 +60,15 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// Whether a label can have these coefficients.
-    pub(crate) fn is_possible(&self, label: &Label, coefficients: &[f64]) -> bool {
-        !self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)
+    /// Whether a label can have these coefficients with a shape.
+    pub(crate) fn is_possible(&self, label: &Label, shape: &[f64], coefficients: &[f64]) -> bool {
+        let is_passive = || match label {
+            Label::Named(effect) => {
+                self.hypothesis(*effect).is_none_or(|h| h.is_passive(&self.prepared.state, shape, coefficients))
+            }
+            Label::Generic(_) => true,
+        };
+        (!self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)) && is_passive()
     }
 
     /// Unfiltered columns of a label and shape at states of the rows.

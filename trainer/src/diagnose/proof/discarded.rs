@@ -17,13 +17,13 @@ use crate::physics::{Action, EffectId};
 /// Share (0..1) of the removable error below which a named effect beside others is minor, where it is also small
 /// against the torque. Chosen by judgement: lowered from 0.1 with the pages regenerated; larger hides a small second
 /// effect, smaller names the error of the larger one's formula.
-const MINOR_SHARE: f64 = 0.06;
+pub(super) const MINOR_SHARE: f64 = 0.06;
 /// The same of a structure without a name. Chosen by judgement: larger, as a free function takes up more of the error
 /// of a formula.
 const UNNAMED_MINOR_SHARE: f64 = 0.1;
 /// Torque over that beside a known rigid body (root mean squares) below which it is small. Chosen by judgement: with it
 /// a strong effect beside a stronger one is no minor one; larger hides effects of a fortieth of the friction.
-const MINOR_TORQUE_SHARE: f64 = 0.025;
+pub(super) const MINOR_TORQUE_SHARE: f64 = 0.025;
 
 /// Torque of an effect over the recorded torque (root mean squares) below which it is listed and not acted on: no
 /// filter, encoder or clock is exact to it, and what they leave has a shape. Chosen by judgement: smaller names such
@@ -228,7 +228,7 @@ fn take_least_in_favour(accepted: &mut Vec<Accepted>, small: &[(EffectId, f64)])
 }
 
 /// Mean square of what base and effects leave.
-fn energy_left(workbench: &Workbench, accepted: &[Accepted]) -> Option<f64> {
+pub(super) fn energy_left(workbench: &Workbench, accepted: &[Accepted]) -> Option<f64> {
     refit(workbench, accepted).map(|refit| refit.noise.rms.powi(2))
 }
 

@@ -3,5 +3,6 @@
 pub(crate) mod decision;
 pub(crate) mod discarded;
 pub(crate) mod locked_rows;
+pub(crate) mod part;
 pub(crate) mod refit;
 pub(crate) mod rollout;

@@ -59,7 +59,7 @@ pub(crate) fn polish(workbench: &Workbench, accepted: &mut [Accepted], noise: &N
             let weigh = |shape: &[f64]| {
                 let columns = workbench.whitened(&workbench.filtered_columns(&label, shape), noise);
                 let evidence = bench.weigh(&columns, &[], false)?;
-                workbench.is_possible(&label, &evidence.coefficients).then_some(evidence)
+                workbench.is_possible(&label, shape, &evidence.coefficients).then_some(evidence)
             };
             if plain {
                 // The variant was chosen by what is fast in it; now by all that it explains.

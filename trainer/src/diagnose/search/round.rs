@@ -53,9 +53,12 @@ impl<'s, 'a> Round<'s, 'a> {
             let (_, bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
-                    let possible =
-                        tested.iter().flatten().filter(|v| search.workbench.is_possible(&group.label, &v.coefficients));
-                    possible.map(|v| v.statistic).fold(0.0, f64::max)
+                    let tested =
+                        group.variants.iter().zip(tested).filter_map(|(variant, v)| Some((variant, v.as_ref()?)));
+                    let possible = tested.filter(|(variant, v)| {
+                        search.workbench.is_possible(&group.label, &variant.shape, &v.coefficients)
+                    });
+                    possible.map(|(_, v)| v.statistic).fold(0.0, f64::max)
                 };
                 explained = search.workbench.design.groups.iter().zip(&variants).map(largest).collect();
             }
@@ -191,9 +194,12 @@ impl<'s, 'a> Round<'s, 'a> {
 
     /// The variants of a group whose coefficients have a possible sign.
     fn admissible(&self, group: usize) -> Vec<Option<VariantEvidence>> {
-        let label = &self.search.workbench.design.groups[group].label;
-        let possible = |e: &VariantEvidence| self.search.workbench.is_possible(label, &e.coefficients);
-        self.variants[group].iter().map(|variant| variant.clone().filter(possible)).collect()
+        let workbench = self.search.workbench;
+        let Group { label, variants, .. } = &workbench.design.groups[group];
+        let of_shape = |(shape, tested): (&[f64], &Option<VariantEvidence>)| {
+            tested.clone().filter(|evidence| workbench.is_possible(label, shape, &evidence.coefficients))
+        };
+        variants.iter().map(|variant| &variant.shape[..]).zip(&self.variants[group]).map(of_shape).collect()
     }
 
     /// Refines the shapes of the leading named effects, so that no rival loses by the coarseness of its grid.
@@ -226,7 +232,7 @@ impl<'s, 'a> Round<'s, 'a> {
             };
             let weigh = |shape: &[f64]| {
                 let evidence = self.bench.evidence(&white(shape))?;
-                self.search.workbench.is_possible(&scored.label, &evidence.coefficients).then_some(evidence)
+                self.search.workbench.is_possible(&scored.label, shape, &evidence.coefficients).then_some(evidence)
             };
             let shape = refine(hypothesis, state, &scored.shape, |shape| weigh(shape).map(|e| e.statistic));
             let grid = self.search.workbench.grid_size(scored.group);

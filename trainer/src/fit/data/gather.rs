@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::rigid::MOST_ATTENUATION;
 use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
 use crate::fit::options::Options;
@@ -22,6 +23,9 @@ const MOST_ROWS: usize = 200_000;
 
 /// Fewest blocks: three to learn from, one to choose by, one to compare on.
 const LEAST_BLOCKS: usize = 5;
+
+/// Share of the largest step that a velocity could take from sample to sample, below which its change is the rounding of arithmetic.
+const ROUNDING: f64 = 1e-9;
 
 /// A column of the rigid body whose coefficient is identified along with friction.
 #[derive(Clone, Debug)]
@@ -60,6 +64,8 @@ pub(in crate::fit) struct Material {
     pub(in crate::fit) sigma_s: Option<f64>,
     /// Time by which the torque was recorded late, s, negative where early; it is put back in the samples.
     pub(in crate::fit) torque_delay_s: f64,
+    /// Whether the joint accelerates by no more than the noise, so that its inertia is left at zero.
+    pub(in crate::fit) is_without_acceleration: bool,
     /// Why nothing can be locked; `None` where something is.
     pub(in crate::fit) repeats: Option<Repetition>,
 }
@@ -88,6 +94,13 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         .in_column("velocity")
         .with_value(first.to_string()));
     }
+    let is_without_acceleration =
+        joint.rigid_body.inertia_kgm2.is_none() && !accelerates(&samples, &velocity, preparation.acceleration_noise);
+    let mut known = joint.clone();
+    if is_without_acceleration {
+        known.rigid_body.inertia_kgm2 = Some(0.0);
+    }
+    let joint = &known;
     let moving = if samples.friction.is_none() { moving(&velocity) } else { (0..velocity.len()).collect() };
     let stride = moving.len().div_ceil(MOST_ROWS).max(1);
     let moving: Vec<usize> = moving.into_iter().step_by(stride).collect();
@@ -134,6 +147,7 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         velocity_noise: preparation.velocity_noise(),
         sigma_s: preparation.sigma_s,
         torque_delay_s: preparation.torque_delay_s,
+        is_without_acceleration,
         repeats,
     })
 }
@@ -143,6 +157,15 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
 fn cut(samples: &Samples, correlation: usize) -> (usize, Vec<Range<usize>>) {
     let found = blocks(samples, correlation);
     if found.len() >= LEAST_BLOCKS || correlation <= 1 { (correlation, found) } else { cut(samples, correlation / 2) }
+}
+
+/// Whether a joint accelerates by more than noise and rounding.
+fn accelerates(samples: &Samples, velocity: &[f64], noise: f64) -> bool {
+    let Some(acceleration) = samples.acceleration.as_deref() else { return false };
+    let top = velocity.iter().fold(0.0_f64, |peak, v| peak.max(v.abs()));
+    let rounding = ROUNDING * top * samples.rate_hz.unwrap_or(1.0);
+    let power = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len().max(1) as f64;
+    MOST_ATTENUATION * power > noise.powi(2) + rounding.powi(2)
 }
 
 fn require_actuator(recording: &Recording) -> Result<()> {

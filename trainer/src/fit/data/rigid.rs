@@ -14,7 +14,7 @@ use crate::samples::rigid_body::TermKind;
 const COLLINEAR_SHARE: f64 = 1e-4;
 
 /// An inertia of which noise takes more than this share is not known at all.
-const MOST_ATTENUATION: f64 = 0.9;
+pub(in crate::fit) const MOST_ATTENUATION: f64 = 0.9;
 
 /// The rigid body for an image from one coefficient for each column of the material.
 pub(in crate::fit) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {

@@ -24,8 +24,9 @@ pub(in crate::fit) struct Repetition {
 
 /// The turns in which `pieces` (ranges of positions in `rows`) are shared out, and why nothing is locked where nothing is.
 ///
-/// Recordings of different motions are locked as a whole: each in its turn, or a fifth of them where they are many. Of a single
-/// motion, blocks are locked; where it repeats itself, nothing is, since every block would have its twin among those learnt from.
+/// Recordings of different motions are locked as a whole: each in its turn, or a fifth of them where they are many; but blocks of each, where what is
+/// left would go one way only and all together do not. Of a single motion, blocks are locked; where it repeats itself, nothing is, since every
+/// block would have its twin among those learnt from.
 pub(in crate::fit) fn take(
     samples: &Samples,
     rows: &[usize],
@@ -40,13 +41,18 @@ pub(in crate::fit) fn take(
     };
     let motion_of: Vec<usize> = pieces.iter().map(of).collect();
     let count = motion_of.iter().max().map_or(0, |most| most + 1);
-    if count > MOST_IN_TURN {
-        return (vec![by_motion(pieces, &motion_of)], None);
-    }
     if count > 1 {
-        return ((0..count).map(|held| without(pieces, &motion_of, held)).collect(), None);
-    }
-    if let Some(reason) = repetition(samples) {
+        let turns = if count > MOST_IN_TURN {
+            vec![by_motion(pieces, &motion_of)]
+        } else {
+            (0..count).map(|held| without(pieces, &motion_of, held)).collect()
+        };
+        let all = Split { train: pieces.to_vec(), ..Split::default() };
+        let goes_both_ways = |split: &Split| goes_both_ways(samples, rows, split);
+        if !goes_both_ways(&all) || turns.iter().all(goes_both_ways) {
+            return (turns, None);
+        }
+    } else if let Some(reason) = repetition(samples) {
         let none = vec![1; pieces.len()];
         return (vec![without(pieces, &none, 0)], Some(reason));
     }
@@ -61,6 +67,13 @@ pub(in crate::fit) fn take(
         );
     }
     (turns, None)
+}
+
+/// Whether the rows that are learnt from go in both directions.
+fn goes_both_ways(samples: &Samples, rows: &[usize], split: &Split) -> bool {
+    let Some(velocity) = samples.velocity.as_deref() else { return true };
+    let goes = |way: f64| split.train.iter().cloned().flatten().any(|row| way * velocity[rows[row]] > 0.0);
+    goes(1.0) && goes(-1.0)
 }
 
 fn repetition(samples: &Samples) -> Option<Repetition> {

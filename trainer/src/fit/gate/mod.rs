@@ -16,8 +16,19 @@ use confounded::{Constant, Identified};
 use worth::worthless;
 
 /// What is fixed where a joint goes one way only.
-pub(super) const ONE_WAY: &str = "In one direction friction and offset are one constant: the offset is fixed at 0, and the law holds in \
+const ONE_WAY: &str = "In one direction friction and offset are one constant: the offset is fixed at 0, and the law holds in \
                                   the direction that was recorded.";
+
+/// What is fixed where nothing accelerates.
+const UNACCELERATED: &str = "The joint accelerates by no more than the noise, as in strokes of constant speed: nothing tells its inertia, which is \
+                             left at 0.";
+
+/// What is fixed at a stated value because nothing tells it, in sentences.
+pub(super) fn fixed(material: &Material, identified: &Identified) -> Vec<String> {
+    let one_way = identified.is_one_way().then_some(ONE_WAY);
+    let still = (material.is_without_acceleration && material.separation.is_some()).then_some(UNACCELERATED);
+    one_way.into_iter().chain(still).map(str::to_owned).collect()
+}
 
 /// What recordings of one joint can tell of it.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,8 +14,8 @@ pub struct Recorded<'a> {
     pub recordings: &'a [Source<'a>],
     /// Recordings that are only scored.
     pub tests: &'a [Source<'a>],
-    /// Text of the URDF.
-    pub urdf: &'a str,
+    /// Text of the URDF or MJCF file.
+    pub robot: &'a str,
     /// What else is known.
     pub file: &'a ArmFile,
 }

@@ -1,5 +1,6 @@
 //! From recordings of a whole arm to a law for each joint, that tell themselves.
 
+mod advise;
 mod fitted;
 mod json;
 mod recordings;
@@ -19,6 +20,8 @@ use crate::export::simulator::{ModelFile, Request, Simulator, write};
 use crate::fit::Options;
 use crate::fit::model::from_bytes;
 use crate::joint::Joint;
+use crate::robot::is_mjcf;
+pub use advise::{Advised, advise};
 pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 
 /// Fits an arm.
@@ -27,7 +30,7 @@ pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 /// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`crate::joint::ArmFile::joints`], and whatever reading a recording reports.
 pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> Result<FittedArm> {
     let start = Instant::now();
-    let mut chain = Chain::parse(of.urdf, &of.file.held)?;
+    let mut chain = Chain::parse(of.robot, &of.file.held)?;
     if let Some(gravity) = of.file.gravity_m_s2 {
         chain.gravity = Vector3::from(gravity);
     }
@@ -79,12 +82,13 @@ impl FittedArm {
         text::summary(self, images)
     }
 
-    /// The URDF with Coulomb and viscous friction of the joints whose laws may be relied upon, or of all where `force` says so.
+    /// The URDF or MJCF file with Coulomb and viscous friction of the joints whose laws may be relied upon, or of all where `force` says so.
     ///
     /// # Errors
     /// As [`write()`].
-    pub fn patched(&self, urdf: &str, force: bool) -> Result<String> {
-        let mut text = urdf.to_owned();
+    pub fn patched(&self, robot: &str, force: bool) -> Result<String> {
+        let mut text = robot.to_owned();
+        let simulator = if is_mjcf(robot) { Simulator::MjcfPatch } else { Simulator::Urdf };
         for joint in &self.outcome.joints {
             let Ok(law) = &joint.law else { continue };
             if joint_doubt(joint).is_some() && !force {
@@ -94,7 +98,7 @@ impl FittedArm {
             let into = ModelFile { text: &text, joint: &joint.name, ..ModelFile::default() };
             let torque_per_ampere = joint.torque_constant.map(|constant| constant.value);
             let request = Request { title: &joint.name, into: Some(into), torque_per_ampere, ..Request::default() };
-            text = write(&image, Simulator::Urdf, &request)?;
+            text = write(&image, simulator, &request)?;
         }
         Ok(text)
     }

@@ -27,8 +27,11 @@ use crate::diagnose::request::{Options, Refusal};
 use crate::diagnose::run;
 use crate::diagnose::search::thresholds::Settings;
 use crate::error::{Error, Result, codes};
+use crate::figures::digits;
 use crate::fit;
+use crate::fit::OtherForces;
 use crate::joint::Joint;
+use crate::parameter::Parameter;
 use crate::physics::JointState;
 use crate::physics::names::capital;
 use crate::physics::units::Units;
@@ -58,6 +61,7 @@ pub struct Diagnosed {
     pub samples: usize,
     /// Time that it took, s.
     pub seconds: f64,
+    forces: OtherForces,
     advice: Option<Plan>,
     story: Story,
     units: Units,
@@ -101,6 +105,8 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let actuator = commanded::actuator(request, &recordings, joint)?;
     let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref()));
     let recordings = recordings.collect::<Result<Vec<_>>>()?;
+    let forces = OtherForces::of(&recordings, joint)?;
+    let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = &recordings[0];
     let (comparison, compared) = comparison(request, (&recordings, actuator.as_ref()), joint)?;
     let units = units(real);
@@ -114,6 +120,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         least_effect: request.least_effect,
         // Errors of a torque that follows from position are those of both sides, and common columns take them up.
         by_likelihood: request.by_likelihood || actuator.is_some() && matches!(request.against, Against::Simulation(_)),
+        measured_wrong: warnings.iter().any(Warning::is_blocking),
     };
     stage("weighing every effect against the noise");
     let mut diagnosis = run::diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
@@ -137,6 +144,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         seed: request.seed,
         diagnosis,
         improvement,
+        forces,
         advice,
         story,
         units,
@@ -149,7 +157,18 @@ impl Diagnosed {
     #[must_use]
     pub fn text(&self) -> String {
         let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", commanded::sentence(actuator)));
-        text_of(&self.story, self.advice.as_ref()) + &actuator.unwrap_or_default()
+        let factor = |factor: &Parameter| {
+            format!(
+                "Taken off: {} {} ({} to {}).\n",
+                digits(factor.value),
+                factor.unit,
+                digits(factor.ci95[0]),
+                digits(factor.ci95[1])
+            )
+        };
+        let forces: String = self.forces.factors.iter().map(factor).collect();
+        let untold: String = self.forces.remarks.iter().map(|remark| format!("{remark}\n")).collect();
+        text_of(&self.story, self.advice.as_ref()) + &actuator.unwrap_or_default() + &forces + &untold
     }
 
     /// The result as JSON, schema `frikan.diagnose/1`.

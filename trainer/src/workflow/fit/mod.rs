@@ -15,7 +15,7 @@ use super::recordings::{Source, Warning, load, load_all};
 use crate::actuator::Kind;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Soundness;
-use crate::fit::{Options, Outcome, ProgressCallback};
+use crate::fit::{Options, OtherForces, Outcome, ProgressCallback};
 use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::report::{self, Origin};
@@ -75,14 +75,20 @@ pub fn fit(
     let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint))?;
     warnings.extend(of_tests);
     let sources = recordings.iter().chain(&tests).map(Recording::source).collect();
+    let forces = OtherForces::of(&recordings, joint)?;
+    let taken_off = |recordings: Vec<Recording>| recordings.into_iter().map(|recording| forces.taken_off(recording));
+    let recordings = taken_off(recordings).collect::<Result<Vec<_>>>()?;
+    let tests = taken_off(tests).collect::<Result<Vec<_>>>()?;
     let servo = match joint.actuator.kind {
         Kind::Torque => None,
         _ => Some(fit_servo(&recordings, &tests, joint, options, progress)?),
     };
-    let outcome = match &servo {
+    let mut outcome = match &servo {
         Some(servo) => servo.outcome.clone(),
         None => crate::fit::fit(&recordings, &tests, joint, options, progress)?,
     };
+    outcome.parameters.extend(forces.factors);
+    outcome.remarks.extend(forces.remarks);
     let motions = match &servo {
         Some(servo) => Some(SimulatedMotions::of_servo(servo, joint)),
         None => SimulatedMotions::under_torque(&outcome, &recordings, &tests, joint),

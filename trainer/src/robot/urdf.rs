@@ -1,102 +1,21 @@
-//! A robot as its URDF file describes it: links with their bodies, and the joints between them.
+//! URDF: links beside each other, and joints that name the two that they join.
 
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use crate::error::{Error, Result, codes};
+use super::model::{Body, GRAVITY_M_S2, Joint, Kind, Link, Robot, at, row};
+use crate::error::Result;
 
-/// Standard acceleration of gravity, m/s2.
-pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
-
-/// What a file describes, in its order.
-#[derive(Clone, Debug)]
-pub(crate) struct Robot {
-    pub(crate) links: Vec<Link>,
-    pub(crate) joints: Vec<Joint>,
-}
-
-/// A link. Without `<inertial>` it has no mass.
-#[derive(Clone, Debug)]
-pub(crate) struct Link {
-    pub(crate) name: String,
-    pub(crate) body: Body,
-}
-
-/// Mass and its distribution, in the frame of the link or of whatever the body was moved to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Body {
-    /// kg.
-    pub(crate) mass: f64,
-    /// m.
-    pub(crate) centre: Vector3<f64>,
-    /// About the centre, kg m2.
-    pub(crate) inertia: Matrix3<f64>,
-}
-
-impl Body {
-    /// The same body seen from a frame in which its own has this pose.
-    pub(crate) fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
-        let rotation = pose.rotation.to_rotation_matrix();
-        let centre = (pose * nalgebra::Point3::from(self.centre)).coords;
-        Self { mass: self.mass, centre, inertia: rotation * self.inertia * rotation.transpose() }
-    }
-}
-
-/// How a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Turns about its axis.
-    Revolute,
-    /// Slides along it.
-    Prismatic,
-    /// Neither: fixed, or of a type that has more than one degree of freedom.
-    Fixed,
-}
-
-/// A joint.
-#[derive(Clone, Debug)]
-pub(crate) struct Joint {
-    pub(crate) name: String,
-    pub(crate) kind: Kind,
-    pub(crate) parent: String,
-    pub(crate) child: String,
-    /// Of the child's frame in the parent's where the joint stands at zero.
-    pub(crate) pose: Isometry3<f64>,
-    /// Of length one, in the child's frame.
-    pub(crate) axis: Vector3<f64>,
-    /// Lowest and highest position, rad or m; `None` where the file gives none.
-    pub(crate) limits: Option<[f64; 2]>,
-    /// Whether it follows another joint.
-    pub(crate) is_mimic: bool,
-    /// Row of the file.
-    pub(crate) row: u64,
-}
-
-impl Robot {
-    /// # Errors
-    /// `FRK-D021` with its row when the text is no URDF, or a number in it is none.
-    pub(crate) fn parse(text: &str) -> Result<Self> {
-        let document = Document::parse(text)
-            .map_err(|error| Error::new(&codes::BAD_URDF, error.to_string()).at_row(u64::from(error.pos().row)))?;
-        let robot = document.root_element();
-        let of = |tag: &'static str| robot.children().filter(move |node| node.has_tag_name(tag));
-        Ok(Self {
-            links: of("link").map(link).collect::<Result<_>>()?,
-            joints: of("joint").map(joint).collect::<Result<_>>()?,
-        })
-    }
-
-    /// The body of a link; none where there is no such link.
-    pub(crate) fn body(&self, link: &str) -> Body {
-        self.links.iter().find(|own| own.name == link).map_or_else(Body::default, |own| own.body)
-    }
-}
-
-impl Joint {
-    /// An error in this joint.
-    pub(crate) fn error(&self, message: &str) -> Error {
-        Error::new(&codes::BAD_URDF, message).at_row(self.row)
-    }
+/// # Errors
+/// `FRK-D021` with its row when a number is none, or a joint names no links.
+pub(super) fn parse(document: &Document) -> Result<Robot> {
+    let robot = document.root_element();
+    let of = |tag: &'static str| robot.children().filter(move |node| node.has_tag_name(tag));
+    Ok(Robot {
+        links: of("link").map(link).collect::<Result<_>>()?,
+        joints: of("joint").map(joint).collect::<Result<_>>()?,
+        gravity: Vector3::new(0.0, 0.0, -GRAVITY_M_S2),
+    })
 }
 
 fn link(node: Node) -> Result<Link> {
@@ -174,12 +93,4 @@ fn vector(node: Node, attribute: &str, absent: [f64; 3]) -> Result<Vector3<f64>>
         [x, y, z] if numbers.iter().all(|value: &f64| value.is_finite()) => Ok(Vector3::new(x, y, z)),
         _ => Err(at(node, "three finite numbers are needed here").in_column(attribute).with_value(text)),
     }
-}
-
-fn at(node: Node, message: &str) -> Error {
-    Error::new(&codes::BAD_URDF, message).at_row(row(node))
-}
-
-fn row(node: Node) -> u64 {
-    u64::from(node.document().text_pos_at(node.range().start).row)
 }
