@@ -133,7 +133,7 @@ fn a_force_that_stays_is_an_offset() {
 /// Strokes under three pressures: what the pressure does is told in N per bar, and neither friction nor offset hold any of it.
 #[test]
 fn a_known_other_force_is_fitted_with_the_body_and_taken_off() {
-    let known = joint("forces = [\"pressure_bar\"]\n[rigid_body]\ninertia_kgm2 = 0.0\n");
+    let known = joint("forces = [\"pressure_bar\"]\n");
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random::new(9, 0);
     let paths = [1.0, 2.0, 3.0].map(|bar: f64| {
@@ -157,7 +157,7 @@ fn a_known_other_force_is_fitted_with_the_body_and_taken_off() {
     let fitted = frikan_trainer::fit(&sources, &[], &known, &options, &|_| ()).unwrap();
     near(
         &fitted.outcome,
-        &[("pressure_bar", 50.0, 0.01), ("coulomb_torque", 12.0, 0.03), ("viscous_coefficient", 150.0, 0.1)],
+        &[("pressure_bar", 50.0, 0.01), ("coulomb_force", 12.0, 0.03), ("viscous_coefficient", 150.0, 0.1)],
     );
     let request = Request::of(&sources, Against::Itself(BaseKind::CoulombViscous));
     let found = frikan_trainer::diagnose(&request, &known, &|_| ()).unwrap();

@@ -77,6 +77,9 @@ impl Arm {
 pub fn run(arguments: &Arm) -> Result<u8> {
     refuse_unwritable(&arguments.json, &arguments.inputs())?;
     refuse_unwritable(&arguments.advise, &arguments.inputs())?;
+    if arguments.advise.is_none() {
+        refuse_folder(&folder(arguments))?;
+    }
     let text = |path: &Path| read_text(path, FILE_LIMIT_BYTES);
     let in_file = |path: &Path| {
         let path = path.display().to_string();
@@ -90,7 +93,6 @@ pub fn run(arguments: &Arm) -> Result<u8> {
     if let Some(path) = &arguments.advise {
         return plan(arguments, path, &robot, &file);
     }
-    refuse_folder(&folder(arguments))?;
     let budget = Budget { target: arguments.target.unwrap_or_default(), ..Budget::default() };
     let options = Options { seed: arguments.seed, budget, ..Options::default() };
     let [recordings, tests] =

@@ -161,7 +161,7 @@ fn diagnose_locked(
     let measurement_noise = MeasurementNoise::of(&prepared, comparison, &base.residual);
     let mut search = Search { workbench, measurement_noise: measurement_noise.as_ref(), settings, refused: Vec::new() };
     let baseline = refit(workbench, &[]).ok_or(Refusal::Undetermined)?;
-    let mut health: Vec<HealthNote> = as_recorded.notes(baseline.noise.rms).collect();
+    let mut health: Vec<HealthNote> = as_recorded.notes().collect();
     health.extend(examine(comparison));
     health.extend(coarse_position(signals, &prepared));
     health.extend(scattered_sampling(signals, &prepared));

@@ -48,9 +48,9 @@ impl AsRecorded {
         self.step.is_some_and(|step| step.share > NOTED_STEP_SHARE && step.error() >= left_by_base)
     }
 
-    /// The notes on it, beside a base that leaves some of it (root mean square).
-    pub fn notes(&self, left_by_base: f64) -> impl Iterator<Item = HealthNote> {
-        self.notes.iter().cloned().chain(self.step.and_then(|step| coarse_torque(step, left_by_base)))
+    /// The notes on it.
+    pub fn notes(&self) -> impl Iterator<Item = HealthNote> {
+        self.notes.iter().cloned().chain(self.step.and_then(coarse_torque))
     }
 }
 
@@ -86,12 +86,11 @@ fn replaced(spikes: &Spikes) -> HealthNote {
     HealthNote { effect: EffectId::TransientEvent, blocking: false, observation }
 }
 
-/// Torque steps of more than the noise hide what happens between them where they are a sizeable share of the torque, unless the base leaves
-/// no more than their own error.
-fn coarse_torque(step: TorqueStep, left_by_base: f64) -> Option<HealthNote> {
+/// Torque steps of more than the noise hide what happens between them where they are a sizeable share of the torque.
+fn coarse_torque(step: TorqueStep) -> Option<HealthNote> {
     (step.share > NOTED_STEP_SHARE).then(|| HealthNote {
         effect: EffectId::Quantisation,
-        blocking: step.share > BLOCKING_STEP_SHARE && step.error() < left_by_base,
+        blocking: step.share > BLOCKING_STEP_SHARE,
         observation: Observation::CoarseTorque { step: step.step },
     })
 }
@@ -183,21 +182,18 @@ mod tests {
 
     #[test]
     fn coarse_steps_are_told_and_block_where_they_hide_friction() {
-        let blocking = |largest: f64| {
-            torque_step(&in_steps(largest, largest))
-                .and_then(|step| coarse_torque(step, f64::INFINITY))
-                .map(|note| note.blocking)
-        };
+        let blocking =
+            |largest: f64| torque_step(&in_steps(largest, largest)).and_then(coarse_torque).map(|note| note.blocking);
         assert_eq!([blocking(5.0), blocking(40.0), blocking(400.0)], [Some(true), Some(false), None]);
     }
 
     #[test]
     fn a_base_that_leaves_no_more_than_the_steps_lacks_nothing() {
-        for largest in [5.0, 40.0] {
+        for (largest, is_coarse) in [(5.0, true), (40.0, false)] {
             let as_recorded = AsRecorded::of(&in_steps(largest, largest));
             assert!(as_recorded.explains(0.25) && !as_recorded.explains(0.35));
-            let notes: Vec<HealthNote> = as_recorded.notes(0.25).collect();
-            assert!(notes.len() == 1 && !notes[0].blocking, "{notes:?}");
+            let notes: Vec<HealthNote> = as_recorded.notes().collect();
+            assert!(notes.len() == 1 && notes[0].blocking == is_coarse, "{notes:?}");
         }
         assert!(!AsRecorded::of(&in_steps(400.0, 400.0)).explains(0.1), "fine steps are no fault");
     }

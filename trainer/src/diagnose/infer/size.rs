@@ -1,4 +1,5 @@
-//! How large an effect is beyond what base and common columns could take, and how sure that is.
+//! How large an effect is beyond what base, common columns and the other effects of its set could take, and how sure that is: two that cancel
+//! each other are small, however large each is.
 
 use crate::diagnose::infer::candidates::Candidates;
 use crate::diagnose::infer::side::Side;
@@ -30,11 +31,15 @@ pub(crate) struct Sizing<'a> {
 impl Sizing<'_> {
     /// Sizes of the members of a set.
     pub fn of(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member]) -> Vec<Size> {
-        let basis = orthonormal(&self.real.columns, &self.real.runs);
         let own = weighing.own(weighed, members);
         let model = weighing.model(weighed, members);
         let of_member = |member: &Member| {
             let places = self.candidates.places(std::slice::from_ref(member));
+            let others: Vec<Member> = members.iter().copied().filter(|other| other != member).collect();
+            let of_others =
+                self.candidates.places(&others).into_iter().map(|place| self.candidates.real[place].clone());
+            let beside: Vec<Vec<f64>> = self.real.columns.iter().cloned().chain(of_others).collect();
+            let basis = orthonormal(&beside, &self.real.runs);
             let beyond: Vec<Vec<f64>> = places.iter().map(|&place| self.beyond(&basis, place)).collect();
             let coefficients: Vec<f64> = places.iter().map(|&place| own[place]).collect();
             let torque = weighted(&beyond, &coefficients);
@@ -51,7 +56,7 @@ impl Sizing<'_> {
         members.iter().map(of_member).collect()
     }
 
-    /// A column at the weighed rows, less what the base, of that basis, takes of it.
+    /// A column at the weighed rows, less what base and other effects, of that basis, take of it.
     fn beyond(&self, basis: &[Vec<f64>], place: usize) -> Vec<f64> {
         let mut column = self.candidates.real[place].clone();
         project_out(&mut column, basis, &self.real.runs);

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::rigid::MOST_ATTENUATION;
 use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
 use crate::fit::options::Options;
@@ -23,6 +22,9 @@ const MOST_ROWS: usize = 200_000;
 
 /// Fewest blocks: three to learn from, one to choose by, one to compare on.
 const LEAST_BLOCKS: usize = 5;
+
+/// An inertia of which noise takes more than this share is not known at all.
+pub(in crate::fit) const MOST_ATTENUATION: f64 = 0.9;
 
 /// Share of the largest step that a velocity could take from sample to sample, below which its change is the rounding of arithmetic.
 const ROUNDING: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use frikan_shared::model::RigidBody;
 
-use super::gather::Material;
+use super::gather::{MOST_ATTENUATION, Material};
 use crate::joint::Joint;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::NORMAL_95;
@@ -12,9 +12,6 @@ use crate::samples::rigid_body::TermKind;
 
 /// A column of which the others and friction leave less than this share of its square cannot be told from them.
 const COLLINEAR_SHARE: f64 = 1e-4;
-
-/// An inertia of which noise takes more than this share is not known at all.
-pub(in crate::fit) const MOST_ATTENUATION: f64 = 0.9;
 
 /// The rigid body for an image from one coefficient for each column of the material.
 pub(in crate::fit) fn in_force(material: &Material, joint: &Joint, coefficients: &[f64]) -> RigidBody {
