@@ -75,7 +75,8 @@ class Fitted:
     @property
     def integers(self) -> Optional[dict[str, Any]]:
         """The table of integers for a drive without floating-point unit: counts, error and instructions; ``None`` where it is none."""
-        return self.json["integers"]
+        integers: Optional[dict[str, Any]] = self.json["integers"]
+        return integers
 
     @property
     def doubt(self) -> Optional[tuple[str, str]]:
