@@ -36,7 +36,7 @@ pub struct Arm {
     /// Folder for an image of each joint, arm.json and the robot's file with their friction; made where it does not exist
     #[arg(short, long, required_unless_present = "advise", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Plan a motion that tells everything apart, within [limits] of arm.toml, instead of fitting; as CSV, `-` for standard output
+    /// Plan a motion that tells everything apart, within `[limits]` of arm.toml, instead of fitting; as CSV, `-` for standard output
     #[arg(long, conflicts_with_all = ["recordings", "tests", "output", "split", "json"], value_name = "FILE")]
     pub advise: Option<PathBuf>,
     /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`

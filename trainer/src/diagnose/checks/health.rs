@@ -88,7 +88,7 @@ fn replaced(spikes: &Spikes) -> HealthNote {
 
 /// Torque steps of more than the noise hide what happens between them where they are a sizeable share of the torque.
 fn coarse_torque(step: TorqueStep) -> Option<HealthNote> {
-    (step.share > NOTED_STEP_SHARE).then(|| HealthNote {
+    (step.share > NOTED_STEP_SHARE).then_some(HealthNote {
         effect: EffectId::Quantisation,
         blocking: step.share > BLOCKING_STEP_SHARE,
         observation: Observation::CoarseTorque { step: step.step },
