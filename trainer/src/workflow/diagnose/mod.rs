@@ -192,7 +192,8 @@ impl Diagnosed {
     /// `command` is what made it, for its foot.
     #[must_use]
     pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
-        let settings = format!("Seed {}.", self.seed);
+        let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", commanded::sentence(actuator)));
+        let settings = format!("Seed {}.{}", self.seed, actuator.unwrap_or_default());
         report::diagnosis(&DiagnosisPage {
             recording: &self.label,
             compared_with,
