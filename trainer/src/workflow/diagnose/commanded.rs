@@ -1,27 +1,27 @@
 //! Joints that report no torque: what their actuators made of the commands stands for it.
 
-use super::request::{Against, Request};
 use crate::actuator::Kind;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::servo::{Identified, identify, known_torque};
-use crate::workflow::recordings::motion;
 use serde_json::{Map, Value};
 
 /// What is known of the actuator of a joint that reports no torque: what its file gives, and of the rest what the simulation tells, whose
 /// constants are those of the simulator, or else the recordings themselves. `None` of a joint that reports torque.
 ///
 /// # Errors
-/// As [`identify`], and whatever reading a simulation reports.
-pub(super) fn actuator(request: &Request<'_>, recordings: &[Recording], joint: &Joint) -> Result<Option<Identified>> {
-    if joint.actuator.kind == Kind::Torque {
-        return Ok(None);
+/// As [`identify`].
+pub(super) fn actuator(
+    recordings: &[Recording],
+    simulation: Option<&Recording>,
+    joint: &Joint,
+) -> Result<Option<Identified>> {
+    match (joint.actuator.kind, simulation) {
+        (Kind::Torque, _) => Ok(None),
+        (_, None) => identify(recordings, joint).map(Some),
+        (_, Some(simulation)) => identify(std::slice::from_ref(simulation), &joint.of_simulation()).map(Some),
     }
-    let Against::Simulation(source) = request.against else { return identify(recordings, joint).map(Some) };
-    let of_simulation = joint.of_simulation();
-    let simulation = motion(source.read(&of_simulation)?, &of_simulation)?.0;
-    identify(&[simulation], &of_simulation).map(Some)
 }
 
 /// A recording under the torque that its actuator made, less what its payload takes; itself where it has a torque of its own.

@@ -1,8 +1,7 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
-use super::commanded::under_torque;
 use super::one_joint::{refuse_diverged, refuse_other_joint};
-use super::request::{Against, Request};
+use super::request::Against;
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
@@ -14,8 +13,7 @@ use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{Quantity, Recording};
-use crate::servo::Identified;
-use crate::workflow::recordings::{Source, motion, units};
+use crate::workflow::recordings::{motion, units};
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
 
@@ -46,32 +44,30 @@ impl Compared {
     }
 }
 
-/// The real recordings and what they are compared with.
+/// The real recordings and what they are compared with; `in_one_model` puts the rows of a simulation beside theirs.
 pub(super) fn comparison(
-    request: &Request<'_>,
-    (real, actuator): (&[Recording], Option<&Identified>),
+    against: &Against<'_>,
+    (real, simulation): (&[Recording], Option<Recording>),
     joint: &Joint,
+    in_one_model: bool,
 ) -> Result<(Comparison, Compared)> {
-    if let Against::Simulation(source) = request.against {
-        let simulated = simulated(source, &real[0], joint, actuator)?;
+    if let Some(simulation) = simulation {
+        let simulated = as_recorded(simulation, &real[0], joint)?;
         let signals = joined(real, joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
-        let learned = if request.by_likelihood {
-            learn_static(&simulation, &signals)
-        } else {
-            learn_simulation(&simulation, &signals)
-        };
+        let learned =
+            if in_one_model { learn_static(&simulation, &signals) } else { learn_simulation(&simulation, &signals) };
         let law =
             learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let given = given_rigid_body(&real[0], joint)?;
         let mut comparison = Comparison::with(signals, law.at(&state));
-        if request.by_likelihood {
+        if in_one_model {
             let of_simulation = law.at(&simulation.states());
             comparison = comparison.beside(simulation, of_simulation);
         }
         Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
-    } else if let Against::Model(image) = &request.against {
+    } else if let Against::Model(image) = against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
         let signals = joined(real, &bare)?;
@@ -90,10 +86,15 @@ fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> 
     Ok(Reference { uncertainty, ..from_model::at(&image.model, state, given)? })
 }
 
-/// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.
-fn simulated(source: Source<'_>, real: &Recording, joint: &Joint, known: Option<&Identified>) -> Result<Recording> {
+/// The recording of the simulation that is compared with, where there is one.
+pub(super) fn simulation(against: &Against<'_>, joint: &Joint) -> Result<Option<Recording>> {
+    let Against::Simulation(source) = against else { return Ok(None) };
     let joint = joint.of_simulation();
-    let mut simulated = under_torque(motion(source.read(&joint)?, &joint)?.0, &joint, known)?;
+    Ok(Some(motion(source.read(&joint)?, &joint)?.0))
+}
+
+/// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.
+fn as_recorded(mut simulated: Recording, real: &Recording, joint: &Joint) -> Result<Recording> {
     let actuator = |recording: &Recording| recording.actuator().map(|channel| channel.unit);
     let beside_current = actuator(real) == Some("A") && matches!(actuator(&simulated), Some("Nm" | "N"));
     if beside_current && joint.drive.torque_constant_nm_a.is_some() {

@@ -102,13 +102,18 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     if recordings.is_empty() {
         return Err(Error::new(&codes::USAGE, "there is no recording to diagnose"));
     }
-    let actuator = commanded::actuator(request, &recordings, joint)?;
+    let simulation = compare::simulation(&request.against, joint)?;
+    let actuator = commanded::actuator(&recordings, simulation.as_ref(), joint)?;
+    // A commanded joint is compared with the law of its simulation, whose rows stand in the model only where that is asked for.
+    let by_likelihood = request.by_likelihood || actuator.is_some() && simulation.is_some();
+    let simulation = simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref()));
     let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref()));
     let recordings = recordings.collect::<Result<Vec<_>>>()?;
     let forces = OtherForces::of(&recordings, joint)?;
     let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = &recordings[0];
-    let (comparison, compared) = comparison(request, (&recordings, actuator.as_ref()), joint)?;
+    let (comparison, compared) =
+        comparison(&request.against, (&recordings, simulation.transpose()?), joint, request.by_likelihood)?;
     let units = units(real);
     let options = Options {
         base: match request.against {
@@ -118,8 +123,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         lock: request.lock,
         settings: Settings { seed: request.seed, ..Settings::default() },
         least_effect: request.least_effect,
-        // Errors of a torque that follows from position are those of both sides, and common columns take them up.
-        by_likelihood: request.by_likelihood || actuator.is_some() && matches!(request.against, Against::Simulation(_)),
+        by_likelihood,
         measured_wrong: warnings.iter().any(Warning::is_blocking),
     };
     stage("weighing every effect against the noise");
