@@ -2,10 +2,7 @@
 
 use std::fmt::Write;
 
-use nalgebra::Vector3;
-
 use crate::arm::base::Base;
-use crate::arm::chain::Chain;
 use crate::arm::excitation::{Excitation, Limits};
 use crate::error::{Error, Result, codes};
 use crate::figures::digits;
@@ -28,14 +25,9 @@ pub struct Advised {
 /// Plans a motion of the arm of a URDF or MJCF file within the limits of `arm.toml`; positions that it does not limit are limited by the file.
 ///
 /// # Errors
-/// As [`Chain::parse`] and [`ArmFile::joints`]; `FRK-D014` where a limit of a joint is not known.
+/// As [`crate::arm::chain::Chain::parse`] and [`ArmFile::joints`]; `FRK-D014` where a limit of a joint is not known.
 pub fn advise(robot: &str, file: &ArmFile, seed: u64) -> Result<Advised> {
-    let mut chain = Chain::parse(robot, &file.held)?;
-    if let Some(gravity) = file.gravity_m_s2 {
-        chain.gravity = Vector3::from(gravity);
-    }
-    let names: Vec<String> = chain.joints.iter().map(|joint| joint.name.clone()).collect();
-    let joints = file.joints(&names)?;
+    let (chain, joints) = super::described(robot, file)?;
     let limits = chain.joints.iter().zip(&joints).map(|(joint, known)| limits(known, joint.limits, &joint.name));
     let base = Base::of(&chain);
     let planned = Excitation::of(&chain, &base, &limits.collect::<Result<Vec<_>>>()?, seed);

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::export::simulator::{ModelFile, Request, Simulator, write};
 use crate::fit::Options;
 use crate::fit::model::from_bytes;
-use crate::joint::Joint;
+use crate::joint::{ArmFile, Joint};
 use crate::robot::is_mjcf;
 pub use advise::{Advised, advise};
 pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
@@ -30,12 +30,7 @@ pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 /// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`crate::joint::ArmFile::joints`], and whatever reading a recording reports.
 pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> Result<FittedArm> {
     let start = Instant::now();
-    let mut chain = Chain::parse(of.robot, &of.file.held)?;
-    if let Some(gravity) = of.file.gravity_m_s2 {
-        chain.gravity = Vector3::from(gravity);
-    }
-    let names: Vec<String> = chain.joints.iter().map(|joint| joint.name.clone()).collect();
-    let joints = of.file.joints(&names)?;
+    let (chain, joints) = described(of.robot, of.file)?;
     let mut warnings = Vec::new();
     let mut load = |sources: &[Source<'_>]| {
         sources.iter().map(|source| run(*source, &joints, &mut warnings)).collect::<Result<Vec<_>>>()
@@ -43,6 +38,17 @@ pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> R
     let (runs, tests) = (load(of.recordings)?, load(of.tests)?);
     let outcome = crate::arm::fit::fit(&Arm { chain, joints, runs, tests }, options, progress)?;
     Ok(FittedArm { outcome, warnings, seconds: start.elapsed().as_secs_f64(), seed: options.seed })
+}
+
+/// The chain of a URDF or MJCF file, under the gravity of arm.toml where that gives one, and what arm.toml says of its joints.
+fn described(robot: &str, file: &ArmFile) -> Result<(Chain, Vec<Joint>)> {
+    let mut chain = Chain::parse(robot, &file.held)?;
+    if let Some(gravity) = file.gravity_m_s2 {
+        chain.gravity = Vector3::from(gravity);
+    }
+    let names: Vec<String> = chain.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints = file.joints(&names)?;
+    Ok((chain, joints))
 }
 
 /// The joints of one recording, as their motion is safe to use.
