@@ -3,6 +3,7 @@
 //! fitted or diagnosed.
 
 use crate::error::{Error, Result, codes};
+use crate::fit::data::gather::REST_SHARE;
 use crate::fit::data::rigid::printed;
 use crate::joint::Joint;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
@@ -15,8 +16,6 @@ use crate::samples::{BendingLaw, Preparation, Request, Samples, prepare, top_spe
 
 /// Share of the square of a column that body and friction have to leave: less and it cannot be told from an offset or from friction.
 const LEAST_OWN_SHARE: f64 = 1e-4;
-/// Share of the top speed below which friction is no function of velocity.
-const REST_SHARE: f64 = 0.001;
 
 /// The known other forces of recordings.
 #[derive(Clone, Debug, Default)]

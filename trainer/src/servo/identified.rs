@@ -1,6 +1,6 @@
 //! What recordings tell of an actuator.
 
-use crate::actuator::{Known, Open, Partial};
+use crate::actuator::{Actuator, Known, Open, Partial};
 use crate::joint::Joint;
 use crate::parameter::Parameter;
 use crate::samples::Preparation;
@@ -58,16 +58,16 @@ impl Identified {
 
     /// The same with another loss, delay and limit.
     pub(super) fn set_rest(&mut self, back_emf: Option<f64>, delay_s: f64, torque_limit: Option<f64>) {
-        self.torque_limit = torque_limit;
-        if let Some(limit) = torque_limit {
-            self.partial.actuator.limits.torque = limit;
-        }
-        self.back_emf = back_emf;
-        if let Some(back_emf) = back_emf {
-            self.partial.actuator.back_emf = back_emf;
-        }
-        self.partial.actuator.delay_s = delay_s;
-        self.delay_s = Some(delay_s);
+        (self.back_emf, self.delay_s, self.torque_limit) = (back_emf, Some(delay_s), torque_limit);
+        self.partial.actuator = self.with_rest(self.partial.actuator);
+    }
+
+    /// An actuator with the loss, the delay and the limit that were identified.
+    fn with_rest(&self, mut actuator: Actuator) -> Actuator {
+        actuator.back_emf = self.back_emf.unwrap_or(actuator.back_emf);
+        actuator.delay_s = self.delay_s.unwrap_or(actuator.delay_s);
+        actuator.limits.torque = self.torque_limit.unwrap_or(actuator.limits.torque);
+        actuator
     }
 
     /// The actuator of a recording, of which some constants may be its own.
@@ -78,15 +78,7 @@ impl Identified {
                 complete = complete.with(*open, *value);
             }
         }
-        if let Some(back_emf) = self.back_emf {
-            complete.actuator.back_emf = back_emf;
-        }
-        if let Some(delay_s) = self.delay_s {
-            complete.actuator.delay_s = delay_s;
-        }
-        if let Some(limit) = self.torque_limit {
-            complete.actuator.limits.torque = limit;
-        }
+        complete.actuator = self.with_rest(complete.actuator);
         complete
     }
 }

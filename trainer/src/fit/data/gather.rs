@@ -15,7 +15,7 @@ use crate::samples::states::{States, states};
 use crate::samples::{Preparation, Request, Samples, prepare};
 
 /// Below this share of the top speed friction is no function of velocity.
-const REST_SHARE: f64 = 0.001;
+pub(in crate::fit) const REST_SHARE: f64 = 0.001;
 
 /// A law of a few tens of parameters learns nothing from more samples than this; only time would grow with them.
 const MOST_ROWS: usize = 200_000;
