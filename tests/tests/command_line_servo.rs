@@ -7,9 +7,26 @@ use std::path::Path;
 use frikan_tests::command::run;
 use serde_json::Value;
 
+/// What a pendulum and its drive do otherwise than the simulation.
+#[derive(Clone, Copy)]
+struct Joint {
+    /// Friction per torque of the actuator.
+    load: f64,
+    /// N m/rad
+    kp: f64,
+    /// Largest torque, N m.
+    limit: f64,
+    /// Time until a command acts, s.
+    delay: f64,
+    /// Position error up to which the drive does nothing, rad.
+    dead_band: f64,
+}
+
+const AS_SIMULATED: Joint = Joint { load: 0.0, kp: 40.0, limit: f64::INFINITY, delay: 0.0, dead_band: 0.0 };
+
 /// A pendulum under a PD command of 2 kHz, logged every 4 ms by an encoder of 16 bits: friction of 0.5 N m, and what the gear turns into
 /// friction of the torque that it carries. Written apart from the program's own plant.
-fn log(at: &Path, name: &str, load: f64, phase: f64) {
+fn log(at: &Path, name: &str, joint: Joint, phase: f64) {
     const STEP_S: f64 = 5e-4;
     let waves = [(0.6, 0.5), (0.35, 1.3), (0.15, 2.9), (0.05, 5.3)].map(|(a, w): (f64, f64)| (a, w, phase * (1.0 + w)));
     let reference = |t: f64| waves.iter().map(|(a, w, p)| a * (w * t + p).sin()).sum::<f64>();
@@ -22,8 +39,11 @@ fn log(at: &Path, name: &str, load: f64, phase: f64) {
             let count = TAU / 65536.0;
             writeln!(text, "{t:.4},{:.9},{:.9},{:.9}", (q / count).round() * count, reference(t), rate(t)).unwrap();
         }
-        let torque = 40.0 * (reference(t) - q) + 1.5 * (rate(t) - v);
-        let friction = (0.5 + load * torque.abs()) * (v / 0.005).tanh() + 0.08 * v;
+        let told = t - joint.delay;
+        let error = reference(told) - q;
+        let acted_upon = error - error.clamp(-joint.dead_band, joint.dead_band);
+        let torque = (joint.kp * acted_upon + 1.5 * (rate(told) - v)).clamp(-joint.limit, joint.limit);
+        let friction = (0.5 + joint.load * torque.abs()) * (v / 0.005).tanh() + 0.08 * v;
         v += STEP_S * (torque - friction - 1.2 * q.sin()) / 0.05;
         q += STEP_S * v;
     }
@@ -51,17 +71,55 @@ const KNOWN: &str = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 40\nkd_Nms_rad = 1.5
 fn what_a_simulation_of_a_commanded_joint_leaves_out_is_named_from_positions() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    log(at, "simulation.csv", 0.0, 0.3);
+    log(at, "simulation.csv", AS_SIMULATED, 0.3);
     // Recordings without any noise: what the encoder rounds is all that the two sides differ by.
     let healthy = [0.8, 1.7, 2.9, 4.1].map(|phase| {
-        log(at, "real.csv", 0.0, phase);
+        log(at, "real.csv", AS_SIMULATED, phase);
         let (json, sets) = found(at, KNOWN);
         assert_eq!(json["actuator"]["kp_Nm_rad"], 40.0);
         sets
     });
     assert!(healthy.iter().filter(|sets| !sets.is_empty()).count() <= 1, "{healthy:?}");
 
-    log(at, "real.csv", 0.2, 0.8);
+    log(at, "real.csv", Joint { load: 0.2, ..AS_SIMULATED }, 0.8);
     let (_, sets) = found(at, KNOWN);
     assert!(sets.iter().flatten().any(|name| name == "load_friction"), "{sets:?}");
+}
+
+/// The first parameter of a name among all findings.
+fn parameter(json: &Value, name: &str) -> f64 {
+    let findings = json["findings"].as_array().unwrap().iter();
+    let mut parameters = findings.flat_map(|finding| finding["parameters"].as_array().unwrap());
+    parameters
+        .find(|parameter| parameter["name"] == name)
+        .map_or(f64::NAN, |parameter| parameter["value"].as_f64().unwrap())
+}
+
+#[test]
+fn what_the_actuator_does_otherwise_is_no_friction() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    log(at, "simulation.csv", AS_SIMULATED, 0.3);
+    let cases = [
+        ("actuator_gain", Joint { kp: 36.0, ..AS_SIMULATED }),
+        ("supply_or_duty_limit", Joint { limit: 1.35, ..AS_SIMULATED }),
+        ("command_delay", Joint { delay: 0.02, ..AS_SIMULATED }),
+        ("dead_band", Joint { dead_band: 0.01, ..AS_SIMULATED }),
+    ];
+    for (effect, joint) in cases {
+        log(at, "real.csv", joint, 1.7);
+        let (json, sets) = found(at, KNOWN);
+        assert!(sets.iter().all(|set| set.iter().any(|name| name == effect)), "{effect}: {sets:?}");
+        assert!(!sets.is_empty(), "{effect}");
+        let close = |name: &str, value: f64, by: f64| {
+            let found = parameter(&json, name);
+            assert!((found - value).abs() < by * value, "{name}: {found} for {value}");
+        };
+        match effect {
+            "actuator_gain" => close("actuator_gain_error", 40.0 / 36.0 - 1.0, 0.05),
+            "supply_or_duty_limit" => close("torque_limit", 1.35, 0.02),
+            "dead_band" => close("dead_band", 0.01, 0.05),
+            _ => {}
+        }
+    }
 }

@@ -117,19 +117,27 @@ impl Actuator {
         if !command.enabled {
             return Applied::default();
         }
+        if let Some(duty) = self.duty(command, motion) {
+            return self.under_duty(duty, command, motion);
+        }
         match self.kind {
             Kind::Torque => Applied { torque: command.effort, ..Applied::default() },
             Kind::Current => {
                 let (torque, by_gain) = (self.gain * command.effort, command.effort);
                 self.limited(Applied { torque, by_gain, ..Applied::default() }, motion)
             }
-            Kind::DcMotor if command.is_voltage => self.motor(command.effort, false, motion),
-            Kind::DcMotor => self.under_duty(command.effort, command, motion),
-            Kind::PositionServo => {
-                let duty = command.kp * self.error_gain * self.error(command, motion);
-                self.under_duty(duty, command, motion)
-            }
+            Kind::DcMotor | Kind::PositionServo => self.motor(command.effort, false, motion),
             Kind::Pd => self.controller(command, motion),
+        }
+    }
+
+    /// The duty that the firmware asks for, before its limit; `None` of what has none.
+    #[must_use]
+    pub fn duty(&self, command: &Command, motion: Motion) -> Option<f64> {
+        match self.kind {
+            Kind::DcMotor if !command.is_voltage => Some(command.effort),
+            Kind::PositionServo => Some(command.kp * self.error_gain * self.error(command, motion)),
+            Kind::DcMotor | Kind::Torque | Kind::Current | Kind::Pd => None,
         }
     }
 

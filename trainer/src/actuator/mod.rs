@@ -2,12 +2,14 @@
 //! may leave open. Knows no command line, no files and no recordings.
 
 mod applied;
+mod commanded;
 mod constants;
 mod kind;
 mod open;
 mod presets;
 
 pub use applied::{Actuator, Applied, Command, Limits, Motion};
+pub use commanded::{Commanded, RateLimited};
 pub use constants::{Constant, Constants, Known};
 pub use kind::Kind;
 pub use open::{Open, Partial};

@@ -113,6 +113,8 @@ pub enum Format {
     Isaac,
     /// Drake: rotor inertia, and the law as a system, as Python
     Drake,
+    /// Rhoban's BAM: motor, inertia and friction of a servo, as the JSON of its models m1, m2 and m5; `--joint-name` is BAM's name of the actuator
+    Bam,
     /// FMI 3.0: law and effects as a co-simulation unit, with C sources and, where a C compiler is found, the library of this platform
     Fmu,
 }
@@ -164,6 +166,7 @@ pub fn run(arguments: &Export) -> Result<()> {
         Format::Usd => for_simulator(Simulator::Usd)?,
         Format::Isaac => for_simulator(Simulator::Isaac)?,
         Format::Drake => for_simulator(Simulator::Drake)?,
+        Format::Bam => for_simulator(Simulator::Bam)?,
         Format::Fmu => {
             let (file, told) = fmu::file(&image_bytes, &image, &title)?;
             say(told.trim_end());

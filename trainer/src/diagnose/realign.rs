@@ -3,6 +3,7 @@
 
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::checks::health::late_torque;
+use crate::diagnose::search::thresholds::EQUAL_ERROR_RATIO;
 use crate::physics::EffectId;
 use crate::samples::delay::LONGEST_SAMPLING_DELAY;
 
@@ -15,9 +16,6 @@ const LEAST_SAMPLING_DELAY: f64 = 0.3;
 /// Samples of a longer shift that are left to the linear regressor of a delay, which names it. Chosen by judgement:
 /// fewer are the sampling's own and name nothing, more are beyond its first order.
 const SAMPLES_LEFT_TO_REGRESSOR: f64 = 2.0;
-/// Error of one diagnosis over that of another (root mean squares), up to which they leave as much. Chosen by
-/// judgement: the scatter of refits of one recording; larger gives up real effects for fewer findings.
-const EQUAL_ERROR_RATIO: f64 = 1.02;
 /// The same below which the first leaves so much less that it is preferred with as many findings. Chosen by judgement:
 /// nearer to one a chance optimum names a delay, smaller misses one.
 const LESSER_ERROR_RATIO: f64 = 0.8;

@@ -97,7 +97,9 @@ fn diagnose_in_step(comparison: &Comparison, request: &Request) -> Result<Diagno
     if request.options.by_likelihood {
         return diagnose_by_likelihood(comparison, request);
     }
-    let shift_s = delay_by_shifting(comparison.prepare(lock), comparison, base);
+    // A torque that follows from commands and motion has their time.
+    let is_measured = comparison.signals.commanded.is_none();
+    let shift_s = if is_measured { delay_by_shifting(comparison.prepare(lock), comparison, base) } else { 0.0 };
     let realignment = Realignment::new(shift_s, comparison.signals.period);
     let first = diagnose_from(realignment.first_delay_s(), comparison, request)?;
     let Some(delay_s) = realignment.second_delay_s(&first) else { return Ok(first) };
@@ -169,7 +171,7 @@ fn diagnose_locked(
     let blocked = options.measured_wrong || health.iter().any(|note| note.blocking);
     let found = match inferred {
         _ if blocked || as_recorded.explains(baseline.noise.rms) => Confirmed::nothing(&search),
-        Some(inferred) => Confirmed::by_likelihood(inferred, options.least_effect.unwrap_or(LEAST_NAMED_SHARE)),
+        Some(inferred) => Confirmed::by_likelihood(inferred, least_named(&options)),
         None => Confirmed::of(&mut search, &baseline),
     };
     let Confirmed { mut accepted, withdrawn, negligible, last_round, noise } = found;
@@ -239,6 +241,11 @@ fn diagnose_locked(
     Ok(diagnosis)
 }
 
+/// Share of the friction that an effect has to exceed to be named.
+fn least_named(options: &Options) -> f64 {
+    options.least_effect.unwrap_or(LEAST_NAMED_SHARE)
+}
+
 /// Diagnoses with the torque put back by its likeliest delay, which is a finding where it is longer than the sampling's own.
 fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
     let options = request.options;
@@ -256,17 +263,27 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let is_more_than_grain = |late: &TorqueDelay| {
         2.0 * late.gain_nats * noise.rms * noise.rms > position_error_energy(&prepared, comparison)
     };
-    let told = delay.filter(is_more_than_grain);
+    // A torque that follows from commands and motion has their time.
+    let told = delay.filter(is_more_than_grain).filter(|_| comparison.signals.commanded.is_none());
     let late_s = told.map_or(0.0, |late| late.delay_s);
     let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
     let real = shifted(&Side::new(&prepared, &base), late_s);
     let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
-    let inferred = infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), options.settings.seed);
+    let inferred = infer(
+        &hypotheses,
+        candidates,
+        (&real, side.as_ref()),
+        (weighing, noise),
+        (options.settings.seed, least_named(&options)),
+    );
     let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;
     diagnosis.realigned_by_s = late_s;
     match &told {
         Some(late) => diagnosis.put_first(misalignment(late), Vec::new()),
-        None => diagnosis.health.push(late_torque(diagnosis.sampling_delay_s, period)),
+        None => {
+            let is_late = diagnosis.sampling_delay_s != 0.0;
+            diagnosis.health.extend(is_late.then(|| late_torque(diagnosis.sampling_delay_s, period)));
+        }
     }
     Ok(diagnosis)
 }

@@ -3,6 +3,7 @@
 //! A user's own model file is patched as text: what is not told to the simulator stays as it is, byte for byte.
 
 mod actuator;
+mod bam;
 mod body;
 mod content;
 mod edits;
@@ -46,6 +47,8 @@ pub enum Simulator {
     Isaac,
     /// Drake, as Python.
     Drake,
+    /// Rhoban's BAM, as JSON.
+    Bam,
 }
 
 /// The image as text for a simulator.
@@ -74,8 +77,9 @@ pub fn write(image: &Image<CELLS>, simulator: Simulator, request: &Request) -> R
         (Simulator::Usd, file) => usd::layer(&content, file.as_ref()),
         (Simulator::Isaac, None) => python::isaac(&content),
         (Simulator::Drake, None) => python::drake(&content),
-        (Simulator::Isaac | Simulator::Drake, Some(_)) => {
-            Err(Error::new(&codes::USAGE, "this form is Python code, which goes into no model file"))
+        (Simulator::Bam, None) => bam::parameters(image, request),
+        (Simulator::Isaac | Simulator::Drake | Simulator::Bam, Some(_)) => {
+            Err(Error::new(&codes::USAGE, "this form is a file of its own and goes into no model file"))
         }
     }
 }

@@ -54,7 +54,7 @@ impl Hypothesis for DirectionAsymmetry {
         taken.iter().all(|power| *power >= 0.0)
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
     }
 }

@@ -86,7 +86,7 @@ impl Hypothesis for Backlash {
         vec![("caught_inertia", "J_l", Dimension::Inertia)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("half_width", "b", Dimension::Position),
             ShapeName::new("link_inertia", "J_l", Dimension::Inertia),

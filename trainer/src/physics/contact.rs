@@ -36,7 +36,7 @@ impl Hypothesis for Contact {
         vec![("contact_stiffness", "k_s", Dimension::TorquePerPosition)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("contact_position", "q_s", Dimension::Position),
             ShapeName::new("side", "side", Dimension::One),

@@ -36,7 +36,7 @@ impl Hypothesis for Coupling {
         coefficients
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("other_joint", "j", Dimension::One), ShapeName::new("variant", "variant", Dimension::One)]
     }
 }

@@ -33,7 +33,7 @@ impl Hypothesis for SlowDrift {
         if shape[0] == 1.0 { vec![rate, bend] } else { vec![rate] }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
     }
 }

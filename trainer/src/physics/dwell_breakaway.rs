@@ -48,7 +48,7 @@ impl Hypothesis for DwellBreakaway {
         vec![("dwell_strengthening", "k_d", Dimension::Torque)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("breakaway_reach", "x_b", Dimension::Position),
             ShapeName::new("dwell_time_scale", "t_0", Dimension::Second),

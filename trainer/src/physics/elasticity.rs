@@ -57,7 +57,7 @@ impl Hypothesis for Elasticity {
         vec![("link_inertia", "J_l", Dimension::Inertia)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
             ShapeName::new("damping_ratio", "zeta", Dimension::One),

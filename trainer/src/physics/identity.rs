@@ -107,6 +107,14 @@ effects! {
     Quantisation "quantisation" "H2" Measurement;
     /// A channel has the wrong unit or sign.
     UnitOrSign "unit_or_sign" "H5" Measurement;
+    /// The gain of the actuator is not the one compared with.
+    ActuatorGain "actuator_gain" "H6" Parameter;
+    /// Supply or firmware let the actuator do less than its command asks for.
+    SupplyOrDutyLimit "supply_or_duty_limit" "H7" Parameter;
+    /// The command acts later than was thought.
+    CommandDelay "command_delay" "H8" Parameter;
+    /// The firmware does nothing about small position errors.
+    DeadBand "dead_band" "H9" Parameter;
     /// Structured, but none of the catalogue.
     Unknown "unknown" "-" Maintenance;
 }

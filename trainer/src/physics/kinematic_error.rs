@@ -38,7 +38,7 @@ impl Hypothesis for KinematicError {
         ]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("kinematic_order", "k", Dimension::Order)]
     }
 

@@ -45,7 +45,7 @@ impl Hypothesis for FrictionalLag {
         vec![("lagged_share", "lambda", Dimension::One)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("friction_lag", "tau_L", Dimension::Second)]
     }
 

@@ -6,6 +6,9 @@ use crate::numerics::statistics::quantile;
 
 pub(super) struct LoadFriction;
 
+/// Shares of an actuator's torque that its gear turns into friction where that is tried, refined afterwards: from a belt to a worm.
+const LOSSES: [f64; 3] = [0.1, 0.2, 0.4];
+
 /// Whether the load varies enough to be told from a constant.
 fn varied_load(state: &JointState) -> Option<&[f64]> {
     let load = state.load.as_deref()?;
@@ -29,6 +32,9 @@ impl Hypothesis for LoadFriction {
         let top = state.top_speed();
         let mut shapes = vec![vec![1.0, 0.0], vec![2.0, 0.0]];
         shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity]));
+        if state.commanded.is_some() {
+            shapes.extend(LOSSES.map(|loss| vec![1.0, 0.0, loss]));
+        }
         shapes
     }
 
@@ -40,7 +46,10 @@ impl Hypothesis for LoadFriction {
         let Some(load) = &state.load else { return Vec::new() };
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
         let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
-        let mut columns = vec![state.map(|i| grow(load[i]) * state.sign[i])];
+        // Friction of the torque that the actuator puts in is part of that torque: driving adds to the load, backdriving takes from it.
+        let loss = shape.get(2).copied().unwrap_or(0.0);
+        let put_in = |i: usize| load[i] / (1.0 - loss * (load[i] * state.velocity[i]).signum());
+        let mut columns = vec![state.map(|i| grow(put_in(i)) * state.sign[i])];
         if shape[1] > 0.0 {
             columns.push(state.map(|i| columns[0][i] * (-(state.velocity[i] / shape[1]).powi(2)).exp()));
         }
@@ -55,14 +64,18 @@ impl Hypothesis for LoadFriction {
         names
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("load_exponent", "m", Dimension::One),
             ShapeName::new("load_stribeck_velocity", "v_s", Dimension::Velocity),
+            ShapeName::new("variant", "variant", Dimension::One),
         ]
     }
 
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
+        if index == 2 {
+            return Some((0.5 * LOSSES[0], 1.5 * LOSSES[LOSSES.len() - 1]));
+        }
         (index == 1 && shape[1] > 0.0).then(|| (0.005 * state.top_speed(), 0.3 * state.top_speed()))
     }
 }
@@ -112,7 +125,7 @@ impl Hypothesis for DriveBackdrive {
         }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
     }
 }

@@ -4,6 +4,7 @@
 //! order): for a given shape it turns the recorded states into columns of torque per unit coefficient.
 //! This room knows nothing of noise, evidence or choice (that is `diagnose`) and nothing of the simulator (`plant`).
 
+mod actuator;
 mod asymmetry;
 mod backlash;
 mod contact;
@@ -110,8 +111,8 @@ pub trait Hypothesis: Sync {
     /// Name, symbol and dimension of each linear coefficient for a shape.
     fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)>;
 
-    /// Name, symbol and dimension of each shape parameter.
-    fn shape_names(&self) -> Vec<ShapeName> {
+    /// Name, symbol and dimension of each shape parameter of a shape.
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         Vec::new()
     }
 
@@ -201,6 +202,10 @@ pub fn catalogue() -> Vec<Box<dyn Hypothesis + Send>> {
         Box::new(elasticity::Elasticity),
         Box::new(windup::WindupHysteresis),
         Box::new(misalignment::TimeMisalignment),
+        Box::new(actuator::ActuatorGain),
+        Box::new(actuator::SupplyOrDutyLimit),
+        Box::new(actuator::CommandDelay),
+        Box::new(actuator::DeadBand),
     ]
 }
 

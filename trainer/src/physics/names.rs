@@ -38,6 +38,10 @@ pub fn plain_name(effect: EffectId) -> &'static str {
         TimeMisalignment => "torque and position recorded out of step",
         Quantisation => "resolution too coarse",
         UnitOrSign => "wrong unit or sign",
+        ActuatorGain => "wrong gain of the actuator",
+        SupplyOrDutyLimit => "supply or firmware limit of the actuator",
+        CommandDelay => "commands that act late",
+        DeadBand => "dead band of the position controller",
         Unknown => "a structure that the catalogue does not hold",
     }
 }

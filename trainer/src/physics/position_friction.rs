@@ -39,7 +39,7 @@ impl Hypothesis for PositionFriction {
         SYMBOLS.iter().take(order).map(|symbol| ("position_friction_coefficient", *symbol, Dimension::Torque)).collect()
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("series_order", "n", Dimension::One),
             ShapeName::new("lowest_position", "q_0", Dimension::Position),

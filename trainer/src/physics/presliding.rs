@@ -69,7 +69,7 @@ impl Hypothesis for Presliding {
         SYMBOLS.iter().take(shape[1] as usize).map(|symbol| ("presliding_torque", *symbol, Dimension::Torque)).collect()
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("breakaway_distance", "delta", Dimension::Position),
             ShapeName::new("elements", "n", Dimension::One),

@@ -73,7 +73,7 @@ impl Hypothesis for RecurrentFault {
         vec![("fault_torque", "A", Dimension::Torque)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("fault_order", "N", Dimension::Order),
             ShapeName::new("fault_angle", "phi", Dimension::One),

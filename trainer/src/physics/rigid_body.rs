@@ -40,7 +40,7 @@ impl Hypothesis for GravityError {
         }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
     }
 }
@@ -148,7 +148,7 @@ impl Hypothesis for Spring {
         if shape[0] == 1.0 { vec![stiffness, ("spring_preload", "tau_0", Dimension::Torque)] } else { vec![stiffness] }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
     }
 }

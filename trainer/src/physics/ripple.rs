@@ -70,7 +70,7 @@ impl Hypothesis for PositionRipple {
         vec![("ripple_cosine_amplitude", "A", Dimension::Torque), ("ripple_sine_amplitude", "B", Dimension::Torque)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("ripple_order", "k", Dimension::Order),
             ShapeName::new("variant", "variant", Dimension::One),

@@ -35,6 +35,10 @@ impl Hypothesis for Saturation {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        if state.commanded.is_some() {
+            // The limit of an actuator whose commands are known is that of its law.
+            return Vec::new();
+        }
         let variants = [NEEDED, RECORDED].into_iter();
         variants.flat_map(|variant| levels(state, variant).into_iter().map(move |level| vec![level, variant])).collect()
     }
@@ -48,7 +52,7 @@ impl Hypothesis for Saturation {
         vec![("excess_command", "c", Dimension::One)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("torque_limit", "tau_max", Dimension::Torque),
             ShapeName::new("variant", "variant", Dimension::One),

@@ -49,6 +49,12 @@ pub(crate) fn separation(effect: EffectId) -> &'static str {
         TimeMisalignment => "two frequencies and a heavy payload",
         Quantisation => "a finer encoder or slower moves",
         UnitOrSign => "a known weight moved by hand-calculated torque",
+        ActuatorGain => "a weighed payload held at two angles, or the same motion under two gains of the controller",
+        SupplyOrDutyLimit => {
+            "the same motion slower and without payload, so that nothing reaches the limit; the supply voltage recorded"
+        }
+        CommandDelay => "steps of the reference, logged at a millisecond",
+        DeadBand => "a slow ramp of the reference from rest, in both directions",
         Unknown => "the same motion repeated with one channel changed at a time",
     }
 }

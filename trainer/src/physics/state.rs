@@ -1,6 +1,7 @@
 //! The recorded states at which every hypothesis evaluates its torque.
 
 use super::EffectId;
+use crate::actuator::Commanded;
 use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
@@ -41,6 +42,8 @@ pub struct JointState {
     pub other_joints: Vec<OtherJoint>,
     /// Recorded actuator torque (N m, N or A), smoothed like the states.
     pub torque: Vec<f64>,
+    /// Torque that the recording is compared with, nothing of it fitted to the recording: of a reference, or of a given rigid body.
+    pub known: Option<Vec<f64>>,
     /// Torque that the base model predicts, in the unit of the actuator.
     pub predicted: Vec<f64>,
     /// Friction part of the base model, as pairs (velocity, torque) in ascending velocity, torque in the unit of the actuator.
@@ -49,6 +52,8 @@ pub struct JointState {
     pub segments: Vec<Range<usize>>,
     /// Distance, time and dwell since the last reversal or stop.
     pub memory: MemoryAxes,
+    /// What the actuator was told, where the torque is what it made of that.
+    pub commanded: Option<Commanded>,
     /// Motor turns per joint turn, where known.
     pub gear_ratio: Option<f64>,
     /// Whether the axis turns (else it slides).

@@ -50,7 +50,7 @@ impl Hypothesis for Stribeck {
         vec![("stribeck_extra_torque", "F_s", Dimension::Torque)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("stribeck_velocity", "v_s", Dimension::Velocity),
             ShapeName::new("stribeck_exponent", "alpha", Dimension::One),

@@ -61,7 +61,7 @@ impl Hypothesis for Temperature {
         }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("variant", "variant", Dimension::One),
             ShapeName::new("reference_temperature", "T_ref", Dimension::Celsius),

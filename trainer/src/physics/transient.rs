@@ -108,7 +108,7 @@ impl Hypothesis for TransientEvent {
         vec![("event_torque", "A", Dimension::Torque)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("event_start", "t_1", Dimension::Second),
             ShapeName::new("event_end", "t_2", Dimension::Second),

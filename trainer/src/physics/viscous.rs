@@ -25,7 +25,7 @@ impl Hypothesis for ViscousNonlinearity {
         vec![("power_law_coefficient", "F_p", Dimension::TorquePerVelocityPower)]
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("viscous_exponent", "p", Dimension::One)]
     }
 

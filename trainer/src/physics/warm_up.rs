@@ -70,7 +70,7 @@ impl Hypothesis for WarmUp {
         }
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("thermal_time_constant", "tau_th", Dimension::Second),
             ShapeName::new("variant", "variant", Dimension::One),

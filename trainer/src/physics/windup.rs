@@ -96,7 +96,7 @@ impl Hypothesis for WindupHysteresis {
         Some((EffectId::Elasticity, 5.0))
     }
 
-    fn shape_names(&self) -> Vec<ShapeName> {
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![
             ShapeName::new("antiresonance", "w_a", Dimension::RadianPerSecond),
             ShapeName::new("loop_twist", "L", Dimension::Position),

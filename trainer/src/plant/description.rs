@@ -1,6 +1,7 @@
 //! From `joint.toml` to the joint that is simulated.
 
 use super::joint::Joint;
+use crate::actuator::{Actuator, Constant, Kind, Partial};
 use crate::error::{Error, Result, codes};
 use serde::Deserialize;
 
@@ -35,10 +36,36 @@ impl Joint {
             inherit("torque_limit_Nm", file.drive.torque_limit_nm);
             inherit("rate_Hz", file.drive.rate_hz);
         }
-        Self::deserialize(table).map_err(|error| {
+        let joint = Self::deserialize(table).map_err(|error| {
             let message = format!("[plant]: {}", error.message().replace('\n', "; "));
             Error::new(&codes::BAD_JOINT_FILE, message)
-        })
+        })?;
+        Ok(Self { actuator: actuator(file)?, ..joint })
+    }
+}
+
+/// The actuator of a joint that reports no torque; `None` of one that does.
+fn actuator(file: &crate::joint::Joint) -> Result<Option<Actuator>> {
+    let kind = file.actuator.kind;
+    if kind == Kind::Torque {
+        return Ok(None);
+    }
+    let Partial { actuator, open, .. } = Partial::of(kind, &file.actuator.constants);
+    let lacking = open.first().map(|open| open.constant(kind));
+    let lacks_supply = kind.is_motor() && actuator.supply.is_nan();
+    let lacks_error_gain = kind == Kind::PositionServo && actuator.error_gain <= 0.0;
+    let lacks_kp = kind == Kind::PositionServo && !file.actuator.constants.contains_key(&Constant::FirmwareKp);
+    let lacking = lacking
+        .or(lacks_supply.then_some(Constant::Supply))
+        .or(lacks_error_gain.then_some(Constant::FirmwareErrorGain))
+        .or(lacks_kp.then_some(Constant::FirmwareKp));
+    match lacking {
+        None => Ok(Some(actuator)),
+        Some(constant) => {
+            let message =
+                format!("to simulate an actuator of kind `{}` its `{}` has to be known", kind.name(), constant.key());
+            Err(Error::new(&codes::MISSING_PARAMETER, message).in_column(format!("actuator.{}", constant.key())))
+        }
     }
 }
 
@@ -69,6 +96,17 @@ mod tests {
         assert_eq!((joint.drive.gear_ratio, joint.drive.rate_hz), (50.0, 2000.0));
         assert_eq!(joint.friction, Friction { coulomb_torque_nm: 1.0, ..Friction::default() });
         assert_eq!(joint.effects, [Hidden { name: "stribeck".into(), amplitude: 0.5 }]);
+    }
+
+    #[test]
+    fn an_actuator_has_to_be_known_to_be_simulated() {
+        let known = parse("[actuator]\nkind = \"pd\"\nkp_Nm_rad = 40\nkd_Nms_rad = 1.5\n").unwrap();
+        assert_eq!(known.actuator.map(|actuator| (actuator.kp, actuator.kd)), Some((40.0, 1.5)));
+        let open = parse("[actuator]\nkind = \"pd\"\nkp_Nm_rad = 40\n").unwrap_err();
+        assert_eq!((open.code(), open.column()), (&codes::MISSING_PARAMETER, Some("actuator.kd_Nms_rad")));
+        let servo = "[actuator]\nkind = \"position_servo\"\ntorque_per_volt_Nm_V = 0.1\nfirmware_error_gain = 0.003\nfirmware_kp = 400\n";
+        assert_eq!(parse(servo).unwrap_err().column(), Some("actuator.supply_V"));
+        assert!(parse("").unwrap().actuator.is_none());
     }
 
     #[test]

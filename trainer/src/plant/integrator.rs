@@ -34,12 +34,14 @@ pub(crate) fn integrate(moving: &mut MovingJoint, references: &[(Reference, f64)
                 acceleration: reference.acceleration[k],
                 gravity_torque: *gravity_torque,
             };
-            let command = controller.torque(reading, &target);
+            let (command, effort) = controller.command(reading, &target);
             let applied = moving.actuated(command);
             moving.see_neighbour(time);
             history.time.push(time);
             history.trajectory.push(index as f64);
             history.reference.push(reference.position[k]);
+            history.reference_velocity.push(reference.velocity[k]);
+            history.effort.push(effort);
             history.encoder.push(reading);
             history.position.push(moving.motor.position);
             history.velocity.push(moving.motor.velocity);

@@ -1,5 +1,6 @@
 //! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
 
+use crate::actuator::Actuator;
 use crate::plant::trajectory::campaign::Campaign;
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,9 @@ pub struct Joint {
     pub campaign: Campaign,
     /// What the nominal law leaves out.
     pub effects: Vec<Hidden>,
+    /// The actuator of a joint that reports no torque: what stands under `[actuator]` of joint.toml.
+    #[serde(skip)]
+    pub actuator: Option<Actuator>,
 }
 
 /// Coulomb, viscous and Stribeck friction of the nominal joint; torque has the sign of the velocity.
@@ -244,6 +248,7 @@ impl Default for Joint {
             link_encoder: false,
             campaign: Campaign::default(),
             effects: Vec::new(),
+            actuator: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What an actuator was told over a recording.
 
-use crate::actuator::{Actuator, Command, Kind};
+use crate::actuator::{Actuator, Command, Kind, RateLimited};
 use crate::error::{Error, Result, codes};
 use crate::recording::{Quantity, Recording};
 
@@ -103,13 +103,8 @@ impl Series {
 
 /// A reference that moves no faster than the firmware lets it.
 fn rate_limited(time: &[f64], reference: &[f64], actuator: &Actuator) -> Vec<f64> {
-    let mut held = reference.first().copied().unwrap_or(0.0);
+    let mut limited = RateLimited::new(actuator.velocity_limit);
     let mut before = time.first().copied().unwrap_or(0.0);
-    let follow = |(now, wanted): (&f64, &f64)| {
-        let way = actuator.velocity_limit * (now - before);
-        before = *now;
-        held = if way.is_finite() { wanted.clamp(held - way, held + way) } else { *wanted };
-        held
-    };
+    let follow = |(now, wanted): (&f64, &f64)| limited.follow(*wanted, now - std::mem::replace(&mut before, *now));
     time.iter().zip(reference).map(follow).collect()
 }

@@ -19,9 +19,19 @@ pub(super) fn reference_inertia(recordings: &[Recording], joint: &Joint) -> f64 
     recordings.first().and_then(payload).map_or(0.0, |body| body.inertia)
 }
 
+/// What stands as the load of the gear beside a torque that follows from commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Load {
+    /// Nothing: for a law that is looked for in the torque and its motion.
+    None,
+    /// All of the torque: for a law that is known. One that is looked for would explain the torque by itself.
+    OfActuator,
+    /// What the payload takes, which follows from the motion alone.
+    OfPayload,
+}
+
 /// The recording under the torque that its actuator made, less the gravity of its payload and what the inertia of that differs by from
-/// `reference`, kg m2. The load of the gear is that same torque: it stands beside it for a law that is known (`with_load`), and not for one that
-/// is looked for, which would explain the torque by itself.
+/// `reference`, kg m2, with a load of the gear beside it.
 ///
 /// # Errors
 /// As `identify`.
@@ -30,7 +40,7 @@ pub(crate) fn known_torque(
     joint: &Joint,
     identified: &Identified,
     reference: f64,
-    with_load: bool,
+    load: Load,
 ) -> Result<Recording> {
     let commanded = Commanded::of(recording, joint)?;
     let actuator = identified.complete(&commanded.partial).actuator;
@@ -44,7 +54,12 @@ pub(crate) fn known_torque(
     let carried = |row: usize| payload.gravity(position[row]) + excess * acceleration.get(row).copied().unwrap_or(0.0);
     let whole: Vec<f64> = (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect();
     let torque = whole.iter().enumerate().map(|(row, torque)| torque - carried(row)).collect();
-    let others = if with_load { vec![(Quantity::LoadTorque.name().to_owned(), whole)] } else { Vec::new() };
+    let load = match load {
+        Load::None => None,
+        Load::OfActuator => Some(whole),
+        Load::OfPayload => commanded.payload.is_some().then(|| (0..recording.len()).map(carried).collect()),
+    };
+    let others = load.map(|load| (Quantity::LoadTorque.name().to_owned(), load)).into_iter().collect();
     Ok(recording.clone().with_torque(torque, others))
 }
 

@@ -17,6 +17,6 @@ mod tests;
 mod torque_space;
 
 pub use identified::Identified;
-pub(crate) use known_torque::known_torque;
+pub(crate) use known_torque::{Load, known_torque};
 pub use run::{ServoFit, Simulated, fit_servo};
 pub(crate) use torque_space::identify;

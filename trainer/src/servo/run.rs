@@ -3,7 +3,7 @@
 use super::adopt::adopt;
 use super::by_trajectory::by_trajectory;
 use super::identified::Identified;
-use super::known_torque::{known_torque, reference_inertia, without_payload};
+use super::known_torque::{Load, known_torque, reference_inertia, without_payload};
 use super::torque_space::identify;
 use crate::error::Result;
 use crate::fit::model::from_bytes;
@@ -49,8 +49,8 @@ pub fn fit_servo(
     let mut identified = identify(recordings, joint)?;
     // A given inertia is that of the joint itself, so that all of the payload's is taken off beforehand.
     let reference = if joint.rigid_body.inertia_kgm2.is_some() { 0.0 } else { reference_inertia(recordings, joint) };
-    let torques = |of: &[Recording], identified: &Identified, reference, with_load| {
-        let torque = |recording| known_torque(recording, joint, identified, reference, with_load);
+    let torques = |of: &[Recording], identified: &Identified, reference, load| {
+        let torque = |recording| known_torque(recording, joint, identified, reference, load);
         of.iter().map(torque).collect::<Result<Vec<_>>>()
     };
     let bare = if identified.has_own_gravity {
@@ -58,7 +58,7 @@ pub fn fit_servo(
     } else {
         Joint { rigid_body: RigidBody { gravity_torque_nm: Some(0.0), ..joint.rigid_body.clone() }, ..joint.clone() }
     };
-    let known = |of| torques(of, &identified, reference, false);
+    let known = |of| torques(of, &identified, reference, Load::None);
     let outcome = fit(&known(recordings)?, &known(tests)?, &bare, options, progress)?;
     let mut outcome = without_payload(outcome, &identified, reference)?;
     let mut train = simulated(&outcome, recordings, joint, &identified)?;
@@ -68,7 +68,7 @@ pub fn fit_servo(
     let by = by_trajectory(recordings, joint, &identified, &start)?;
     if in_torque_space.is_none_or(|error| by.mae < error) {
         // Scored with all of the payload taken off, as the model is that of the joint alone.
-        let known = |of| torques(of, &by.identified, 0.0, true);
+        let known = |of| torques(of, &by.identified, 0.0, Load::OfActuator);
         outcome = adopt(outcome, &by, &known(recordings)?, &known(tests)?, in_torque_space)?;
         identified = by.identified;
         train = simulated(&outcome, recordings, joint, &identified)?;

@@ -83,7 +83,8 @@ impl ModelFileArguments {
             inertia_of_model: self.inertia_of_model,
             gains: self.gains,
         });
-        let takes_actuator = matches!(simulator, Simulator::Mujoco | Simulator::MjcfPatch | Simulator::Isaac);
+        let takes_actuator =
+            matches!(simulator, Simulator::Mujoco | Simulator::MjcfPatch | Simulator::Isaac | Simulator::Bam);
         let with_actuator = joint.as_ref().filter(|_| takes_actuator);
         let actuator = with_actuator.map(SimulatedActuator::of).transpose()?.flatten();
         let torque_per_ampere = joint.and_then(|joint| joint.drive.joint_torque_per_ampere());

@@ -114,7 +114,8 @@ impl<'a> Future<'a> {
 
     /// The recording with the planned motion as its last segment.
     pub(crate) fn with(&self, candidate: &Candidate) -> Signals {
-        let mut signals = self.signals.clone();
+        // What an actuator will be told depends on what follows the motion.
+        let mut signals = Signals { commanded: None, ..self.signals.clone() };
         let period = signals.period;
         let position = &candidate.excitation.position;
         let begin = signals.time.len();

@@ -68,7 +68,7 @@ fn parameters(workbench: &Workbench, fitted: &Fitted) -> Vec<Estimate> {
             |((name, symbol, dimension), (value, deviation))| Estimate::of(name, symbol, dimension, *value, *deviation),
         );
     let shapes = hypothesis
-        .shape_names()
+        .shape_names(&fitted.shape)
         .into_iter()
         .zip(fitted.shape.iter().zip(&fitted.shape_deviation))
         .filter(|(shape, _)| shape.name != "variant")

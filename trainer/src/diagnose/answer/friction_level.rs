@@ -12,9 +12,9 @@ use crate::diagnose::proof::discarded::torque_beside_rigid_body;
 use crate::diagnose::proof::locked_rows::{prove, rest};
 use crate::diagnose::proof::refit::Refit;
 use crate::diagnose::search::accepted::Accepted;
-use crate::diagnose::search::thresholds::OTHER_ROWS_ERROR_RATIO;
+use crate::diagnose::search::thresholds::{EQUAL_ERROR_RATIO, OTHER_ROWS_ERROR_RATIO};
 use crate::numerics::covariance;
-use crate::numerics::least_squares::{least_squares, residual, weighted};
+use crate::numerics::least_squares::{dot, least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Dimension, EffectId};
 use crate::samples::SLIDING_SPEED_SHARE;
@@ -80,6 +80,8 @@ fn law_error(base: &Base) -> f64 {
 
 /// Coulomb and viscous friction that a reference lacks.
 struct Change {
+    /// Constants of the actuator by which the same torque may be missing.
+    rivals: Vec<EffectId>,
     coefficients: Vec<f64>,
     deviation: Vec<f64>,
     torque: Vec<f64>,
@@ -103,7 +105,8 @@ impl Change {
         let left = residual(&seen, &left, &coefficients);
         let scatter = covariance::of_blocks(&seen, &left, &prepared.open_blocks())?;
         let deviation = (0..columns.len()).map(|i| scatter[(i, i)].max(0.0).sqrt()).collect();
-        Some(Self { torque: weighted(&columns, &coefficients), coefficients, deviation })
+        let rivals = rivals(workbench, &where_it_slides(&rest(workbench, given)), &left, where_it_slides);
+        Some(Self { rivals, torque: weighted(&columns, &coefficients), coefficients, deviation })
     }
 
     /// Probability of a change as large where there is none: two normal coefficients taken as independent.
@@ -131,10 +134,11 @@ impl Change {
                 )
             })
             .unzip();
+        let share = WITHOUT_RIVAL / (self.rivals.len() + 1) as f64;
         Finding {
             effect,
-            probability: WITHOUT_RIVAL,
-            alternatives: Vec::new(),
+            probability: share,
+            alternatives: self.rivals.iter().map(|rival| (*rival, share)).collect(),
             action: effect.action(),
             equation: "tau = F_c sign(v) + F_v v, in place of the reference's".to_string(),
             // The changes are the coefficients of the fitted term, and so come first.
@@ -156,6 +160,35 @@ impl Change {
             locked_gain_nats: Some(score),
         }
     }
+}
+
+/// Constants of the actuator of a joint without torque sensor that leave as little of a torque, `missing`, as a changed level does, `left`: a
+/// command that acts late is, of a joint that follows it closely, a viscous friction of gain times delay.
+fn rivals(
+    workbench: &Workbench,
+    missing: &[f64],
+    left: &[f64],
+    where_it_slides: impl Fn(&Vec<f64>) -> Vec<f64>,
+) -> Vec<EffectId> {
+    use EffectId::{ActuatorGain, CommandDelay, DeadBand, SupplyOrDutyLimit};
+    let (state, runs) = (&workbench.prepared.state, workbench.prepared.open_runs());
+    let most = EQUAL_ERROR_RATIO.powi(2) * dot(left, left, &runs);
+    let leaves_as_little = |columns: &[Vec<f64>], only_positive: bool| {
+        least_squares(columns, missing, &runs).is_some_and(|coefficients| {
+            let left = residual(columns, missing, &coefficients);
+            !(only_positive && coefficients[0] < 0.0) && dot(&left, &left, &runs) <= most
+        })
+    };
+    let is_rival = |effect: &EffectId| {
+        workbench.hypothesis(*effect).is_some_and(|hypothesis| {
+            hypothesis.shapes(state).iter().any(|shape| {
+                let columns = workbench.filtered_columns(&Label::Named(*effect), shape);
+                let seen: Vec<Vec<f64>> = columns.iter().map(&where_it_slides).collect();
+                leaves_as_little(&seen, hypothesis.only_positive())
+            })
+        })
+    };
+    [CommandDelay, ActuatorGain, SupplyOrDutyLimit, DeadBand].into_iter().filter(is_rival).collect()
 }
 
 /// Coulomb and viscous friction of the reference where it slides: a straight line through its friction over speed.

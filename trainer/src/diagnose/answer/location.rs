@@ -59,6 +59,8 @@ fn own_channels(effect: EffectId) -> Option<&'static [&'static str]> {
         Elasticity => &["acceleration", "load", "time_since_reversal"],
         Coupling => &["other_velocity", "other_position"],
         TorqueOffset | Saturation | TimeMisalignment | Quantisation | UnitOrSign => &[],
+        // Their axis is the command, which is no channel.
+        ActuatorGain | SupplyOrDutyLimit | CommandDelay | DeadBand => &[],
     };
     Some(channels)
 }

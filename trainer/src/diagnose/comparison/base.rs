@@ -40,6 +40,8 @@ pub(crate) enum Delay {
     OfPositionError,
     /// An effect to be looked for.
     Open,
+    /// There is none: a torque that follows from commands and motion has their time.
+    None,
 }
 
 impl Base {
@@ -61,17 +63,21 @@ impl Base {
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);
         add_soft_sign(prepared, &mut columns, &target);
+        let in_step = fit_residual(&columns, &target, &runs)?;
         let mut rate = prepared.state.rate_of(&prepared.state.predicted);
         rate.iter_mut().for_each(|value| *value = -*value);
         columns.push(prepared.filtered(&rate));
         let with_delay = least_squares(&columns, &target, &runs)?;
         let late = with_delay[columns.len() - 1];
-        let left = residual(&columns, &target, &with_delay);
-        let delay = if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
+        let mut left = residual(&columns, &target, &with_delay);
+        let delay = if prepared.state.commanded.is_some() {
+            columns.pop();
+            left = in_step;
+            Delay::None
+        } else if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
             Delay::OfSampling(late)
         } else {
             columns.pop();
-            let in_step = fit_residual(&columns, &target, &runs)?;
             let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
             if explained < position_error_energy(prepared, comparison) { Delay::OfPositionError } else { Delay::Open }
         };
@@ -94,13 +100,14 @@ fn predict(
 ) {
     let state = &mut prepared.state;
     // What was differentiated from the position without a filter would drown what is looked for in the rest.
-    let mut predicted = match comparison.known().torque {
-        Some(known) => channel_filter(prepared.filter.cut_off_hz, state.period).over(known, &state.segments),
-        None => vec![0.0; state.len()],
-    };
+    let smoothed =
+        |known: &[f64]| channel_filter(prepared.filter.cut_off_hz, state.period).over(known, &state.segments);
+    let known = comparison.known().torque.map(smoothed);
+    let mut predicted = known.clone().unwrap_or_else(|| vec![0.0; state.len()]);
     for ((_, column), coefficient) in raw.iter().zip(coefficients) {
         predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
     }
+    state.known = known;
     state.predicted = predicted;
     let top_speed = state.top_speed();
     state.base_friction = match &comparison.reference {

@@ -43,13 +43,14 @@ pub(crate) struct Inferred {
     pub price: f64,
 }
 
-/// Weighs all candidates on the torque of `real`, beginning with the products for a noise; `seed` is that of the replays.
+/// Weighs all candidates on the torque of `real`, beginning with the products for a noise; `seed` is that of the replays, `least` the share of
+/// the friction that an effect has to exceed.
 pub(crate) fn infer(
     hypotheses: &[Box<dyn Hypothesis + Send>],
     mut candidates: Candidates,
     (real, simulated): (&Side, Option<&Side>),
     (mut weighing, mut noise): (Weighing, Noise),
-    seed: u64,
+    (seed, least): (u64, f64),
 ) -> Inferred {
     let friction = friction_of(real);
     let mut null = None;
@@ -93,7 +94,7 @@ pub(crate) fn infer(
         .collect();
     let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
         let sizing = Sizing { candidates: &candidates, real, temper };
-        sizing.of(&weighing, &weighed, &likeliest.members)
+        sizing.of_set(&weighing, &weighed, &likeliest.members, least * friction)
     });
     Inferred { candidates, posterior, sizes, friction, alone, noise, temper, price }
 }

@@ -51,7 +51,9 @@ impl<'a> Side<'a> {
     /// The open rows of a recording whose torque is in step with the motion but for a part of a sample.
     pub fn new(prepared: &'a Prepared, base: &Base) -> Self {
         let mut side = Self::without_delay(prepared, base);
-        side.columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.predicted)));
+        if base.delay != Delay::None {
+            side.columns.push(prepared.filtered(&prepared.state.rate_of(&prepared.state.predicted)));
+        }
         side.columns.extend(earlier_turn_over(prepared));
         side
     }

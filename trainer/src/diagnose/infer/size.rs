@@ -29,8 +29,24 @@ pub(crate) struct Sizing<'a> {
 }
 
 impl Sizing<'_> {
-    /// Sizes of the members of a set.
-    pub fn of(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member]) -> Vec<Size> {
+    /// Sizes of the members of a set. Members that do not exceed `least`, N m, with 95 % are left out one after the other, the smallest first,
+    /// and the others are as large as they are without them: what several explain alike goes to the one that is left.
+    pub fn of_set(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member], least: f64) -> Vec<Size> {
+        let mut sizes = self.of(weighing, weighed, members);
+        let mut left: Vec<usize> = (0..members.len()).collect();
+        loop {
+            let small = (0..left.len()).filter(|place| sizes[left[*place]].least < least);
+            let Some(smallest) = small.min_by(|a, b| sizes[left[*a]].torque.total_cmp(&sizes[left[*b]].torque)) else {
+                return sizes;
+            };
+            left.remove(smallest);
+            let kept: Vec<Member> = left.iter().map(|&place| members[place]).collect();
+            left.iter().zip(self.of(weighing, weighed, &kept)).for_each(|(&place, size)| sizes[place] = size);
+        }
+    }
+
+    /// Sizes of the members of a set, each beyond all others.
+    fn of(&self, weighing: &Weighing, weighed: &[Candidate], members: &[Member]) -> Vec<Size> {
         let own = weighing.own(weighed, members);
         let model = weighing.model(weighed, members);
         let of_member = |member: &Member| {

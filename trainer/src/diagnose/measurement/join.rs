@@ -57,6 +57,10 @@ impl Signals {
                 before
             });
         }
+        self.commanded = self.commanded.take().zip(next.commanded).map(|(mut before, after)| {
+            before.append(after);
+            before
+        });
         self.other_positions.truncate(next.other_positions.len());
         for (series, with) in self.other_positions.iter_mut().zip(next.other_positions) {
             series.extend(with);

@@ -1,5 +1,6 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
+use crate::actuator::Commanded;
 use crate::diagnose::measurement::other_joints::other_positions;
 use crate::error::Result;
 use crate::joint::Joint;
@@ -45,6 +46,8 @@ pub struct Signals {
     pub position_resolution: f64,
     /// Whether samples lie between recorded rows, whose clock jitters.
     pub resampled: bool,
+    /// What the actuator was told, where the torque is what it made of that.
+    pub commanded: Option<Commanded>,
     /// Largest torque of the drive in N m, where it is stated and the torque is recorded in N m.
     pub torque_limit: Option<f64>,
     /// Glitches of the recording that were replaced.

@@ -35,7 +35,7 @@ pub(crate) fn tell_by_a_part(workbench: &Workbench, accepted: &mut [Accepted], b
 
 /// Whether an effect without shape parameters is a named one with fewer coefficients.
 fn is_part(workbench: &Workbench, part: &Accepted, whole: &Accepted) -> bool {
-    let has_shape = workbench.hypothesis(part.effect()).is_none_or(|part| !part.shape_names().is_empty());
+    let has_shape = workbench.hypothesis(part.effect()).is_none_or(|part| !part.shape_names(&[]).is_empty());
     if has_shape || part.label == whole.label || whole.label.channel().is_some() {
         return false;
     }

@@ -32,7 +32,9 @@ pub struct Settings {
 /// Evidence that tells two effects apart, nats: a likelihood ratio of 20, which Kass and Raftery (1995) call strong.
 /// Larger leaves more rivals beside a name, smaller names wrongly more often.
 pub const AMBIGUITY_MARGIN_NATS: f64 = 3.0;
-
+/// Error of one model over that of another (root mean squares), up to which they leave as much. Chosen by judgement: the scatter of refits of
+/// one recording; larger gives up real effects for fewer findings.
+pub(crate) const EQUAL_ERROR_RATIO: f64 = 1.02;
 /// Error of a model on other rows than those it was compared on, over its error on those (root mean squares), up to which it is the
 /// same error: other stretches of a recording may suit a formula less. Chosen by judgement: smaller takes the scatter between
 /// stretches for an event or an effect, larger misses an event of half the error.

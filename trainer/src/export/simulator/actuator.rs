@@ -56,6 +56,11 @@ impl SimulatedActuator {
         Ok(Some(Self { law, limit, delay_s: actuator.delay_s, actuator }))
     }
 
+    /// The motor, where it is one whose supply and loss by velocity are known.
+    pub(super) fn motor(&self) -> Option<Actuator> {
+        Some(self.actuator).filter(|actuator| actuator.kind.is_motor() && actuator.back_emf > 0.0)
+    }
+
     /// Stiffness and damping where it holds a position.
     pub(super) fn gains(&self) -> Option<[f64; 2]> {
         match self.law {

@@ -2,6 +2,7 @@
 
 use super::noise::torque_noise;
 use super::recording::{Column, SimulatedRecording, Truth, root_mean_square};
+use crate::actuator::Kind;
 use crate::plant::joint::{Joint, LoadChannel, NoiseKind};
 use crate::plant::mechanics::control::round_to;
 use crate::plant::random::{Draws, Purpose};
@@ -31,6 +32,9 @@ pub(crate) struct History {
     pub(crate) time: Vec<f64>,
     pub(crate) trajectory: Vec<f64>,
     pub(crate) reference: Vec<f64>,
+    pub(crate) reference_velocity: Vec<f64>,
+    /// What the drive writes down as commanded: current in A or duty of an actuator that is told these.
+    pub(crate) effort: Vec<f64>,
     pub(crate) encoder: Vec<f64>,
     pub(crate) position: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
@@ -83,12 +87,16 @@ pub(crate) fn record(
             _ => {}
         }
     }
-    let mut columns = vec![
-        Column { name: "time_s", values: history.time },
-        Column { name: "position_rad", values: position },
-        Column { name: "torque_Nm", values: recorded },
-    ];
-    if joint.load_channel == LoadChannel::NominalGravity {
+    let mut columns =
+        vec![Column { name: "time_s", values: history.time }, Column { name: "position_rad", values: position }];
+    match joint.actuator.map(|actuator| actuator.kind) {
+        None | Some(Kind::Torque) => columns.push(Column { name: "torque_Nm", values: recorded }),
+        Some(Kind::Current) => columns.push(Column { name: "current_A", values: history.effort }),
+        Some(Kind::DcMotor) => columns.push(Column { name: "duty", values: history.effort }),
+        Some(Kind::Pd) => columns.push(Column { name: "reference_velocity_rad_s", values: history.reference_velocity }),
+        Some(Kind::PositionServo) => {}
+    }
+    if joint.load_channel == LoadChannel::NominalGravity && joint.actuator.is_none() {
         let phase = joint.gravity_phase_rad;
         let load = history.encoder.iter().zip(&history.gravity_torque).map(|(q, g)| g * (q + phase).sin()).collect();
         columns.push(Column { name: "load_torque_Nm", values: load });

@@ -1,5 +1,7 @@
 //! The drive's position loop: proportional-derivative control with feed-forward, once a sample.
 
+use super::servo::Servo;
+use crate::actuator::Motion;
 use crate::plant::joint::Joint;
 use std::f64::consts::TAU;
 
@@ -26,6 +28,7 @@ pub(crate) struct Controller {
     rate: f64,
     previous: Option<f64>,
     velocity: f64,
+    servo: Option<Servo>,
 }
 
 /// Speed over which the feed-forward of dry friction changes sign, rad/s.
@@ -48,11 +51,13 @@ impl Controller {
             rate: joint.drive.rate_hz,
             previous: None,
             velocity: 0.0,
+            servo: Servo::of(joint),
         }
     }
 
-    /// Torque command for the sample that begins now, N m, from the encoder reading.
-    pub(crate) fn torque(&mut self, measured: f64, target: &Target) -> f64 {
+    /// Torque for the sample that begins now, N m, from the encoder reading, and what the drive writes down as commanded: the torque, or what
+    /// an actuator without torque sensor is told.
+    pub(crate) fn command(&mut self, measured: f64, target: &Target) -> (f64, f64) {
         let raw = self.previous.map_or(0.0, |previous| (measured - previous) * self.rate);
         self.previous = Some(measured);
         self.velocity += self.smoothing * (raw - self.velocity);
@@ -64,7 +69,11 @@ impl Controller {
             + self.damping * (target.velocity - self.velocity)
             + self.feed_forward * nominal;
         let limited = if self.limit > 0.0 { torque.clamp(-self.limit, self.limit) } else { torque };
-        round_to(limited, self.resolution)
+        if let Some(servo) = &mut self.servo {
+            return servo.drive(target, limited, Motion { position: measured, velocity: self.velocity });
+        }
+        let torque = round_to(limited, self.resolution);
+        (torque, torque)
     }
 }
 

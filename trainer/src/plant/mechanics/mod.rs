@@ -4,4 +4,5 @@
 pub mod channels;
 pub mod contact;
 pub mod control;
+pub mod servo;
 pub mod transmission;

@@ -1,10 +1,11 @@
 //! Joints that report no torque: what their actuators made of the commands stands for it.
 
-use crate::actuator::Kind;
+use crate::actuator::{Actuator, Commanded, Kind, Partial};
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::Recording;
-use crate::servo::{Identified, identify, known_torque};
+use crate::rollout::Series;
+use crate::servo::{Identified, Load, identify, known_torque};
 use serde_json::{Map, Value};
 
 /// What is known of the actuator of a joint that reports no torque: what its file gives, and of the rest what the simulation tells, whose
@@ -28,10 +29,45 @@ pub(super) fn actuator(
 ///
 /// # Errors
 /// As [`known_torque`].
-pub(super) fn under_torque(recording: Recording, joint: &Joint, actuator: Option<&Identified>) -> Result<Recording> {
+pub(super) fn under_torque(
+    recording: Recording,
+    joint: &Joint,
+    actuator: Option<&Identified>,
+    load: Load,
+) -> Result<Recording> {
     match actuator {
-        Some(identified) => known_torque(&recording, joint, identified, 0.0, true),
+        Some(identified) => known_torque(&recording, joint, identified, 0.0, load),
         None => Ok(recording),
+    }
+}
+
+/// What an actuator of known constants was told over a recording.
+pub(super) struct Commands {
+    series: Series,
+    actuator: Actuator,
+}
+
+impl Commands {
+    /// `None` of a joint that reports torque.
+    ///
+    /// # Errors
+    /// As [`Series::of`].
+    pub(super) fn of(recording: &Recording, joint: &Joint) -> Result<Option<Self>> {
+        let joint = joint.in_recording(&recording.label);
+        if joint.actuator.kind == Kind::Torque {
+            return Ok(None);
+        }
+        let actuator = Partial::of(joint.actuator.kind, &joint.actuator.constants).actuator;
+        Ok(Some(Self { series: Series::of(recording, &actuator)?, actuator }))
+    }
+
+    /// What acts at some instants, s.
+    pub(super) fn at(&self, instants: &[f64]) -> Commanded {
+        let acting = |instant: &f64| {
+            let time = instant - self.actuator.delay_s;
+            self.series.at(time, self.series.time.partition_point(|row| *row <= time).saturating_sub(1))
+        };
+        Commanded::of(instants.iter().map(acting).collect(), self.actuator)
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a recording is compared with: a simulation, a model, or the best static model of itself.
 
+use super::commanded::Commands;
 use super::one_joint::{refuse_diverged, refuse_other_joint};
 use super::request::Against;
 use crate::diagnose::comparison::from_model;
@@ -44,16 +45,17 @@ impl Compared {
     }
 }
 
-/// The real recordings and what they are compared with; `in_one_model` puts the rows of a simulation beside theirs.
+/// The real recordings, with what the actuators of commanded joints were told, and what they are compared with; `in_one_model` puts the rows of a simulation beside theirs.
 pub(super) fn comparison(
     against: &Against<'_>,
-    (real, simulation): (&[Recording], Option<Recording>),
+    (real, told): (&[Recording], &[Commands]),
+    simulation: Option<Recording>,
     joint: &Joint,
     in_one_model: bool,
 ) -> Result<(Comparison, Compared)> {
     if let Some(simulation) = simulation {
         let simulated = as_recorded(simulation, &real[0], joint)?;
-        let signals = joined(real, joint)?;
+        let mut signals = joined((real, told), joint)?;
         let simulation = Signals::of(&simulated, joint)?;
         let state = states(&signals, &real[0])?;
         let learned =
@@ -61,7 +63,11 @@ pub(super) fn comparison(
         let law =
             learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let given = given_rigid_body(&real[0], joint)?;
-        let mut comparison = Comparison::with(signals, law.at(&state));
+        let reference = law.at(&state);
+        if !told.is_empty() {
+            signals.load = Some(load_by_law(&signals, &reference));
+        }
+        let mut comparison = Comparison::with(signals, reference);
         if in_one_model {
             let of_simulation = law.at(&simulation.states());
             comparison = comparison.beside(simulation, of_simulation);
@@ -70,14 +76,21 @@ pub(super) fn comparison(
     } else if let Against::Model(image) = against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
-        let signals = joined(real, &bare)?;
+        let signals = joined((real, told), &bare)?;
         let state = states(&signals, &real[0])?;
         let reference =
             of_model(image, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real[0].file()))?;
         Ok((Comparison::with(signals, reference), Compared::Model(image.clone())))
     } else {
-        Ok((joined(real, joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
+        Ok((joined((real, told), joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
+}
+
+/// What the gear of a commanded joint carries, N m a sample: what its actuator has to put out by a law, beside what a payload takes. What it
+/// did put out is the torque that is explained.
+fn load_by_law(signals: &Signals, law: &Reference) -> Vec<f64> {
+    let payload = signals.load.as_deref();
+    law.torque.iter().enumerate().map(|(i, torque)| torque + payload.map_or(0.0, |payload| payload[i])).collect()
 }
 
 /// A model at the states of a recording, with the error that its law has by the image.
@@ -105,13 +118,16 @@ fn as_recorded(mut simulated: Recording, real: &Recording, joint: &Joint) -> Res
     Ok(simulated)
 }
 
-/// Signals of recordings of one joint, one behind the other.
-fn joined(real: &[Recording], joint: &Joint) -> Result<Signals> {
-    let first = Signals::of(&real[0], joint)?;
+/// Signals of recordings of one joint, one behind the other, with what its actuator was told where that makes the torque.
+fn joined((real, told): (&[Recording], &[Commands]), joint: &Joint) -> Result<Signals> {
+    let commanded = |place: usize, signals: &Signals| told.get(place).map(|told: &Commands| told.at(&signals.time));
+    let mut first = Signals::of(&real[0], joint)?;
+    first.commanded = commanded(0, &first);
     let mut all = first.clone();
-    for next in &real[1..] {
+    for (place, next) in real.iter().enumerate().skip(1) {
         same_units(&real[0], next)?;
-        let signals = Signals::behind(Some(&first), next, joint)?;
+        let mut signals = Signals::behind(Some(&first), next, joint)?;
+        signals.commanded = commanded(place, &signals);
         refuse_other_joint(&first, &signals, [&real[0], next])?;
         all.append(signals)
             .map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()).in_file(next.file()))?;

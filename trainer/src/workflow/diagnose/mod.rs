@@ -39,8 +39,8 @@ use crate::recording::{Quantity, Recording};
 use crate::report::tell::evidence::planned_motion;
 use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
-use crate::servo::Identified;
-use commanded::under_torque;
+use crate::servo::{Identified, Load};
+use commanded::{Commands, under_torque};
 use compare::{Compared, comparison};
 pub use request::{Against, BaseKind, Request};
 use sealed::sealed_score;
@@ -106,14 +106,21 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let actuator = commanded::actuator(&recordings, simulation.as_ref(), joint)?;
     // A commanded joint is compared with the law of its simulation, whose rows stand in the model only where that is asked for.
     let by_likelihood = request.by_likelihood || actuator.is_some() && simulation.is_some();
-    let simulation = simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref()));
-    let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref()));
+    // An image may hold friction of the load; other effects of the load are looked for in what follows from the motion.
+    let load = if matches!(request.against, Against::Model(_)) { Load::OfActuator } else { Load::OfPayload };
+    let simulation =
+        simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref(), load));
+    // From here on the constants of the actuator are known.
+    let joint = &actuator.as_ref().map_or_else(|| joint.clone(), |actuator| actuator.joint(joint));
+    let told = recordings.iter().filter_map(|recording| Commands::of(recording, joint).transpose());
+    let told = told.collect::<Result<Vec<_>>>()?;
+    let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref(), load));
     let recordings = recordings.collect::<Result<Vec<_>>>()?;
     let forces = OtherForces::of(&recordings, joint)?;
     let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = &recordings[0];
     let (comparison, compared) =
-        comparison(&request.against, (&recordings, simulation.transpose()?), joint, request.by_likelihood)?;
+        comparison(&request.against, (&recordings, &told), simulation.transpose()?, joint, request.by_likelihood)?;
     let units = units(real);
     let options = Options {
         base: match request.against {

@@ -1,0 +1,74 @@
+//! H6: the actuator's gain is not the one compared with, which is larger by a share epsilon of what it is.
+
+use super::motion;
+use crate::actuator::{Actuator, Kind};
+use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
+
+pub(in crate::physics) struct ActuatorGain;
+
+/// Variant in which the torque by the position error, the current or the voltage is off.
+const GAIN: f64 = 0.0;
+/// Variant in which the torque by the velocity error of a controller is.
+const DAMPING: f64 = 1.0;
+/// Variant in which all that a controller asks for is: the torque constant of the motor behind it.
+const TORQUE: f64 = 2.0;
+
+/// Torque of a part of an actuator, N m a sample; none where it stands at a limit. Of the gain it is what the torque compared with needs of it:
+/// what the commands make of it holds the noise of the position, and would explain the torque by itself.
+fn part(state: &JointState, variant: f64) -> Vec<f64> {
+    let Some((commanded, known)) = state.commanded.as_ref().zip(state.known.as_ref()) else {
+        return vec![0.0; state.len()];
+    };
+    commanded.map(|actuator, command, i| {
+        let motion = motion(state, i);
+        let applied = actuator.apply(command, motion);
+        let own = match actuator.kind {
+            Kind::Torque => 0.0,
+            Kind::Pd if variant == DAMPING => return applied.by_kd * actuator.kd,
+            Kind::Pd if variant == TORQUE => applied.at(motion.velocity),
+            Kind::Pd => applied.by_kp * command.kp,
+            Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
+        };
+        if applied.limited { 0.0 } else { known[i] - (applied.at(motion.velocity) - own) }
+    })
+}
+
+impl Hypothesis for ActuatorGain {
+    fn id(&self) -> EffectId {
+        EffectId::ActuatorGain
+    }
+
+    fn equation(&self) -> &'static str {
+        "dF = epsilon tau_gain"
+    }
+
+    fn shapes(&self, state: &JointState) -> Vec<Shape> {
+        let Some(commanded) = state.commanded.as_ref().filter(|_| state.known.is_some()) else { return Vec::new() };
+        let any = |is: fn(&Actuator) -> bool| commanded.actuators.iter().any(|(_, actuator)| is(actuator));
+        let mut shapes = Vec::new();
+        if any(|actuator| actuator.kind != Kind::Torque) {
+            shapes.push(vec![GAIN]);
+        }
+        if any(|actuator| actuator.kind == Kind::Pd && actuator.kd > 0.0) {
+            shapes.extend([vec![DAMPING], vec![TORQUE]]);
+        }
+        shapes
+    }
+
+    fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
+        vec![part(state, shape[0])]
+    }
+
+    fn coefficients(&self, shape: &[f64]) -> Vec<(&'static str, &'static str, Dimension)> {
+        let name = match shape[0] {
+            DAMPING => "damping_gain_error",
+            TORQUE => "torque_constant_error",
+            _ => "actuator_gain_error",
+        };
+        vec![(name, "epsilon", Dimension::One)]
+    }
+
+    fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
+        vec![ShapeName::new("variant", "variant", Dimension::One)]
+    }
+}
