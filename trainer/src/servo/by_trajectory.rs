@@ -76,7 +76,8 @@ pub(super) fn by_trajectory(
     for (load, gain) in [(own, 1.0), LOSSY] {
         let begin = begin(start, identified, &all, (load, gain), torque);
         let begin = Candidate { torque_limit: limit.map(|limit| gain * limit), ..begin };
-        let moved = moved(&begin, open, torque, speed, delay_is_open && kind.follows_position());
+        let delay_is_open = delay_is_open && kind.follows_position();
+        let moved = moved(&begin, open, [torque, speed], identified.has_own_gravity, delay_is_open);
         let first = shoot(&commanded, begin, &moved, Some(FIRST_WINDOW_S));
         let whole = first.and_then(|first| match window_s {
             Some(window) if window <= FIRST_WINDOW_S => Ok(first),
@@ -166,6 +167,8 @@ fn model(start: &HostModel, candidate: &Candidate, speed: f64, torque: f64) -> R
         rigid_body: RigidBody {
             inertia: candidate.inertia as f32,
             offset: candidate.offset as f32,
+            gravity_sin: candidate.gravity[0] as f32,
+            gravity_cos: candidate.gravity[1] as f32,
             ..start.rigid_body
         },
         effects: heapless::Vec::new(),
@@ -195,6 +198,8 @@ fn parameters(shot: &Shot, joint: &Joint) -> Vec<Parameter> {
             What::TorqueLimit => ("torque_limit", "τ_max", "N m"),
             What::Inertia => ("inertia", "J", "kg m²"),
             What::Offset => ("torque_offset", "τ_0", "N m"),
+            What::GravitySin => ("gravity_sine", "G_s", "N m"),
+            What::GravityCos => ("gravity_cosine", "G_c", "N m"),
             What::Coulomb => ("coulomb_torque", "F_c", "N m"),
             What::Stribeck => ("stribeck_torque", "F_s", "N m"),
             What::StribeckVelocity => ("stribeck_velocity", "v_s", "rad/s"),

@@ -8,6 +8,8 @@ mod adopt;
 mod by_trajectory;
 mod commanded;
 mod friction;
+#[cfg(test)]
+mod hanging_leg;
 mod identified;
 mod known_torque;
 mod run;

@@ -46,6 +46,9 @@ pub(super) enum What {
     TorqueLimit,
     Inertia,
     Offset,
+    /// Of the joint's own gravity torque, of the sine of the position and of the cosine.
+    GravitySin,
+    GravityCos,
     Coulomb,
     Stribeck,
     StribeckVelocity,
@@ -109,6 +112,8 @@ impl Candidate {
             What::TorqueLimit => self.torque_limit.unwrap_or(f64::INFINITY),
             What::Inertia => self.inertia,
             What::Offset => self.offset,
+            What::GravitySin => self.gravity[0],
+            What::GravityCos => self.gravity[1],
             What::Coulomb => self.friction.coulomb,
             What::Stribeck => self.friction.stribeck,
             What::StribeckVelocity => self.friction.stribeck_velocity,
@@ -125,6 +130,8 @@ impl Candidate {
             What::TorqueLimit => self.torque_limit = Some(value),
             What::Inertia => self.inertia = value,
             What::Offset => self.offset = value,
+            What::GravitySin => self.gravity[0] = value,
+            What::GravityCos => self.gravity[1] = value,
             What::Coulomb => self.friction.coulomb = value,
             What::Stribeck => self.friction.stribeck = value,
             What::StribeckVelocity => self.friction.stribeck_velocity = value,
@@ -167,9 +174,15 @@ impl Candidate {
     }
 }
 
-/// Constants that are moved from a start on, with their bounds. The loss by back-EMF of a motor of which nothing else is known is part of the
+/// Constants that are moved from a start on, with their bounds; the joint's own gravity where that is not the payload's alone. The loss by back-EMF of a motor of which nothing else is known is part of the
 /// viscous friction.
-pub(super) fn moved(start: &Candidate, open: &[Open], torque: f64, speed: f64, delay_is_open: bool) -> Vec<Moved> {
+pub(super) fn moved(
+    start: &Candidate,
+    open: &[Open],
+    [torque, speed]: [f64; 2],
+    own_gravity: bool,
+    delay_is_open: bool,
+) -> Vec<Moved> {
     let positive = |what, scale: f64| Moved { what, scale, low: 0.0, high: f64::INFINITY };
     let mut moved: Vec<Moved> = open
         .iter()
@@ -190,6 +203,10 @@ pub(super) fn moved(start: &Candidate, open: &[Open], torque: f64, speed: f64, d
     moved.extend(
         start.torque_limit.map(|limit| Moved { low: LEAST_LIMIT * limit, ..positive(What::TorqueLimit, limit) }),
     );
+    if own_gravity {
+        let free = |what| Moved { what, scale: 0.1 * torque, low: f64::NEG_INFINITY, high: f64::INFINITY };
+        moved.extend([free(What::GravitySin), free(What::GravityCos)]);
+    }
     moved.extend(start.back_emf.map(|_| positive(What::BackEmf, 0.1 * torque / speed)));
     moved.extend(delay_is_open.then_some(Moved { what: What::Delay, scale: 0.01, low: 0.0, high: 0.1 }));
     moved

@@ -1,5 +1,6 @@
 //! The recording with a planned motion behind it: what every channel would show, as far as the recording itself tells.
 
+use crate::actuator::{Actuator, Command, Commanded, Kind};
 use crate::diagnose::advice::Candidate;
 use crate::diagnose::measurement::signals::Signals;
 use crate::numerics::derivatives::{first_derivative, second_derivative};
@@ -114,8 +115,7 @@ impl<'a> Future<'a> {
 
     /// The recording with the planned motion as its last segment.
     pub(crate) fn with(&self, candidate: &Candidate) -> Signals {
-        // What an actuator will be told depends on what follows the motion.
-        let mut signals = Signals { commanded: None, ..self.signals.clone() };
+        let mut signals = self.signals.clone();
         let period = signals.period;
         let position = &candidate.excitation.position;
         let begin = signals.time.len();
@@ -138,6 +138,11 @@ impl<'a> Future<'a> {
             body[k] + self.friction[0] * sign + self.friction[1] * velocity[k] + self.friction[2] * acceleration[k]
         }));
         signals.segments.push(begin..begin + count);
+        if let Some(commanded) = &mut signals.commanded {
+            // What the actuator will be told is not planned.
+            let actuator = commanded.actuators.last().map_or(Actuator::ideal(Kind::Torque), |(_, actuator)| *actuator);
+            commanded.append(Commanded::of(vec![Command::default(); count], actuator));
+        }
         let extend = |series: &mut Option<Vec<f64>>, with: &[f64]| {
             if let Some(series) = series {
                 series.extend_from_slice(with);

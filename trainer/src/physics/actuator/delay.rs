@@ -9,8 +9,9 @@ pub(in crate::physics) struct CommandDelay;
 const LONGEST_S: f64 = 0.1;
 /// Shortest, in samples: less shows nothing between two of them.
 const SHORTEST_SAMPLES: f64 = 0.5;
-/// Delays that are tried, each about 1.6 times the one before; refined afterwards.
-const STEPS: usize = 9;
+/// Delays that are tried, each about a quarter longer than the one before; refined afterwards. Between steps that are further apart other effects
+/// make up for the difference.
+const STEPS: usize = 18;
 
 fn bounds(state: &JointState) -> (f64, f64) {
     let shortest = SHORTEST_SAMPLES * state.period;
