@@ -123,3 +123,27 @@ fn what_the_actuator_does_otherwise_is_no_friction() {
         }
     }
 }
+
+#[test]
+fn a_servo_is_rehearsed_before_there_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // Friction of 2 N m and 1.2 N m s/rad, an inertia of 0.5 kg m2: the default of the plant.
+    let joint = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 900\nkd_Nms_rad = 30\n[plant.drive]\nrate_Hz = 250\n[plant]\ngravity_torque_Nm = [6.0]\n";
+    std::fs::write(at.join("joint.toml"), joint).unwrap();
+    let simulated = run(at, &["simulate", "joint.toml", "-o", "real.csv", "--duration", "60", "--quiet"]);
+    assert_eq!(simulated.status, 0, "{}", simulated.messages);
+    let words = "fit real.csv --joint joint.toml -o model.frk --inputs velocity --json told.json --quiet";
+    let fitted = run(at, &words.split(' ').collect::<Vec<_>>());
+    assert_eq!(fitted.status, 0, "{}", fitted.messages);
+    let json: Value = serde_json::from_str(&std::fs::read_to_string(at.join("told.json")).unwrap()).unwrap();
+    let of = |name: &str| {
+        let mut parameters = json["parameters"].as_array().unwrap().iter();
+        parameters
+            .find(|parameter| parameter["name"] == name)
+            .map_or(f64::NAN, |parameter| parameter["value"].as_f64().unwrap())
+    };
+    for (name, value) in [("coulomb_torque", 2.0), ("viscous_coefficient", 1.2), ("inertia", 0.5)] {
+        assert!((of(name) / value - 1.0).abs() < 0.05, "{name}: {} for {value}", of(name));
+    }
+}

@@ -36,9 +36,9 @@ impl Confirmed {
         Self { accepted, withdrawn: Vec::new(), negligible: Vec::new(), last_round, noise }
     }
 
-    /// What the likeliest set says of effects above a share of the friction.
-    pub fn by_likelihood(inferred: &Inferred, least: f64) -> Self {
-        let (accepted, negligible) = inferred.accepted(least);
+    /// What the likeliest set says of effects that are large enough.
+    pub fn by_likelihood(inferred: &Inferred) -> Self {
+        let (accepted, negligible) = inferred.accepted();
         let noise = inferred.noise.clone();
         Self { accepted, withdrawn: Vec::new(), negligible, last_round: inferred.table(), noise }
     }

@@ -171,7 +171,7 @@ fn diagnose_locked(
     let blocked = options.measured_wrong || health.iter().any(|note| note.blocking);
     let found = match inferred {
         _ if blocked || as_recorded.explains(baseline.noise.rms) => Confirmed::nothing(&search),
-        Some(inferred) => Confirmed::by_likelihood(inferred, least_named(&options)),
+        Some(inferred) => Confirmed::by_likelihood(inferred),
         None => Confirmed::of(&mut search, &baseline),
     };
     let Confirmed { mut accepted, withdrawn, negligible, last_round, noise } = found;
@@ -241,11 +241,6 @@ fn diagnose_locked(
     Ok(diagnosis)
 }
 
-/// Share of the friction that an effect has to exceed to be named.
-fn least_named(options: &Options) -> f64 {
-    options.least_effect.unwrap_or(LEAST_NAMED_SHARE)
-}
-
 /// Diagnoses with the torque put back by its likeliest delay, which is a finding where it is longer than the sampling's own.
 fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<Diagnosis, Refusal> {
     let options = request.options;
@@ -269,13 +264,11 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
     let real = shifted(&Side::new(&prepared, &base), late_s);
     let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
-    let inferred = infer(
-        &hypotheses,
-        candidates,
-        (&real, side.as_ref()),
-        (weighing, noise),
-        (options.settings.seed, least_named(&options)),
-    );
+    // What a law gets wrong by itself is no effect; where the rows that it was learned from stand beside it, these tell.
+    let law_error = if side.is_none() { base.law_error() } else { 0.0 };
+    let least = (options.least_effect.unwrap_or(LEAST_NAMED_SHARE) * friction_of(&real)).max(law_error);
+    let inferred =
+        infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), (options.settings.seed, least));
     let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;
     diagnosis.realigned_by_s = late_s;
     match &told {

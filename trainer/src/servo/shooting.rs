@@ -174,8 +174,9 @@ impl Candidate {
     }
 }
 
-/// Constants that are moved from a start on, with their bounds; the joint's own gravity where that is not the payload's alone. The loss by back-EMF of a motor of which nothing else is known is part of the
-/// viscous friction.
+/// Constants that are moved from a start on, with their bounds; the joint's own gravity where that is not the payload's alone. The loss by
+/// back-EMF of a motor of which nothing else is known is part of the viscous friction. Friction that falls over more than a fifth of the top speed
+/// would be Coulomb and viscous friction under other names.
 pub(super) fn moved(
     start: &Candidate,
     open: &[Open],
@@ -196,7 +197,7 @@ pub(super) fn moved(
         Moved { what: What::Offset, scale: 0.1 * torque, low: -torque, high: torque },
         positive(What::Coulomb, 0.1 * torque),
         positive(What::Stribeck, 0.1 * torque),
-        Moved { what: What::StribeckVelocity, scale: 0.05 * speed, low: 0.005 * speed, high: 0.5 * speed },
+        Moved { what: What::StribeckVelocity, scale: 0.05 * speed, low: 0.005 * speed, high: 0.2 * speed },
         positive(What::Viscous, 0.1 * torque / speed),
         Moved { what: What::Load, scale: 0.1, low: 0.0, high: 0.95 },
     ]);

@@ -4,7 +4,6 @@
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::stated_probability::WITHOUT_RIVAL;
-use crate::diagnose::comparison::base::Base;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
@@ -62,7 +61,7 @@ impl FrictionLevel {
         if proof.ratio_ci95[1] >= 1.0 {
             return Self::Unchanged;
         }
-        let law_error = OTHER_ROWS_ERROR_RATIO * law_error(workbench.base);
+        let law_error = OTHER_ROWS_ERROR_RATIO * workbench.base.law_error();
         if size < law_error.max(least_effect * torque_beside_rigid_body(workbench)) {
             return Self::Small(size);
         }
@@ -70,12 +69,6 @@ impl FrictionLevel {
         let finding = Box::new(change.finding(workbench, evidence, proof.gain_nats));
         Self::Wrong { finding, torque: change.torque, as_given: Box::new(baseline.with_base_as_given(workbench)) }
     }
-}
-
-/// Error of a reference behind the filter, root mean square: of its formulas, or what it is not sure of.
-fn law_error(base: &Base) -> f64 {
-    let energy = |torque: &Vec<f64>| root_mean_square(torque).powi(2);
-    base.formula_error.max(base.uncertainty.iter().map(energy).sum::<f64>().sqrt())
 }
 
 /// Coulomb and viscous friction that a reference lacks.

@@ -7,6 +7,7 @@ use crate::diagnose::comparison::relaxation::{self, relaxation_time};
 use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
 use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
+use crate::numerics::statistics::root_mean_square;
 use crate::physics::EffectId;
 use crate::samples::delay::LONGEST_SAMPLING_DELAY;
 
@@ -29,6 +30,14 @@ pub struct Base {
     pub formula_error: f64,
     /// Delay of the torque against the position that the fit found.
     pub(crate) delay: Delay,
+}
+
+impl Base {
+    /// Error of a reference behind the filter, root mean square: of its formulas, or what it is not sure of.
+    pub(crate) fn law_error(&self) -> f64 {
+        let energy = |torque: &Vec<f64>| root_mean_square(torque).powi(2);
+        self.formula_error.max(self.uncertainty.iter().map(energy).sum::<f64>().sqrt())
+    }
 }
 
 /// What a delay of the torque against the position is.

@@ -32,8 +32,8 @@ pub(crate) struct Inferred {
     pub posterior: Posterior,
     /// Torque of each member of the likeliest set beyond what base and common columns could take.
     pub sizes: Vec<Size>,
-    /// Friction of the base, root mean square over the same rows.
-    pub friction: f64,
+    /// Torque, root mean square, that an effect has to exceed to be named.
+    pub least: f64,
     /// Log evidence (nats, tempered) of each candidate alone.
     pub alone: Vec<f64>,
     pub noise: Noise,
@@ -43,8 +43,8 @@ pub(crate) struct Inferred {
     pub price: f64,
 }
 
-/// Weighs all candidates on the torque of `real`, beginning with the products for a noise; `seed` is that of the replays, `least` the share of
-/// the friction that an effect has to exceed.
+/// Weighs all candidates on the torque of `real`, beginning with the products for a noise; `seed` is that of the replays, `least` the torque,
+/// root mean square, that an effect has to exceed.
 pub(crate) fn infer(
     hypotheses: &[Box<dyn Hypothesis + Send>],
     mut candidates: Candidates,
@@ -94,9 +94,9 @@ pub(crate) fn infer(
         .collect();
     let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
         let sizing = Sizing { candidates: &candidates, real, temper };
-        sizing.of_set(&weighing, &weighed, &likeliest.members, least * friction)
+        sizing.of_set(&weighing, &weighed, &likeliest.members, least)
     });
-    Inferred { candidates, posterior, sizes, friction, alone, noise, temper, price }
+    Inferred { candidates, posterior, sizes, least, alone, noise, temper, price }
 }
 
 /// Sets with the member of each whose shape is refined: members of probable sets, and effects with a cause in the place of a function or an

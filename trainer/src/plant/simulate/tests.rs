@@ -1,4 +1,5 @@
 use super::*;
+use crate::actuator::{Actuator, Kind};
 use crate::plant::measurement::recording::root_mean_square;
 use crate::plant::{CATALOGUE, Campaign, Motion, NoiseKind, OUTSIDE, Trajectory};
 
@@ -178,4 +179,53 @@ fn bad_values_are_named() {
     let mut joint = Joint::default();
     joint.effects.push(Hidden { name: "elasticity".into(), amplitude: 1.0 });
     assert!(matches!(conceal(&joint, "backlash", 1.0, 1), Err(PlantError::TwoTransmissions(_))));
+}
+
+#[test]
+fn a_drive_without_torque_sensor_writes_down_what_it_is_told() {
+    let servo = Actuator {
+        gain: 2.0,
+        supply: 24.0,
+        error_gain: 0.05,
+        kp: 20.0,
+        back_emf: 0.5,
+        ..Actuator::ideal(Kind::PositionServo)
+    };
+    let of = |actuator: Actuator| simulate(&Joint { actuator: Some(actuator), ..Joint::default() }, 1).unwrap();
+    let tracks = |recording: &SimulatedRecording| {
+        let [position, reference] =
+            ["position_rad", "reference_position_rad"].map(|name| recording.column(name).unwrap());
+        let error: f64 = position.iter().zip(reference).map(|(q, r)| (q - r).powi(2)).sum();
+        (error / position.len() as f64).sqrt() < 0.3
+    };
+    for (kind, told) in [
+        (Kind::Pd, Some("reference_velocity_rad_s")),
+        (Kind::PositionServo, None),
+        (Kind::Current, Some("current_A")),
+        (Kind::DcMotor, Some("duty")),
+    ] {
+        let actuator = if kind == Kind::Pd {
+            Actuator { kp: 400.0, kd: 20.0, ..Actuator::ideal(kind) }
+        } else {
+            Actuator { kind, ..servo }
+        };
+        let recording = of(actuator);
+        assert!(recording.column("torque_Nm").is_none() && recording.column("load_torque_Nm").is_none());
+        assert!(told.is_none_or(|name| recording.column(name).is_some_and(|values| values.iter().any(|v| *v != 0.0))));
+        assert!(tracks(&recording), "{kind:?}");
+    }
+}
+
+#[test]
+fn a_command_acts_as_late_as_the_actuator_says() {
+    let pd = Actuator { kp: 400.0, kd: 20.0, ..Actuator::ideal(Kind::Pd) };
+    let joint = |delay_s: f64| Joint { actuator: Some(Actuator { delay_s, ..pd }), ..quiet() };
+    let [now, later] = [0.0, 0.02].map(|delay_s| simulate(&joint(delay_s), 1).unwrap());
+    let error = |recording: &SimulatedRecording, late: usize| {
+        let [position, reference] =
+            ["position_rad", "reference_position_rad"].map(|name| recording.column(name).unwrap());
+        (late..4000).map(|k| (position[k] - reference[k - late]).powi(2)).sum::<f64>()
+    };
+    assert!(error(&later, 20) < 2.0 * error(&now, 0), "{} {}", error(&later, 20), error(&now, 0));
+    assert!(error(&later, 0) > error(&now, 0));
 }
