@@ -1,9 +1,10 @@
-//! What image a drive takes, and what an image says of itself. Audit: the key is read for its length, the joint's name up to its end or its longest.
+//! What image a drive takes, and what an image says of itself. Audit: a key is read for its length, the joint's name up to its end or its longest.
 
 use core::ffi::c_char;
 use core::hint::black_box;
 
 use frikan_runtime::shared::authentication::admission::{Admission, Channels, Demands, Facts};
+use frikan_runtime::shared::authentication::signature::{PUBLIC_KEY_BYTES, PublicKey};
 use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
 use frikan_runtime::shared::image::{ImageError, image_crc32};
 use frikan_runtime::shared::units::Unit;
@@ -51,6 +52,9 @@ const _: () = {
 pub struct FrikanTrust {
     /// FRIKAN_KEY_BYTES, of whoever may make images: one without its tag is refused; null for a drive that takes anyone's.
     pub key: *const u8,
+    /// FRIKAN_PUBLIC_KEY_BYTES, those that `trainer export --signing-key-file` prints: an image without the signature of its secret is refused; null for none. A
+    /// drive that asks for both takes no image.
+    pub public_key: *const u8,
     /// Name of the joint, ended by a 0; null for any.
     pub joint: *const c_char,
     /// Unit of the torque, FRIKAN_UNIT_...
@@ -78,17 +82,30 @@ pub struct FrikanFacts {
     pub crc32: u32,
 }
 
+/// Who may make images.
+#[derive(Clone)]
+enum Makers {
+    Anyone,
+    Key(Key),
+    Signed(PublicKey),
+}
+
 /// The trust of C.
 #[derive(Clone)]
 pub(crate) struct Trusted<'a> {
-    key: Option<Key>,
+    makers: Makers,
     demands: Demands<'a>,
 }
 
 impl Trusted<'_> {
     /// The same with a key that is borrowed.
     pub(crate) fn admission(&self) -> Admission<'_> {
-        Admission { trust: self.key.as_ref().map_or(Trust::Anyone, Trust::Key), demands: self.demands }
+        let trust = match &self.makers {
+            Makers::Anyone => Trust::Anyone,
+            Makers::Key(key) => Trust::Key(key),
+            Makers::Signed(key) => Trust::Signed(key),
+        };
+        Admission { trust, demands: self.demands }
     }
 
     /// The model of exactly one image.
@@ -102,18 +119,23 @@ impl Trusted<'_> {
     }
 }
 
-/// The key of C, where there is one. A library without authentication does not start with one.
+/// Who may make images, of the keys of C. A library without authentication or without signatures does not start with a key of them.
 ///
 /// # Safety
-/// `key` is null or KEY_BYTES may be read from it.
-unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
+/// `key` is null or KEY_BYTES may be read from it, `public_key` is null or PUBLIC_KEY_BYTES.
+unsafe fn makers_at(key: *const u8, public_key: *const u8) -> Result<Makers, ImageError> {
     // SAFETY: the caller's word; an array of bytes has no alignment.
-    match unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() } {
-        None => Ok(None),
+    let keys =
+        unsafe { (key.cast::<[u8; KEY_BYTES]>().as_ref(), public_key.cast::<[u8; PUBLIC_KEY_BYTES]>().as_ref()) };
+    match keys {
+        (None, None) => Ok(Makers::Anyone),
+        (Some(_), Some(_)) => Err(ImageError::NotAuthentic),
         #[cfg(feature = "auth")]
-        Some(bytes) => Ok(Some(Key::new(*bytes))),
-        #[cfg(not(feature = "auth"))]
-        Some(_) => Err(ImageError::NotBuiltIn),
+        (Some(bytes), None) => Ok(Makers::Key(Key::new(*bytes))),
+        #[cfg(feature = "signature")]
+        (None, Some(bytes)) => Ok(Makers::Signed(PublicKey::new(*bytes))),
+        #[cfg(not(all(feature = "auth", feature = "signature")))]
+        _ => Err(ImageError::NotBuiltIn),
     }
 }
 
@@ -138,11 +160,12 @@ unsafe fn name_at<'a>(name: *const c_char) -> Option<&'a [u8]> {
 /// The trust of C; any for a null pointer.
 ///
 /// # Safety
-/// `trust` is null or may be read, and its pointers as [`key_at`] and [`name_at`] say.
+/// `trust` is null or may be read, and its pointers as [`makers_at`] and [`name_at`] say.
 pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, ImageError> {
     // SAFETY: the caller's word.
-    let Some(FrikanTrust { key, joint, unit, channels, least_release }) = (unsafe { trust.as_ref() }) else {
-        return Ok(Trusted { key: None, demands: Demands::NONE });
+    let Some(FrikanTrust { key, public_key, joint, unit, channels, least_release }) = (unsafe { trust.as_ref() })
+    else {
+        return Ok(Trusted { makers: Makers::Anyone, demands: Demands::NONE });
     };
     let output_unit = match unit.checked_sub(1) {
         None => None,
@@ -151,8 +174,8 @@ pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, Im
     };
     let channels = if *channels == 0 { Channels::ALL } else { Channels::of_bits(*channels as u8) };
     // SAFETY: the caller's word.
-    let (key, joint) = unsafe { (key_at(*key)?, name_at(*joint)) };
-    Ok(Trusted { key, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
+    let (makers, joint) = unsafe { (makers_at(*key, *public_key)?, name_at(*joint)) };
+    Ok(Trusted { makers, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
 }
 
 /// What the image at an address says of itself, once it is found whole and what the drive takes.
