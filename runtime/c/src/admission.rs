@@ -82,28 +82,21 @@ pub struct FrikanFacts {
     pub crc32: u32,
 }
 
-/// Who may make images.
-#[derive(Clone)]
-enum Makers {
-    Anyone,
-    Key(Key),
-    Signed(PublicKey),
-}
-
-/// The trust of C.
+/// The trust of C, with one key at most.
 #[derive(Clone)]
 pub(crate) struct Trusted<'a> {
-    makers: Makers,
+    key: Option<Key>,
+    public_key: Option<PublicKey>,
     demands: Demands<'a>,
 }
 
 impl Trusted<'_> {
     /// The same with a key that is borrowed.
     pub(crate) fn admission(&self) -> Admission<'_> {
-        let trust = match &self.makers {
-            Makers::Anyone => Trust::Anyone,
-            Makers::Key(key) => Trust::Key(key),
-            Makers::Signed(key) => Trust::Signed(key),
+        let trust = match (&self.key, &self.public_key) {
+            (Some(key), _) => Trust::Key(key),
+            (None, Some(key)) => Trust::Signed(key),
+            (None, None) => Trust::Anyone,
         };
         Admission { trust, demands: self.demands }
     }
@@ -119,23 +112,33 @@ impl Trusted<'_> {
     }
 }
 
-/// Who may make images, of the keys of C. A library without authentication or without signatures does not start with a key of them.
+/// The key of C, where there is one. A library without authentication does not start with one.
 ///
 /// # Safety
-/// `key` is null or KEY_BYTES may be read from it, `public_key` is null or PUBLIC_KEY_BYTES.
-unsafe fn makers_at(key: *const u8, public_key: *const u8) -> Result<Makers, ImageError> {
+/// `key` is null or KEY_BYTES may be read from it.
+unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
     // SAFETY: the caller's word; an array of bytes has no alignment.
-    let keys =
-        unsafe { (key.cast::<[u8; KEY_BYTES]>().as_ref(), public_key.cast::<[u8; PUBLIC_KEY_BYTES]>().as_ref()) };
-    match keys {
-        (None, None) => Ok(Makers::Anyone),
-        (Some(_), Some(_)) => Err(ImageError::NotAuthentic),
+    match unsafe { key.cast::<[u8; KEY_BYTES]>().as_ref() } {
+        None => Ok(None),
         #[cfg(feature = "auth")]
-        (Some(bytes), None) => Ok(Makers::Key(Key::new(*bytes))),
+        Some(bytes) => Ok(Some(Key::new(*bytes))),
+        #[cfg(not(feature = "auth"))]
+        Some(_) => Err(ImageError::NotBuiltIn),
+    }
+}
+
+/// The public key of C, where there is one. A library without signatures does not start with one.
+///
+/// # Safety
+/// `key` is null or PUBLIC_KEY_BYTES may be read from it.
+unsafe fn public_key_at(key: *const u8) -> Result<Option<PublicKey>, ImageError> {
+    // SAFETY: the caller's word; an array of bytes has no alignment.
+    match unsafe { key.cast::<[u8; PUBLIC_KEY_BYTES]>().as_ref() } {
+        None => Ok(None),
         #[cfg(feature = "signature")]
-        (None, Some(bytes)) => Ok(Makers::Signed(PublicKey::new(*bytes))),
-        #[cfg(not(all(feature = "auth", feature = "signature")))]
-        _ => Err(ImageError::NotBuiltIn),
+        Some(bytes) => Ok(Some(PublicKey::new(*bytes))),
+        #[cfg(not(feature = "signature"))]
+        Some(_) => Err(ImageError::NotBuiltIn),
     }
 }
 
@@ -160,12 +163,12 @@ unsafe fn name_at<'a>(name: *const c_char) -> Option<&'a [u8]> {
 /// The trust of C; any for a null pointer.
 ///
 /// # Safety
-/// `trust` is null or may be read, and its pointers as [`makers_at`] and [`name_at`] say.
+/// `trust` is null or may be read, and its pointers as [`key_at`], [`public_key_at`] and [`name_at`] say.
 pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, ImageError> {
     // SAFETY: the caller's word.
     let Some(FrikanTrust { key, public_key, joint, unit, channels, least_release }) = (unsafe { trust.as_ref() })
     else {
-        return Ok(Trusted { makers: Makers::Anyone, demands: Demands::NONE });
+        return Ok(Trusted { key: None, public_key: None, demands: Demands::NONE });
     };
     let output_unit = match unit.checked_sub(1) {
         None => None,
@@ -174,8 +177,11 @@ pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, Im
     };
     let channels = if *channels == 0 { Channels::ALL } else { Channels::of_bits(*channels as u8) };
     // SAFETY: the caller's word.
-    let (makers, joint) = unsafe { (makers_at(*key, *public_key)?, name_at(*joint)) };
-    Ok(Trusted { makers, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
+    let (key, public_key, joint) = unsafe { (key_at(*key)?, public_key_at(*public_key)?, name_at(*joint)) };
+    if key.is_some() && public_key.is_some() {
+        return Err(ImageError::NotAuthentic);
+    }
+    Ok(Trusted { key, public_key, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
 }
 
 /// What the image at an address says of itself, once it is found whole and what the drive takes.
