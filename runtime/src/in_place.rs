@@ -65,15 +65,26 @@ impl<'a> TableInPlace<'a> {
     #[must_use]
     #[inline(always)]
     pub fn value(&self, velocity: f32) -> f32 {
+        f32::from_bits(self.unsigned(velocity).to_bits() ^ self.sign(velocity))
+    }
+
+    /// The value before the velocity turns its sign.
+    #[inline(always)]
+    fn unsigned(&self, velocity: f32) -> f32 {
         let is_negative = velocity.to_bits() >> 31;
         let side = &self.sides[is_negative as usize];
         let width = velocity.abs() + self.offset;
         let position = width.to_bits().wrapping_sub(side.origin).min(side.last_position);
-        let sign = velocity.to_bits() & self.negative_sign;
-        let place = place_position(position, self.cells_per_turn, 0, sign);
+        let place = place_position(position, self.cells_per_turn, 0, 0);
         // Every row is one of the table, which was proved to lie within the cells.
-        let Some(bytes) = self.cells.get(place.row as usize) else { return 0.0 };
+        let bytes = self.cells.get(place.row as usize).unwrap_or(&[0; 16]);
         cubic(&Cell::from(*bytes), place)
+    }
+
+    /// The bits that a velocity turns in the value.
+    #[inline(always)]
+    fn sign(&self, velocity: f32) -> u32 {
+        velocity.to_bits() & self.negative_sign
     }
 }
 
@@ -93,12 +104,19 @@ impl<'a> From<TableImage<'a>> for TableInPlace<'a> {
 
 impl FrictionModel for TableInPlace<'_> {
     #[inline(always)]
-    fn friction(&mut self, measurement: &Measurement, _: f32, is_step: i32, _: f32) -> Friction {
+    fn friction(&mut self, measurement: &Measurement, dt: f32, is_step: i32, largest_position: f32) -> Friction {
+        self.share(1.0, measurement, dt, is_step, largest_position)
+    }
+
+    /// With the sign turned behind the product, where the bits are at hand.
+    #[inline(always)]
+    fn share(&mut self, gain: f32, measurement: &Measurement, _: f32, is_step: i32, _: f32) -> Friction {
         let velocity = measurement.velocity;
         let usable = Usable::where_negative_of_little(finite(velocity) & is_step);
         // What the table gives was proved finite and within the limit. At rest there is no friction of it.
         let moves = (not_zero(velocity) >> 31) as u32;
-        Friction { torque: f32::from_bits(self.value(velocity).to_bits() & moves), position: 0.0, usable }
+        let torque = ((gain * self.unsigned(velocity)).to_bits() ^ self.sign(velocity)) & moves;
+        Friction { torque: f32::from_bits(torque), position: 0.0, usable }
     }
 
     fn rest(&mut self) {}

@@ -69,6 +69,15 @@ pub fn above_0_to(end: f32, x: f32) -> i32 {
     below.wrapping_sub(end.to_bits() as i32) & !below
 }
 
+/// As [`above_0_to`] the end 1, of which the pattern is that of its exponent.
+#[must_use]
+#[inline(always)]
+pub fn above_0_to_1(x: f32) -> i32 {
+    const FRACTION_BITS: u32 = f32::MANTISSA_DIGITS - 1;
+    let exponents_below = x.to_bits().wrapping_sub(1) >> FRACTION_BITS;
+    exponents_below.wrapping_sub(1.0f32.to_bits() >> FRACTION_BITS) as i32
+}
+
 /// Negative where `x` is not 0.
 #[must_use]
 #[inline(always)]
@@ -87,6 +96,7 @@ mod tests {
         for x in numbers.into_iter().chain(others).flat_map(|x| [x, -x]) {
             assert_eq!(Usable::where_negative(finite(x)).is_usable(), x.is_finite(), "{x}");
             assert_eq!(Usable::where_negative(not_zero(x)).is_usable(), x != 0.0, "{x}");
+            assert_eq!(Usable::where_negative(above_0_to_1(x)).is_usable(), x > 0.0 && x <= 1.0, "{x}");
             for end in [1.0, f32::MAX] {
                 let is_within = (0.0..=end).contains(&x) && x.is_sign_positive();
                 assert_eq!(Usable::where_negative(from_0_to(end, x)).is_usable(), is_within, "{x} to {end}");

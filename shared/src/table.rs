@@ -106,11 +106,13 @@ impl Geometric {
         let first_cell = u32::from(shape.first_cell);
         let last_positive = last(shape.reach);
         let positive = side(first_cell, last_positive);
-        let negative = match shape.symmetry {
-            Symmetry::Odd => Side { sign: SIGN_BIT, ..positive },
-            Symmetry::Even => positive,
-            Symmetry::Sided => side(first_cell + (last_positive >> shift) + 1, last(shape.reach_negative)),
+        let negative = if shape.symmetry == Symmetry::Sided {
+            side(first_cell + (last_positive >> shift) + 1, last(shape.reach_negative))
+        } else {
+            positive
         };
+        let sign = if shape.symmetry == Symmetry::Odd { SIGN_BIT } else { 0 };
+        let negative = Side { sign, ..negative };
         Self { shape, offset, sides: [positive, negative] }
     }
 

@@ -47,7 +47,9 @@ fn small_and_constant_on(target: &str, flash_bytes: u64) {
         // What `fit` and `verify` say.
         assert_eq!(integer_step(target), Some(most), "{name} on {target}");
         assert!(stack[0] <= START_STACK_BYTES && stack[1] <= STEP_STACK_BYTES, "{name}: {stack:?} bytes of stack");
-        Documented::of(target, "integer compensator, its table in flash").holds("step, instructions", most.into());
+        let documented = Documented::of(target, "integer compensator, its table in flash");
+        documented.holds("step, instructions", most.into());
+        documented.holds("stack, decode B", stack[0].into());
     }
     assert!(flash <= flash_bytes, "{flash} bytes of flash on {target}");
 }

@@ -1,6 +1,27 @@
-//! Every cargo feature of what runs in the drive compiles for a drive: alone, none of them, and all.
+//! Every cargo feature of what runs in the drive compiles for a drive: alone, none of them, and all; with a floating-point unit, without one, and where no
+//! instruction reads and writes a word at once.
 
 use frikan_trainer::emulator::{Firmware, Target};
+
+/// Those of `frikan-runtime`, which switch on what they need of `frikan-shared`.
+const RUNTIME: [&str; 13] = [
+    "table",
+    "integer",
+    "expression",
+    "network",
+    "effects",
+    "supervised",
+    "slots",
+    "embedded-storage",
+    "auth",
+    "signature",
+    "defmt",
+    "nalgebra",
+    "models",
+];
+
+/// Those of `frikan-c`.
+const C: [&str; 8] = ["supervised", "slots", "integer", "auth", "signature", "expression", "network", "effects"];
 
 fn check(firmware: &Firmware, target: &Target, package: &str, features: &[&str]) {
     let alone = features.iter().map(|feature| (*feature).to_owned());
@@ -11,40 +32,27 @@ fn check(firmware: &Firmware, target: &Target, package: &str, features: &[&str])
     }
 }
 
-#[test]
-fn every_feature_compiles_alone() {
+fn every_feature_compiles_alone(target: &str) -> (Firmware, Target) {
     let firmware = Firmware::find().unwrap();
-    let target = firmware.target("cortex-m4f").unwrap();
-    let runtime = [
-        "table",
-        "integer",
-        "expression",
-        "network",
-        "effects",
-        "supervised",
-        "slots",
-        "embedded-storage",
-        "auth",
-        "signature",
-        "defmt",
-        "nalgebra",
-        "models",
-    ];
-    check(&firmware, &target, "frikan-shared", &["models", "elementary", "auth", "signature", "defmt"]);
-    check(&firmware, &target, "frikan-runtime", &runtime);
-    check(
-        &firmware,
-        &target,
-        "frikan-c",
-        &["supervised", "slots", "integer", "auth", "expression", "network", "effects"],
-    );
+    let target = firmware.target(target).unwrap();
+    check(&firmware, &target, "frikan-runtime", &RUNTIME);
+    (firmware, target)
 }
 
-/// Without a floating-point unit, and without atomic instructions that read and write.
 #[test]
-fn the_smallest_and_the_largest_compile_for_the_smallest_drive() {
-    let firmware = Firmware::find().unwrap();
-    let target = firmware.target("cortex-m0plus").unwrap();
-    firmware.check(&target, "frikan-runtime", "table").unwrap();
-    firmware.check(&target, "frikan-c", "supervised,slots,integer,auth,expression,network,effects").unwrap();
+fn every_feature_compiles_alone_for_cortex_m4f() {
+    let (firmware, target) = every_feature_compiles_alone("cortex-m4f");
+    check(&firmware, &target, "frikan-c", &C);
+}
+
+#[test]
+fn every_feature_compiles_alone_for_cortex_m0plus() {
+    let (firmware, target) = every_feature_compiles_alone("cortex-m0plus");
+    firmware.check(&target, "frikan-c", &C.join(",")).unwrap();
+}
+
+#[test]
+fn every_feature_compiles_alone_for_riscv32imc() {
+    let (firmware, target) = every_feature_compiles_alone("riscv32imc");
+    firmware.check(&target, "frikan-c", &C.join(",")).unwrap();
 }

@@ -36,6 +36,9 @@
 // Bytes of a key.
 #define FRIKAN_KEY_BYTES 32
 
+// Bytes of a public key.
+#define FRIKAN_PUBLIC_KEY_BYTES 32
+
 // Bytes of the header of a slot.
 #define FRIKAN_SLOT_HEADER_BYTES 16
 
@@ -106,7 +109,7 @@ enum FrikanStatus
   FRIKAN_STATUS_NOT_STARTED = 2,
   // Neither slot holds an intact image.
   FRIKAN_STATUS_NO_IMAGE = 3,
-  // The tag of the key does not stand behind the image.
+  // The tag of the key or the signature does not stand behind the image.
   FRIKAN_STATUS_NOT_AUTHENTIC = 4,
   // The bytes end before the image does.
   FRIKAN_STATUS_TRUNCATED = 5,
@@ -174,6 +177,9 @@ typedef struct {
 typedef struct {
   // FRIKAN_KEY_BYTES, of whoever may make images: one without its tag is refused; null for a drive that takes anyone's.
   const uint8_t *key;
+  // FRIKAN_PUBLIC_KEY_BYTES, those that `trainer export --signing-key-file` prints: an image without the signature of its secret is refused; null for none. A
+  // drive that asks for both takes no image.
+  const uint8_t *public_key;
   // Name of the joint, ended by a 0; null for any.
   const char *joint;
   // Unit of the torque, FRIKAN_UNIT_...

@@ -1,9 +1,10 @@
-//! What image a drive takes, and what an image says of itself. Audit: the key is read for its length, the joint's name up to its end or its longest.
+//! What image a drive takes, and what an image says of itself. Audit: a key is read for its length, the joint's name up to its end or its longest.
 
 use core::ffi::c_char;
 use core::hint::black_box;
 
 use frikan_runtime::shared::authentication::admission::{Admission, Channels, Demands, Facts};
+use frikan_runtime::shared::authentication::signature::{PUBLIC_KEY_BYTES, PublicKey};
 use frikan_runtime::shared::authentication::{KEY_BYTES, Key, Trust};
 use frikan_runtime::shared::image::{ImageError, image_crc32};
 use frikan_runtime::shared::units::Unit;
@@ -51,6 +52,9 @@ const _: () = {
 pub struct FrikanTrust {
     /// FRIKAN_KEY_BYTES, of whoever may make images: one without its tag is refused; null for a drive that takes anyone's.
     pub key: *const u8,
+    /// FRIKAN_PUBLIC_KEY_BYTES, those that `trainer export --signing-key-file` prints: an image without the signature of its secret is refused; null for none. A
+    /// drive that asks for both takes no image.
+    pub public_key: *const u8,
     /// Name of the joint, ended by a 0; null for any.
     pub joint: *const c_char,
     /// Unit of the torque, FRIKAN_UNIT_...
@@ -78,17 +82,23 @@ pub struct FrikanFacts {
     pub crc32: u32,
 }
 
-/// The trust of C.
+/// The trust of C, with one key at most.
 #[derive(Clone)]
 pub(crate) struct Trusted<'a> {
     key: Option<Key>,
+    public_key: Option<PublicKey>,
     demands: Demands<'a>,
 }
 
 impl Trusted<'_> {
     /// The same with a key that is borrowed.
     pub(crate) fn admission(&self) -> Admission<'_> {
-        Admission { trust: self.key.as_ref().map_or(Trust::Anyone, Trust::Key), demands: self.demands }
+        let trust = match (&self.key, &self.public_key) {
+            (Some(key), _) => Trust::Key(key),
+            (None, Some(key)) => Trust::Signed(key),
+            (None, None) => Trust::Anyone,
+        };
+        Admission { trust, demands: self.demands }
     }
 
     /// The model of exactly one image.
@@ -117,6 +127,21 @@ unsafe fn key_at(key: *const u8) -> Result<Option<Key>, ImageError> {
     }
 }
 
+/// The public key of C, where there is one. A library without signatures does not start with one.
+///
+/// # Safety
+/// `key` is null or PUBLIC_KEY_BYTES may be read from it.
+unsafe fn public_key_at(key: *const u8) -> Result<Option<PublicKey>, ImageError> {
+    // SAFETY: the caller's word; an array of bytes has no alignment.
+    match unsafe { key.cast::<[u8; PUBLIC_KEY_BYTES]>().as_ref() } {
+        None => Ok(None),
+        #[cfg(feature = "signature")]
+        Some(bytes) => Ok(Some(PublicKey::new(*bytes))),
+        #[cfg(not(feature = "signature"))]
+        Some(_) => Err(ImageError::NotBuiltIn),
+    }
+}
+
 /// The bytes of a name before its 0; one that is too long for any joint is cut behind the longest, and so no joint's.
 ///
 /// # Safety
@@ -138,11 +163,12 @@ unsafe fn name_at<'a>(name: *const c_char) -> Option<&'a [u8]> {
 /// The trust of C; any for a null pointer.
 ///
 /// # Safety
-/// `trust` is null or may be read, and its pointers as [`key_at`] and [`name_at`] say.
+/// `trust` is null or may be read, and its pointers as [`key_at`], [`public_key_at`] and [`name_at`] say.
 pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, ImageError> {
     // SAFETY: the caller's word.
-    let Some(FrikanTrust { key, joint, unit, channels, least_release }) = (unsafe { trust.as_ref() }) else {
-        return Ok(Trusted { key: None, demands: Demands::NONE });
+    let Some(FrikanTrust { key, public_key, joint, unit, channels, least_release }) = (unsafe { trust.as_ref() })
+    else {
+        return Ok(Trusted { key: None, public_key: None, demands: Demands::NONE });
     };
     let output_unit = match unit.checked_sub(1) {
         None => None,
@@ -151,8 +177,11 @@ pub(crate) unsafe fn at<'a>(trust: *const FrikanTrust) -> Result<Trusted<'a>, Im
     };
     let channels = if *channels == 0 { Channels::ALL } else { Channels::of_bits(*channels as u8) };
     // SAFETY: the caller's word.
-    let (key, joint) = unsafe { (key_at(*key)?, name_at(*joint)) };
-    Ok(Trusted { key, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
+    let (key, public_key, joint) = unsafe { (key_at(*key)?, public_key_at(*public_key)?, name_at(*joint)) };
+    if key.is_some() && public_key.is_some() {
+        return Err(ImageError::NotAuthentic);
+    }
+    Ok(Trusted { key, public_key, demands: Demands { joint, output_unit, channels, least_release: *least_release } })
 }
 
 /// What the image at an address says of itself, once it is found whole and what the drive takes.

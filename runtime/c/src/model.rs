@@ -95,6 +95,24 @@ impl FrictionModel for Model {
         }
     }
 
+    #[inline(always)]
+    fn share(
+        &mut self,
+        gain: f32,
+        measurement: &Measurement,
+        dt: f32,
+        is_step: i32,
+        largest_position: f32,
+    ) -> Friction {
+        match self {
+            Self::Image(model) => model.share(gain, measurement, dt, is_step, largest_position),
+            Self::Law(_) => {
+                let friction = self.friction(measurement, dt, is_step, largest_position);
+                Friction { torque: gain * friction.torque, ..friction }
+            }
+        }
+    }
+
     fn rest(&mut self) {
         if let Self::Image(model) = self {
             model.rest();

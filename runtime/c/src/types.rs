@@ -31,6 +31,9 @@ const fn number(digits: &[u8]) -> usize {
 /// Bytes of a key.
 pub const FRIKAN_KEY_BYTES: usize = 32;
 
+/// Bytes of a public key.
+pub const FRIKAN_PUBLIC_KEY_BYTES: usize = 32;
+
 /// Bytes of the header of a slot.
 pub const FRIKAN_SLOT_HEADER_BYTES: usize = 16;
 
@@ -54,7 +57,7 @@ pub enum FrikanStatus {
     NotStarted = 2,
     /// Neither slot holds an intact image.
     NoImage = 3,
-    /// The tag of the key does not stand behind the image.
+    /// The tag of the key or the signature does not stand behind the image.
     NotAuthentic = 4,
     /// The bytes end before the image does.
     Truncated = 5,

@@ -26,7 +26,8 @@ const LIMITS: FrikanLimits = FrikanLimits { gain: 1.0, torque: 100.0, slew: 1.0e
 const MOVING: FrikanMeasurement =
     FrikanMeasurement { velocity: 0.5, position: 0.0, acceleration: 0.0, load: 0.0, temperature: 0.0, other: [0.0; 4] };
 
-const ANY: FrikanTrust = FrikanTrust { key: null(), joint: null(), unit: 0, channels: 0, least_release: 0 };
+const ANY: FrikanTrust =
+    FrikanTrust { key: null(), public_key: null(), joint: null(), unit: 0, channels: 0, least_release: 0 };
 
 /// As the static data of a firmware.
 fn zeroed() -> Box<FrikanCompensator> {
@@ -304,6 +305,50 @@ fn a_key_asks_for_its_tag() {
     assert_eq!(start(&mut elbow, &tagged, Some(&[8; 32])), FrikanStatus::NotAuthentic);
     assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotAuthentic));
     assert_eq!(start(&mut elbow, &[IMAGE, &[0xFF; 64]].concat(), Some(&key)), FrikanStatus::NotAuthentic);
+}
+
+fn start_signed(compensator: &mut FrikanCompensator, flash: &[u8], trust: FrikanTrust) -> FrikanStatus {
+    // SAFETY: a slice and its length, a reference to keys that outlive the call.
+    unsafe { frikan_start(compensator, flash.as_ptr(), flash.len(), &trust, &LIMITS) }
+}
+
+#[cfg(feature = "signature")]
+#[test]
+fn a_public_key_asks_for_the_signature_of_its_secret() {
+    use frikan_runtime::shared::authentication::release_block;
+    use frikan_runtime::shared::authentication::signature::Signer;
+    let (signer, other) = (Signer::new([9; 32]), Signer::new([8; 32]));
+    let key = signer.public_key();
+    let trust = FrikanTrust { public_key: key.as_ptr(), ..ANY };
+    let signed = [IMAGE, &signer.sign(IMAGE), &[0xFF; 8]].concat();
+    let release = [IMAGE, &release_block(7)].concat();
+    let release = [&release[..], &signer.sign(&release)].concat();
+    let mut forged = signed.clone();
+    forged[IMAGE.len() + 5] ^= 1;
+    let mut elbow = zeroed();
+    for (flash, trust, status) in [
+        (&signed, trust, FrikanStatus::Active),
+        (&forged, trust, FrikanStatus::NotAuthentic),
+        (&[IMAGE, &other.sign(IMAGE)].concat(), trust, FrikanStatus::NotAuthentic),
+        (&[IMAGE, &[0xFF; 80]].concat(), trust, FrikanStatus::NotAuthentic),
+        (&release, FrikanTrust { least_release: 7, ..trust }, FrikanStatus::Active),
+        (&release, FrikanTrust { least_release: 8, ..trust }, FrikanStatus::Outdated),
+        // What asks for both takes nothing.
+        (&signed, FrikanTrust { key: key.as_ptr(), ..trust }, FrikanStatus::NotAuthentic),
+    ] {
+        assert_eq!(start_signed(&mut elbow, flash, trust), status);
+        assert_eq!(step(&mut elbow).1, status);
+    }
+}
+
+/// A public key that nobody can check is no reason to start.
+#[cfg(not(feature = "signature"))]
+#[test]
+fn a_public_key_is_refused_by_a_library_without_signatures() {
+    let mut elbow = zeroed();
+    let trust = FrikanTrust { public_key: [9; 32].as_ptr(), ..ANY };
+    assert_eq!(start_signed(&mut elbow, IMAGE, trust), FrikanStatus::NotBuiltIn);
+    assert_eq!(step(&mut elbow), (0.0, FrikanStatus::NotBuiltIn));
 }
 
 /// A key that nobody can check is no reason to start.

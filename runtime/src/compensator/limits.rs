@@ -2,7 +2,7 @@
 
 use frikan_shared::image::ImageError;
 
-use crate::bounds::within;
+use crate::bounds::{beyond, within};
 use crate::measurement::Friction;
 
 /// Largest torque limit: the difference of two torques within it is finite.
@@ -88,7 +88,7 @@ impl Limits {
     pub(crate) fn approach(&self, torque: f32, wanted: f32, reach: f32) -> f32 {
         let wanted = within(wanted, self.torque);
         let change = wanted - torque;
-        wanted - (change - within(change, reach))
+        wanted - beyond(change, reach)
     }
 }
 
@@ -151,14 +151,14 @@ impl Output {
         self.torque = 0.0;
     }
 
-    /// As near to the friction as the limits allow after `dt` seconds; 0 at once where the sample is of no use.
+    /// As near to the share of the friction that is compensated as the limits allow after `dt` seconds; 0 at once where the sample is of no use.
     #[inline(always)]
-    pub(crate) fn put_out(&mut self, friction: Friction, dt: f32) -> Compensation {
+    pub(crate) fn put_out(&mut self, share: Friction, dt: f32) -> Compensation {
         let limits = &self.limits;
         // Nothing here is NaN but where the sample is of no use, and then nothing of it is kept.
-        let torque = limits.approach(self.torque, limits.gain * friction.torque, limits.slew * dt);
-        self.torque = friction.usable.or_zero(torque);
-        let status = if friction.usable.is_usable() { Status::Active } else { Status::NotFinite };
-        Compensation { torque: self.torque, position: friction.position, status }
+        let torque = limits.approach(self.torque, share.torque, limits.slew * dt);
+        self.torque = share.usable.or_zero(torque);
+        let status = if share.usable.is_usable() { Status::Active } else { Status::NotFinite };
+        Compensation { torque: self.torque, position: share.position, status }
     }
 }

@@ -96,13 +96,16 @@ impl From<InvalidModel> for ImageError {
     }
 }
 
-/// What four bits at the lower end leave of the sum, by the polynomial of CRC-32, lowest power first (ISO 3309).
-const REMAINDERS: [u32; 16] = {
-    let mut remainders = [0; 16];
+/// Bits that a step takes off the sum.
+const STEP_BITS: u32 = 2;
+
+/// What these bits at the lower end leave of the sum, by the polynomial of CRC-32, lowest power first (ISO 3309).
+const REMAINDERS: [u32; 1 << STEP_BITS] = {
+    let mut remainders = [0; 1 << STEP_BITS];
     let mut bits = 0;
-    while bits < 16 {
+    while bits < remainders.len() {
         let (mut remainder, mut step) = (bits as u32, 0);
-        while step < 4 {
+        while step < STEP_BITS {
             remainder = (remainder >> 1) ^ if remainder & 1 == 1 { 0xEDB8_8320 } else { 0 };
             step += 1;
         }
@@ -112,8 +115,8 @@ const REMAINDERS: [u32; 16] = {
     remainders
 };
 
-/// CRC-32 (ISO-HDLC) of parts that follow each other. Four bits at a time, for an image is checked once, at start-up: the table of a byte
-/// takes 1 kB of flash, and so does the code of the crate `crc`, which leaves the choice of the sum to its user.
+/// CRC-32 (ISO-HDLC) of parts that follow each other. Two bits at a time, for an image is checked once, at start-up: a table for each byte takes 1 kB
+/// of flash, and so does the code of the crate `crc`, which leaves the choice of the sum to its user.
 #[must_use]
 pub fn checksum(parts: &[&[u8]]) -> u32 {
     parts.iter().fold(Checksum::new(), |sum, part| sum.over(part)).value()
@@ -151,10 +154,17 @@ impl Default for Checksum {
 
 /// Goes on with a sum over bytes.
 #[inline(never)]
-fn sum_over(sum: u32, bytes: &[u8]) -> u32 {
-    let four_bits = |sum: u32| (sum >> 4) ^ REMAINDERS[(sum & 15) as usize];
-    // Behind a black box the loop stays as short as it is written.
-    bytes.iter().fold(sum, |sum, byte| four_bits(four_bits(sum ^ u32::from(black_box(*byte)))))
+fn sum_over(mut sum: u32, bytes: &[u8]) -> u32 {
+    for byte in bytes {
+        sum ^= u32::from(*byte);
+        let mut left = u8::BITS;
+        while left != 0 {
+            sum = (sum >> STEP_BITS) ^ REMAINDERS[(sum & (REMAINDERS.len() as u32 - 1)) as usize];
+            // Behind a black box the loop stays as short as it is written.
+            left = black_box(left - STEP_BITS);
+        }
+    }
+    sum
 }
 
 /// The header's fields after magic and version were found right.

@@ -4,12 +4,12 @@
 use std::fmt::Write;
 
 use frikan_shared::image::Image;
-use frikan_shared::model::{Law, Model};
+use frikan_shared::model::Model;
 
 use super::language::Language;
 use super::law::{identifier, law, no_law, parameters, reads_position, step, unusable};
 use super::library;
-use super::network;
+use super::lookup::cells;
 use crate::error::Result;
 use crate::fit::CELLS;
 
@@ -39,13 +39,11 @@ pub fn evaluator(name: &str, title: &str, image: &Image<CELLS>) -> Result<Evalua
         let _ = write!(functions, "\n{prototype} {{\n{}}}\n", indented(&body_of_step(model, &stem)));
         prototypes.push((state(model, &stem), prototype));
     }
-    let edges = if matches!(model.law, Law::Network(_)) { network::edges(model) } else { String::new() };
-    // Of a network only effects read cells as floats.
-    let cells = if functions.contains("(cells, ") { cells(model) } else { String::new() };
+    let cells = cells(Language::C, model, &functions);
     let library = library::needed(Language::C, &functions);
     Ok(Evaluator {
         header: header(&stem, title, "", &prototypes),
-        source: format!("{}{library}{edges}{cells}{functions}", preamble(name, title)),
+        source: format!("{}{library}{cells}{functions}", preamble(name, title)),
     })
 }
 
@@ -114,15 +112,4 @@ pub(super) fn header(stem: &str, title: &str, includes: &str, prototypes: &[(Str
         let _ = write!(text, "{comment}{prototype};\n\n");
     }
     text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
-}
-
-fn cells(model: &Model<CELLS>) -> String {
-    let mut text = format!("static const float cells[{}][4] = {{\n", model.cells.len());
-    for cell in model.cells.iter() {
-        // What is no number is an edge of a network, and read by no table.
-        let number = |value: f32| Language::C.number(if value.is_finite() { value } else { 0.0 });
-        let row = Language::C.inner(&cell.floats().map(number));
-        let _ = writeln!(text, "    {row},");
-    }
-    text + "};\n\n"
 }

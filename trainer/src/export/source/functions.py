@@ -99,6 +99,43 @@ def uniform(table, x, low, scale, place):
     return cubic(table[place[0] + (product >> 32)], 1.0 + (product % 2**32) / 2**32)
 
 
+def single(x):
+    """The number in single precision that is nearest; what no such number is as large as, as the largest."""
+    return struct.unpack("<f", struct.pack("<f", held(x, -3.4028235e38, 3.4028235e38)))[0]
+
+
+def spot_of(position, rows):
+    """Where a value lies among the rows of its edges, and the way through the row, 2^32 for the whole of it."""
+    return divmod(position * rows, 2**32)
+
+
+def spot_geometric(x, offset, sides):
+    origin, last, rows, _ = sides[math.copysign(1.0, x) < 0.0]
+    return spot_of(min((bits_of(single(abs(single(x)) + offset)) - origin) % 2**32, last), rows)
+
+
+def spot_uniform(x, low, scale, rows):
+    return spot_of(int(held(single(single(single(x) - low) * scale), 0.0, 2**32 - 1)), rows)
+
+
+def signed(word):
+    return (word + 2**31) % 2**32 - 2**31
+
+
+def high(a, b):
+    """The high word of a product."""
+    return a * b >> 32
+
+
+def add_edges(sums, spot, first, edges):
+    """Edges from a spot on, each a cubic of the way, onto the sums in which they end."""
+    row, way = spot
+    x = way >> 1
+    for target in range(len(sums)):
+        a = edges[first + row * len(sums) + target]
+        sums[target] = (sums[target] + a[0] + high(a[1] + high(a[2] + high(a[3], x), x), x)) % 2**32
+
+
 class Motion:
     """A sample within the trained ranges; `angle` is the position as measured."""
 

@@ -50,6 +50,27 @@ impl Language {
         if self == Self::C { format!("{word:#x}u") } else { format!("{word:#x}") }
     }
 
+    /// A constant of rows of four numbers, whose type is called so in C and in Rust.
+    pub(super) fn fours(self, name: &str, [of_c, of_rust]: [&str; 2], rows: &[String]) -> String {
+        let (count, constant) = (rows.len(), name.to_ascii_uppercase());
+        let (head, foot) = match self {
+            Self::C => (format!("static const {of_c} {name}[{count}][4] = {{"), "};\n\n"),
+            Self::Rust => (format!("const {constant}: [[{of_rust}; 4]; {count}] = ["), "];\n\n"),
+            Self::Python => (format!("\n\n{constant} = ["), "]\n"),
+        };
+        let rows: String = rows.iter().map(|row| format!("    {row},\n")).collect();
+        format!("{head}\n{rows}{foot}")
+    }
+
+    /// A number without a sign.
+    pub(super) fn unsigned(self, number: u32) -> String {
+        match self {
+            Self::C => format!("{number}u"),
+            Self::Rust => format!("{number}_u32"),
+            Self::Python => number.to_string(),
+        }
+    }
+
     /// The array inside of an array.
     pub(super) fn inner(self, items: &[String]) -> String {
         if self == Self::C { format!("{{{}}}", items.join(", ")) } else { format!("[{}]", items.join(", ")) }

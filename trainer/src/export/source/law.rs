@@ -72,7 +72,7 @@ fn is_no_law(language: Language, model: &Model<CELLS>) -> String {
 /// Statements of the static law, the last of which returns it.
 ///
 /// # Errors
-/// `FRK-U005` for networks but in C, and for integer tables, which [`super::integers`] has.
+/// `FRK-U005` for integer tables, which [`super::integers`] has in C.
 pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String>> {
     let names = parameters(model);
     let nothing = language.return_where(&is_no_law(language, model), 0.0);
@@ -97,10 +97,7 @@ pub(super) fn law(language: Language, model: &Model<CELLS>) -> Result<Vec<String
             statements.push(language.last(&format!("limited({result}, {limit})")));
             Ok(statements)
         }
-        Law::Network(network) if language == Language::C => {
-            Ok([vec![nothing], network::statements(network, &names)].concat())
-        }
-        Law::Network(_) => refusal("a network has no form in this language: export it to C, or take the library"),
+        Law::Network(network) => Ok([vec![nothing], network::statements(language, network, &names)].concat()),
         Law::IntegerTable(_) => refusal(
             "an integer table has no such form: `trainer export --to c` writes it in counts, or take the library",
         ),

@@ -4,7 +4,7 @@ use super::language::Language;
 
 /// The functions of C and of Rust, each separated by a blank line from the next and after those that it calls itself.
 const C: &str = include_str!("functions.c");
-const RUST: &str = include_str!("functions.rs");
+const RUST: &str = concat!(include_str!("functions_of_networks.rs"), "\n", include_str!("functions.rs"));
 
 /// All functions of Python.
 pub(super) const PYTHON: &str = include_str!("functions.py");

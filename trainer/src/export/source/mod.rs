@@ -1,5 +1,5 @@
 //! An image as source code without dependency, state and range hold included: C and Rust with the very bits of the runtime, Python in double
-//! precision. One list of statements is written in the three languages; networks and integer tables have a form in C.
+//! precision. One list of statements is written in the three languages; integer tables have a form in C.
 
 pub mod c;
 mod effects;

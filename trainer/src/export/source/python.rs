@@ -1,4 +1,4 @@
-//! Python without a library, in double precision: what the drive computes, but for its rounding.
+//! Python without a library, in double precision: what the drive computes, but for its rounding; a network, which is integers, with the bits of the drive.
 
 use std::fmt::Write;
 
@@ -8,6 +8,7 @@ use frikan_shared::model::Model;
 use super::language::Language;
 use super::law::{law, no_law, parameters, step, unusable};
 use super::library;
+use super::lookup::cells;
 use crate::error::Result;
 use crate::fit::CELLS;
 
@@ -15,20 +16,15 @@ use crate::fit::CELLS;
 /// `Friction.step`, of numbers.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no such form: networks and integer tables have one in C.
+/// `FRK-U005` for an integer table, which has a form in C.
 pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
     let model = &image.model;
     let names = parameters(model).join(", ");
     let statements = indented(&law(Language::Python, model)?, "    ");
-    let mut text = format!("# {title}. Made by `trainer export --to python`; do not edit.\n\n{}", library::PYTHON);
-    if !model.cells.is_empty() {
-        text += "\n\nCELLS = [\n";
-        for cell in model.cells.iter() {
-            let row = Language::Python.inner(&cell.floats().map(|value| Language::Python.number(value)));
-            let _ = writeln!(text, "    {row},");
-        }
-        text += "]\n";
-    }
+    let stepping = if model.effects.is_empty() { String::new() } else { stepping(model, &names) };
+    let cells = cells(Language::Python, model, &format!("{statements}{stepping}"));
+    let library = library::PYTHON;
+    let mut text = format!("# {title}. Made by `trainer export --to python`; do not edit.\n\n{library}{cells}");
     let (unit, limit, no_law) = (model.output_unit.symbol(), model.output_limit, no_law(model));
     let _ = write!(
         text,
@@ -38,10 +34,7 @@ pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
         let (low, high, unit) = (input.low, input.high, input.unit.symbol());
         let _ = write!(text, "\n    {name}: {low:?} to {high:?} {unit}, held at the nearer end outside.");
     }
-    let _ = write!(text, "\n    \"\"\"\n{statements}");
-    if !model.effects.is_empty() {
-        text += &stepping(model, &names);
-    }
+    let _ = write!(text, "\n    \"\"\"\n{statements}{stepping}");
     Ok(text)
 }
 

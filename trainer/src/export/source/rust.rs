@@ -8,6 +8,7 @@ use frikan_shared::model::Model;
 use super::language::Language;
 use super::law::{law, no_law, parameters, reads_position, step, unusable};
 use super::library;
+use super::lookup::cells;
 use crate::error::Result;
 use crate::fit::CELLS;
 
@@ -15,7 +16,7 @@ use crate::fit::CELLS;
 /// `Friction::step`. It needs nothing but `core`.
 ///
 /// # Errors
-/// `FRK-U005` for a law that has no such form: networks and integer tables have one in C.
+/// `FRK-U005` for an integer table, which has a form in C.
 pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
     let model = &image.model;
     let names: Vec<String> = parameters(model).into_iter().map(|name| format!("{name}: f32")).collect();
@@ -25,7 +26,7 @@ pub fn module(title: &str, image: &Image<CELLS>) -> Result<String> {
     if !model.effects.is_empty() {
         functions += &stepping(model, &names);
     }
-    let cells = if model.cells.is_empty() { String::new() } else { cells(model) };
+    let cells = cells(Language::Rust, model, &functions);
     let library = library::needed(Language::Rust, &functions);
     let head = format!("// {title}. Made by `trainer export --to rust`; do not edit.\n\n");
     Ok(format!("{head}{library}{cells}{functions}"))
@@ -75,13 +76,4 @@ fn stepping(model: &Model<CELLS>, names: &str) -> String {
          /// Law and effects after `dt` seconds; 0, and nothing remembered, where an input is not finite or `dt` is not above 0 and at most 1.\n    \
          pub fn step(&mut self, dt: f32, {names}) -> f32 {{\n{body}    }}\n}}\n"
     )
-}
-
-fn cells(model: &Model<CELLS>) -> String {
-    let mut text = format!("const CELLS: [[f32; 4]; {}] = [\n", model.cells.len());
-    for cell in model.cells.iter() {
-        let row = Language::Rust.inner(&cell.floats().map(|value| Language::Rust.number(value)));
-        let _ = writeln!(text, "    {row},");
-    }
-    text + "];\n\n"
 }
