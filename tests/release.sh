@@ -14,11 +14,16 @@ tool() {
 }
 
 tests/setup.sh
+target/deny/bin/cargo-deny check licenses bans sources
 # Advisories come from the network.
-target/deny/bin/cargo-deny check
+if target/deny/bin/cargo-deny fetch db; then
+    target/deny/bin/cargo-deny check advisories
+else
+    echo "release: the advisories cannot be fetched; nothing is known of them"
+fi
 
 # Packages are built from what they hold, and would be accepted but for being there already; nothing is published.
-cargo publish --dry-run --allow-dirty "${crates[@]/#/--package=}"
+cargo publish --dry-run "${crates[@]/#/--package=}"
 
 tool cyclonedx
 mkdir -p target/sbom
