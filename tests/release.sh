@@ -25,6 +25,11 @@ fi
 # Packages are built from what they hold, and would be accepted but for being there already; nothing is published.
 cargo publish --dry-run "${crates[@]/#/--package=}"
 
+# The oldest Rust that is promised.
+rust=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+rustup toolchain install "$rust" --profile minimal
+CARGO_TARGET_DIR=target/rust-$rust cargo "+$rust" check --locked "${crates[@]/#/--package=}"
+
 tool cyclonedx
 mkdir -p target/sbom
 cargo cyclonedx --format json --spec-version 1.5 --all
