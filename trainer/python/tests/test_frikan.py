@@ -134,10 +134,12 @@ def turntable():
     return {"time_s": time_s, "turn_position_rad": position, "turn_torque_Nm": torque}
 
 
+def table_of(columns, path):
+    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="", fmt="%.9g")
+
+
 def test_an_arm_is_that_of_the_command_line(tmp_path):
-    columns = turntable()
-    table = np.column_stack(list(columns.values()))
-    np.savetxt(tmp_path / "arm.csv", table, delimiter=",", header=",".join(columns), comments="", fmt="%.9g")
+    table_of(turntable(), tmp_path / "arm.csv")
     (tmp_path / "arm.urdf").write_text(URDF)
     trainer(tmp_path, "arm arm.csv --urdf arm.urdf -o there --quiet")
     arm = frikan.arm(tmp_path / "arm.csv", urdf=tmp_path / "arm.urdf")

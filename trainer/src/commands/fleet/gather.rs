@@ -7,7 +7,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::gathered::{Gathered, Unfitted};
+use super::gathered::{Fitted, Gathered, Unfitted};
 use super::stamp::day;
 use super::table::{self, table};
 use super::task::{Done, FLEET_FILE, Task, Tasks};
@@ -48,6 +48,12 @@ pub struct Gather {
     pub quiet: bool,
 }
 
+/// What a task left.
+enum Left<'a> {
+    Fit(Fitted<'a>, Measured),
+    NoFit(Unfitted<'a>),
+}
+
 /// Runs the command and returns its exit status.
 ///
 /// # Errors
@@ -55,25 +61,26 @@ pub struct Gather {
 pub fn run(arguments: &Gather) -> Result<u8> {
     refuse_unwritable(&arguments.json, &[&arguments.tasks])?;
     refuse_folder(&arguments.output)?;
-    let tasks = Tasks::load(&arguments.tasks)?;
+    let tasks = Tasks::in_file(&arguments.tasks);
     let list = tasks.all()?;
     let reporter = Reporter::new(arguments.quiet);
     let (read, all) = (AtomicUsize::new(0), list.len());
-    let result = |task: &Task| {
+    let left = |task| {
         reporter.say(&format!("reading result {} of {all}", read.fetch_add(1, Ordering::Relaxed) + 1));
-        tasks.result(task)
+        left_by(task, tasks.result(task)?)
     };
-    let results: Vec<Option<Done>> = list.par_iter().map(result).collect::<Result<_>>()?;
+    let results: Vec<Result<Left<'_>>> = list.par_iter().map(left).collect();
     reporter.say("comparing joints with their siblings");
-    let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());
-    for (task, done) in list.iter().zip(results) {
-        match done {
-            Some(done) if done.fit.is_some() => fitted.push((task, done)),
-            Some(done) => unfitted.push(Unfitted { task, failure: done.error }),
-            None => unfitted.push(Unfitted { task, failure: None }),
+    let (mut measured, mut fitted, mut unfitted) = (Vec::new(), Vec::new(), Vec::new());
+    for result in results {
+        match result? {
+            Left::Fit(task, of_siblings) => {
+                fitted.push(task);
+                measured.push(of_siblings);
+            }
+            Left::NoFit(task) => unfitted.push(task),
         }
     }
-    let measured = fitted.iter().map(|(task, done)| measured(task, done)).collect::<Result<Vec<_>>>()?;
     let survey = survey(&measured, arguments.false_share);
     let gathered = Gathered { survey, fitted, unfitted };
     reporter.say("writing tables");
@@ -108,9 +115,18 @@ fn curves(measured: &[Measured]) -> Vec<(&str, &[[f64; 3]])> {
     measured.iter().map(|recording| (recording.joint.as_str(), recording.curve.as_slice())).collect()
 }
 
-/// What siblings are compared by, from the JSON of a fit.
-fn measured(task: &Task, done: &Done) -> Result<Measured> {
-    let fit = done.fit.as_ref().unwrap_or(&Value::Null);
+/// What a task left, of which the JSON is read and let go.
+fn left_by(task: &Task, done: Option<Done>) -> Result<Left<'_>> {
+    let Some(done) = done else { return Ok(Left::NoFit(Unfitted { task, failure: None })) };
+    let Some(fit) = &done.fit else { return Ok(Left::NoFit(Unfitted { task, failure: done.error })) };
+    let measured = measured(task, fit, done.ripple)?;
+    let warnings = fit["warnings"].as_array().into_iter().flatten();
+    let warnings = warnings.filter_map(|warning| Some(warning["code"].as_str()?.to_owned())).collect();
+    Ok(Left::Fit(Fitted { task, doubt: done.error, warnings }, measured))
+}
+
+/// What siblings are compared by, from the JSON of a fit and its strongest wave.
+fn measured(task: &Task, fit: &Value, ripple: Option<[f64; 2]>) -> Result<Measured> {
     let missing = |what: &str| {
         let message = format!("the result of task {} has no `{what}`; run it again with `--force`", task.index);
         Error::new(&codes::BAD_TASKS, message)
@@ -141,7 +157,7 @@ fn measured(task: &Task, done: &Done) -> Result<Measured> {
         laws: list(fit, "classical")?.iter().filter_map(law).collect(),
         curve: list(&fit["curve"], "points")?.iter().filter_map(point).collect(),
         residual: fit["train"]["moving"]["rmse"].as_f64().ok_or_else(|| missing("train"))?,
-        ripple: done.ripple.map(|[amplitude, order]| Ripple { amplitude, order }),
+        ripple: ripple.map(|[amplitude, order]| Ripple { amplitude, order }),
     })
 }
 

@@ -43,7 +43,7 @@ pub struct Run {
 /// `FRK-D044` for a list that is none, `FRK-U001` for a number beyond its end, `FRK-I...` where the result cannot be written. That a
 /// recording cannot be fitted is no error but a result.
 pub fn run(arguments: &Run) -> Result<u8> {
-    let tasks = Tasks::load(&arguments.tasks)?;
+    let tasks = Tasks::in_file(&arguments.tasks);
     let task = &tasks.get(arguments.index)?;
     let before = if arguments.force { None } else { tasks.result(task)?.filter(|done| done.fit.is_some()) };
     let done = match before {

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::gathered::{Gathered, Unfitted, reasons};
-use super::task::{Done, Task};
+use super::gathered::{Fitted, Gathered, Unfitted, reasons};
 use crate::error::{Error, Result, codes};
 use crate::fleet::{Member, Quantity};
 use crate::law::significant;
@@ -24,7 +23,7 @@ enum Cells {
 
 /// A row: a joint with the task of its newest recording, or a task that left no fit.
 enum Row<'a> {
-    Joint(&'a Member, &'a Task, &'a Done),
+    Joint(&'a Member, &'a Fitted<'a>),
     Unfitted(&'a Unfitted<'a>),
 }
 
@@ -32,10 +31,8 @@ enum Row<'a> {
 pub(super) fn table(gathered: &Gathered<'_>) -> Vec<Column> {
     let survey = &gathered.survey;
     let newest = newest(gathered);
-    let joints = survey.members.iter().filter_map(|member| {
-        let (task, done) = newest.get(member.joint.as_str())?;
-        Some(Row::Joint(member, task, done))
-    });
+    let joints = survey.members.iter();
+    let joints = joints.filter_map(|member| Some(Row::Joint(member, newest.get(member.joint.as_str())?)));
     let rows: Vec<Row<'_>> = joints.chain(gathered.unfitted.iter().map(Row::Unfitted)).collect();
     let texts = |name: &str, of: &dyn Fn(&Row<'_>) -> Option<String>| Column {
         name: name.to_owned(),
@@ -49,7 +46,7 @@ pub(super) fn table(gathered: &Gathered<'_>) -> Vec<Column> {
         Column { name, cells: Cells::Numbers(rows.iter().map(cell).collect()) }
     };
     let task = |row: &Row<'_>| match row {
-        Row::Joint(_, task, _) => (*task).clone(),
+        Row::Joint(_, fitted) => fitted.task.clone(),
         Row::Unfitted(unfitted) => unfitted.task.clone(),
     };
     let mut columns = vec![
@@ -111,13 +108,13 @@ fn merge(columns: &mut Vec<Column>, next: Column) {
     }
 }
 
-/// Task and result of the newest recording of each joint, in the order in which the survey takes them: of several on one date the last.
-fn newest<'a>(gathered: &'a Gathered<'_>) -> HashMap<&'a str, (&'a Task, &'a Done)> {
-    let mut newest: HashMap<&str, (&Task, &Done)> = HashMap::new();
-    for (task, done) in &gathered.fitted {
-        let entry = newest.entry(&task.joint).or_insert((task, done));
-        if task.date >= entry.0.date {
-            *entry = (task, done);
+/// The newest recording of each joint, in the order in which the survey takes them: of several on one date the last.
+fn newest<'a>(gathered: &'a Gathered<'_>) -> HashMap<&'a str, &'a Fitted<'a>> {
+    let mut newest: HashMap<&str, &Fitted<'_>> = HashMap::new();
+    for fitted in &gathered.fitted {
+        let entry = newest.entry(&fitted.task.joint).or_insert(fitted);
+        if fitted.task.date >= entry.task.date {
+            *entry = fitted;
         }
     }
     newest
@@ -125,7 +122,7 @@ fn newest<'a>(gathered: &'a Gathered<'_>) -> HashMap<&'a str, (&'a Task, &'a Don
 
 fn status(row: &Row<'_>) -> &'static str {
     match row {
-        Row::Joint(.., done) if done.error.is_some() => "doubtful",
+        Row::Joint(_, Fitted { doubt: Some(_), .. }) => "doubtful",
         Row::Joint(..) => "fitted",
         Row::Unfitted(Unfitted { failure: Some(_), .. }) => "failed",
         Row::Unfitted(_) => "missing",
@@ -134,23 +131,24 @@ fn status(row: &Row<'_>) -> &'static str {
 
 fn code(row: &Row<'_>) -> Option<String> {
     match row {
-        Row::Joint(.., done) => done.error.as_ref().map(|failure| failure.code.clone()),
+        Row::Joint(_, fitted) => fitted.doubt.as_ref().map(|failure| failure.code.clone()),
         Row::Unfitted(unfitted) => unfitted.failure.as_ref().map(|failure| failure.code.clone()),
     }
 }
 
 fn message(row: &Row<'_>) -> Option<String> {
     match row {
-        Row::Joint(.., done) => done.error.as_ref().map(|failure| failure.message.clone()),
+        Row::Joint(_, fitted) => fitted.doubt.as_ref().map(|failure| failure.message.clone()),
         Row::Unfitted(unfitted) => unfitted.failure.as_ref().map(|failure| failure.message.clone()),
     }
 }
 
 /// Codes of what the checks of a recording noticed.
 fn health(row: &Row<'_>) -> Option<String> {
-    let Row::Joint(.., done) = row else { return None };
-    let warnings = done.fit.as_ref()?["warnings"].as_array()?;
-    Some(warnings.iter().filter_map(|warning| warning["code"].as_str()).collect::<Vec<_>>().join(" "))
+    match row {
+        Row::Joint(_, fitted) => Some(fitted.warnings.join(" ")),
+        Row::Unfitted(_) => None,
+    }
 }
 
 /// A unit as the name of a column ends: `Nms_rad` for `N m s/rad`.

@@ -1,14 +1,18 @@
 //! The list of tasks, a line each, and where their results lie.
 
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, codes};
-use crate::files::read_whole;
+use crate::files::{open, read_whole};
 
 /// Largest list that is read, bytes: a million tasks.
 const LIST_LIMIT_BYTES: u64 = 1 << 30;
+
+/// Longest line of it, bytes.
+const LINE_LIMIT_BYTES: u64 = 1 << 20;
 
 /// Largest result that is read, bytes.
 const RESULT_LIMIT_BYTES: u64 = 64 << 20;
@@ -66,44 +70,53 @@ pub(super) const SCHEMA: &str = "frikan.result/1";
 #[derive(Debug)]
 pub(super) struct Tasks {
     path: PathBuf,
-    text: String,
 }
 
 impl Tasks {
-    /// # Errors
-    /// `FRK-I...` when the list cannot be read, `FRK-D044` when it is no text.
-    pub(super) fn load(path: &Path) -> Result<Self> {
-        let text = String::from_utf8(read_whole(path, LIST_LIMIT_BYTES)?);
-        let refused = |why: String| Error::new(&codes::BAD_TASKS, why).in_file(path.display().to_string());
-        Ok(Self { path: path.to_owned(), text: text.map_err(|error| refused(error.to_string()))? })
+    /// The list in a file, which is read when it is asked.
+    pub(super) fn in_file(path: &Path) -> Self {
+        Self { path: path.to_owned() }
     }
 
-    /// One task; the other lines are not read.
+    /// One task. The lines before it are passed over, for every task of a long list does so; those behind it are not read.
     ///
     /// # Errors
-    /// `FRK-U001` where there is no such task, `FRK-D044` where its line is none.
+    /// `FRK-I...` when the list cannot be read, `FRK-U001` where there is no such task, `FRK-D044` where its line is none.
     pub(super) fn get(&self, index: usize) -> Result<Task> {
-        let line = self.text.lines().nth(index).ok_or_else(|| {
-            let message = format!("there are {} tasks, counted from 0", self.text.lines().count());
-            let error = Error::new(&codes::USAGE, message).with_value(index.to_string());
-            error.in_file(self.path.display().to_string())
-        })?;
-        self.task(index, line)
+        let failed = |error: &std::io::Error| Error::from_io(&self.path, error);
+        let mut list = BufReader::new(open(&self.path)?);
+        for _ in 0..index {
+            list.skip_until(b'\n').map_err(|error| failed(&error))?;
+        }
+        let mut line = Vec::new();
+        list.take(LINE_LIMIT_BYTES).read_until(b'\n', &mut line).map_err(|error| failed(&error))?;
+        if line.is_empty() {
+            let message = format!("there are {} tasks, counted from 0", self.text()?.lines().count());
+            return Err(Error::new(&codes::USAGE, message).with_value(index.to_string()).in_file(self.name()));
+        }
+        self.task(index, &line)
     }
 
     /// Every task.
     ///
     /// # Errors
-    /// `FRK-D044` with the line that is none.
+    /// `FRK-I...` when the list cannot be read, `FRK-D044` with the line that is no task.
     pub(super) fn all(&self) -> Result<Vec<Task>> {
-        self.text.lines().enumerate().map(|(index, line)| self.task(index, line)).collect()
+        self.text()?.lines().enumerate().map(|(index, line)| self.task(index, line.as_bytes())).collect()
     }
 
-    fn task(&self, index: usize, line: &str) -> Result<Task> {
-        let refused = |why: String| {
-            Error::new(&codes::BAD_TASKS, why).at_row(index as u64 + 1).in_file(self.path.display().to_string())
-        };
-        let task: Task = serde_json::from_str(line).map_err(|error| refused(error.to_string()))?;
+    fn text(&self) -> Result<String> {
+        let text = String::from_utf8(read_whole(&self.path, LIST_LIMIT_BYTES)?);
+        text.map_err(|error| Error::new(&codes::BAD_TASKS, error.to_string()).in_file(self.name()))
+    }
+
+    fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    fn task(&self, index: usize, line: &[u8]) -> Result<Task> {
+        let refused = |why: String| Error::new(&codes::BAD_TASKS, why).at_row(index as u64 + 1).in_file(self.name());
+        let task: Task = serde_json::from_slice(line).map_err(|error| refused(error.to_string()))?;
         if task.index == index {
             return Ok(task);
         }
