@@ -4,6 +4,9 @@
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 use crate::numerics::statistics::quantile;
 
+/// Shares (0..1) of the inertia behind the gear that are tried beside all of it.
+const ROTOR_SHARES: [f64; 2] = [0.0, 0.5];
+
 pub(super) struct LoadFriction;
 
 /// Whether the load varies enough to be told from a constant.
@@ -13,13 +16,29 @@ fn varied_load(state: &JointState) -> Option<&[f64]> {
     (spread(0.95) - spread(0.05) > 1e-6 * (1.0 + spread(0.95))).then_some(load)
 }
 
+/// What the load has beside gravity: the torque of the inertia. `None` where the load was recorded, or no rigid body is given.
+fn of_inertia(state: &JointState) -> Option<Vec<f64>> {
+    let (load, gravity) = (state.load.as_deref()?, state.gravity.as_deref()?);
+    let inertial = state.map(|i| load[i] - gravity[i]);
+    inertial.iter().any(|torque| *torque != 0.0).then_some(inertial)
+}
+
+/// The load where only a share (0..1) of the inertia is behind the gear: the rest is the rotor's, whose torque no tooth carries.
+fn carried(state: &JointState, share: f64) -> Option<Vec<f64>> {
+    let load = state.load.clone()?;
+    match of_inertia(state).filter(|_| share < 1.0) {
+        Some(inertial) => Some(state.map(|i| load[i] - (1.0 - share) * inertial[i])),
+        None => Some(load),
+    }
+}
+
 impl Hypothesis for LoadFriction {
     fn id(&self) -> EffectId {
         EffectId::LoadFriction
     }
 
     fn equation(&self) -> &'static str {
-        "dF = mu |tau_l|^m (1 + kappa exp(-(v/v_s)^2)) tanh(v/v_eps)"
+        "dF = mu |tau_l|^m (1 + kappa exp(-(v/v_s)^2)) tanh(v/v_eps), tau_l = gravity + s J a where it is the given body's"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
@@ -27,8 +46,11 @@ impl Hypothesis for LoadFriction {
             return Vec::new();
         }
         let top = state.top_speed();
-        let mut shapes = vec![vec![1.0, 0.0], vec![2.0, 0.0]];
-        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity]));
+        let mut shapes = vec![vec![1.0, 0.0, 1.0], vec![2.0, 0.0, 1.0]];
+        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity, 1.0]));
+        if of_inertia(state).is_some() {
+            shapes.extend(ROTOR_SHARES.map(|share| vec![1.0, 0.0, share]));
+        }
         shapes
     }
 
@@ -37,7 +59,7 @@ impl Hypothesis for LoadFriction {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(load) = &state.load else { return Vec::new() };
+        let Some(load) = carried(state, shape[2]) else { return Vec::new() };
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
         let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
         let mut columns = vec![state.map(|i| grow(load[i]) * state.sign[i])];
@@ -59,11 +81,20 @@ impl Hypothesis for LoadFriction {
         vec![
             ShapeName::new("load_exponent", "m", Dimension::One),
             ShapeName::new("load_stribeck_velocity", "v_s", Dimension::Velocity),
+            ShapeName::new("inertia_behind_gear", "s", Dimension::One),
         ]
     }
 
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
-        (index == 1 && shape[1] > 0.0).then(|| (0.005 * state.top_speed(), 0.3 * state.top_speed()))
+        match index {
+            1 if shape[1] > 0.0 => Some((0.005 * state.top_speed(), 0.3 * state.top_speed())),
+            2 if shape[2] < 1.0 => Some((0.0, 1.0)),
+            _ => None,
+        }
+    }
+
+    fn step(&self, _state: &JointState, index: usize, shape: &[f64]) -> f64 {
+        if index == 2 { 0.25 } else { 0.25 * shape[index].abs() }
     }
 }
 
@@ -114,5 +145,34 @@ impl Hypothesis for DriveBackdrive {
 
     fn shape_names(&self) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::measurement::signals::Signals;
+
+    #[test]
+    fn what_a_rotor_takes_to_accelerate_loads_no_gear() {
+        let period = 0.01;
+        let time: Vec<f64> = (0..3000).map(|i| period * f64::from(i)).collect();
+        let position: Vec<f64> = time.iter().map(|t| t.sin()).collect();
+        let mut state = Signals::without_gap(period, time, position.clone(), position).states();
+        state.gravity = Some(state.map(|i| 6.0 * state.position[i].sin()));
+        let body = |inertia: f64| state.map(|i| 6.0 * state.position[i].sin() + inertia * state.acceleration[i]);
+        let (all, link) = (body(2.0), body(0.6));
+        state.load = Some(all);
+        let shares = |state: &JointState| {
+            let mut shares: Vec<f64> = LoadFriction.shapes(state).iter().map(|shape| shape[2]).collect();
+            shares.dedup();
+            shares
+        };
+        assert_eq!(shares(&state), [1.0, 0.0, 0.5]);
+        let column = &LoadFriction.columns(&state, &[1.0, 0.0, 0.3])[0];
+        assert!((0..state.len()).all(|i| (column[i] - link[i].abs() * state.sign[i]).abs() < 1e-12));
+        // A load that was recorded is what the gear transmits.
+        state.gravity = state.load.clone();
+        assert_eq!(shares(&state), [1.0]);
     }
 }
