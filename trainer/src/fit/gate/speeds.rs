@@ -10,6 +10,10 @@ use crate::numerics::statistics::{mean, root_mean_square};
 const FEWEST_SPEEDS: usize = 6;
 /// Speeds of rows that lie no further apart than this share belong to one stroke; strokes of a test are further apart.
 const SAME_SPEED: f64 = 0.05;
+/// Fewest samples in a row at one speed: on the ramps between strokes fewer are within that share.
+const FEWEST_IN_A_ROW: usize = 10;
+/// Least share of the samples in motion that stand at a speed: of a swing a fifth does, about its fastest points.
+const LEAST_SHARE: f64 = 0.5;
 /// Stribeck velocities that are tried over the largest speed, from the narrowest that strokes show to one that is a straight line.
 const STRIBECK_SHARES: [f64; 24] = {
     let (mut shares, mut k, mut share) = ([0.0; 24], 0, 0.01);
@@ -27,11 +31,18 @@ struct Plateau {
     friction: f64,
 }
 
-/// What leaving out one speed at a time shows, in a sentence; `None` where the joint accelerates or has few speeds.
+/// What leaving out one speed at a time shows, in a sentence; `None` where the motion is none of strokes, or has few speeds.
 pub(in crate::fit) fn left_out(material: &Material) -> Option<String> {
-    let velocity = material.samples.velocity.as_deref().filter(|_| material.is_without_acceleration)?;
+    let velocity = material.samples.velocity.as_deref()?;
     let velocity: Vec<f64> = material.rows.iter().map(|row| velocity[*row]).collect();
-    let plateaus = plateaus(&velocity, &material.target_at_velocity());
+    let follows = |at: usize| material.rows[at] - material.rows[at - 1] <= material.stride;
+    let rows = at_one_speed(&velocity, follows);
+    if (rows.len() as f64) < LEAST_SHARE * velocity.len() as f64 {
+        return None;
+    }
+    let friction = material.target_at_velocity();
+    let of = |column: &[f64]| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
+    let plateaus = plateaus(&of(&velocity), &of(&friction));
     let speeds = plateaus.last().map_or(0, |last| last.speed + 1);
     if speeds < FEWEST_SPEEDS {
         return None;
@@ -45,6 +56,23 @@ pub(in crate::fit) fn left_out(material: &Material) -> Option<String> {
         significant(stribeck, 2),
         significant(straight, 2)
     ))
+}
+
+/// Rows at which the velocity stands for a while; `follows` says whether a row comes right after the one before it.
+fn at_one_speed(velocity: &[f64], follows: impl Fn(usize) -> bool) -> Vec<usize> {
+    let mut rows = Vec::new();
+    let mut start = 0;
+    for at in 1..=velocity.len() {
+        let stays = |at: usize| (velocity[at] - velocity[start]).abs() <= SAME_SPEED * velocity[start].abs();
+        if at < velocity.len() && follows(at) && stays(at) {
+            continue;
+        }
+        if at - start >= FEWEST_IN_A_ROW {
+            rows.extend(start..at);
+        }
+        start = at;
+    }
+    rows
 }
 
 /// Mean friction at each speed and direction, slow ones first.
@@ -110,6 +138,19 @@ mod tests {
         let plateaus = plateaus(&velocity, &torque);
         assert_eq!(plateaus.len(), 2 * speeds.len());
         [true, false].map(|is_stribeck| error(&plateaus, speeds.len(), is_stribeck))
+    }
+
+    #[test]
+    fn strokes_stand_at_their_speeds_and_a_swing_hardly_does() {
+        let strokes = |i: usize| [1.0, -1.0, 0.5, -0.5][i / 100 % 4] * (0.05 * (i % 100) as f64).min(1.0);
+        let swing = |i: usize| (0.02 * i as f64).sin();
+        let share = |velocity: &dyn Fn(usize) -> f64| {
+            let velocity: Vec<f64> = (0..4000).map(velocity).collect();
+            at_one_speed(&velocity, |_| true).len() as f64 / velocity.len() as f64
+        };
+        assert!(share(&strokes) > 0.75 && share(&swing) < 0.4, "{} {}", share(&strokes), share(&swing));
+        // Neighbours of which one was left out are not in a row.
+        assert!(at_one_speed(&[1.0; 30], |at| at % 5 != 0).is_empty());
     }
 
     #[test]
