@@ -2,11 +2,9 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
 use std::slice::from_ref;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use frikan_tests::command::trainer;
 use frikan_tests::paper::network::{learn_with, noisy_options};
 use frikan_tests::paper::{self, JOINTS};
 use frikan_tests::training_cost::{CELLS, EVALUATIONS, GROUP};
@@ -28,9 +26,6 @@ const STEPS: [usize; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 40, 60];
 const SAMPLES: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
 const LONG_STEPS: usize = 3;
 
-/// Durations of the recordings that the command fits, s; 1000 rows a second.
-const DURATIONS: [usize; 3] = [100, 1_000, 10_000];
-
 const HEAD: &str = "\
 # What training costs
 
@@ -44,7 +39,6 @@ fn main() -> Result<()> {
     append_evaluations(&mut page)?;
     append_agreements(&mut page);
     append_samples(&mut page);
-    append_recordings(&mut page)?;
     write_whole(Path::new(PAGE), page.as_bytes())?;
     print!("{page}");
     Ok(())
@@ -119,53 +113,4 @@ fn append_samples(page: &mut String) {
         let each = digits(1e9 * seconds / (count * steps) as f64);
         let _ = writeln!(page, "| {count} | {} | {each} | {} |", digits(seconds), digits(square.sqrt()));
     }
-}
-
-/// The whole command on ever longer recordings.
-fn append_recordings(page: &mut String) -> Result<()> {
-    page.push_str(
-        "\n## The command `trainer fit`\n\n\
-         Recordings of `trainer simulate` (ten columns, 1000 rows a second): reading, filtering, training, search for the\n\
-         formula, scoring on every row. The network and the search see at most 200 000 samples, so that beyond these only\n\
-         reading, filtering and scoring grow.\n\n\
-         | rows | MB of CSV | s | largest resident memory, MB | bytes a row |\n|---|---|---|---|---|\n",
-    );
-    let here = |error: std::io::Error| Error::from_io(Path::new("a temporary folder"), &error);
-    let folder = tempfile::tempdir().map_err(here)?;
-    std::fs::write(folder.path().join("joint.toml"), "").map_err(here)?;
-    for duration in DURATIONS {
-        let duration = duration.to_string();
-        let simulate = ["simulate", "joint.toml", "--duration", &duration, "--seed", "3", "-o", "long.csv", "--quiet"];
-        measured(folder.path(), &simulate).map_err(here)?;
-        let bytes = std::fs::metadata(folder.path().join("long.csv")).map_err(here)?.len();
-        let (seconds, memory) =
-            measured(folder.path(), &["fit", "long.csv", "-o", "long.frk", "--quiet"]).map_err(here)?;
-        let text = std::fs::read(folder.path().join("long.csv")).map_err(here)?;
-        let rows = text.iter().filter(|byte| **byte == b'\n').count() - 1;
-        let (megabytes, resident) = (bytes / 1_000_000, memory / 1_000_000);
-        let _ =
-            writeln!(page, "| {rows} | {megabytes} | {} | {resident} | {} |", digits(seconds), memory / rows as u64);
-    }
-    Ok(())
-}
-
-/// Seconds and largest resident memory, in bytes, of one run of the command.
-fn measured(folder: &Path, arguments: &[&str]) -> std::io::Result<(f64, u64)> {
-    let start = Instant::now();
-    let mut child = Command::new(trainer())
-        .current_dir(folder)
-        .args(arguments)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()?;
-    let status = format!("/proc/{}/status", child.id());
-    let mut memory = 0;
-    while child.try_wait()?.is_none() {
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let peak = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kilobytes: Option<u64> = peak.and_then(|peak| peak.trim().trim_end_matches(" kB").parse().ok());
-        memory = memory.max(1024 * kilobytes.unwrap_or(0));
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    Ok((start.elapsed().as_secs_f64(), memory))
 }

@@ -8,7 +8,7 @@ use super::model::HostModel;
 use crate::error::{Error, Result, codes};
 use crate::recording::Recording;
 use crate::samples::blocks::rests;
-use crate::samples::{Preparation, Samples, prepare_every_row};
+use crate::samples::{Preparation, Samples, prepare_every_row_of};
 
 /// A prediction, one value a sample, in the unit of the model's output.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,14 +126,18 @@ fn rigid_body(body: &RigidBody, samples: &Samples) -> Result<Vec<f64>> {
 /// model leaves least of the recorded actuator; without one, those that keep the noise of the motion small.
 ///
 /// # Errors
-/// As [`Preparation::plan_prediction`] and [`prepare_every_row`].
+/// As [`Preparation::plan_prediction`] and [`prepare_every_row`](crate::samples::prepare_every_row).
 pub fn every_row(model: &HostModel, recording: &Recording) -> Result<Samples> {
     let residual = |samples: &Samples| {
         let recorded = samples.recorded.as_deref().ok_or_else(nothing_recorded)?;
         let predicted = predict(model, samples)?.total();
         Ok(recorded.iter().zip(predicted).map(|(measured, total)| measured - total).collect())
     };
-    prepare_every_row(recording, &Preparation::plan_prediction(recording, &residual)?)
+    let is_load = |name: &str| name == "load" || name == "load_torque";
+    let reads =
+        |name: &str, quantity: &Quantity| quantity.name() == name || *quantity == Quantity::Load && is_load(name);
+    let is_read = |name: &str| model.inputs.iter().any(|input| reads(name, &input.quantity));
+    prepare_every_row_of(recording, &Preparation::plan_prediction(recording, &residual)?, &is_read)
 }
 
 pub(super) fn nothing_recorded() -> Error {

@@ -12,7 +12,7 @@ use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
 use super::data::rigid;
 use super::gate::confounded::Identified;
-use super::gate::{fixed, withheld};
+use super::gate::{bends, fixed, withheld};
 use super::integers::{self, of_velocity};
 use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
@@ -121,10 +121,13 @@ fn fit_once(
     let by_expression = verdict.form != Form::Network;
     let identified = Identified::by(&material);
     let band = training.band(&refitted, correlation_length)?;
-    let parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
-    let sound = soundness(&material, &fit, &learnt, verdict.form, violation).and(|| {
-        withheld(&material, &identified, trials[verdict.form.place()].as_ref(), &parameters, uncertain_share(&band))
-    });
+    let mut parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
+    let trial = trials[verdict.form.place()].as_ref();
+    let mut sound = soundness(&material, &fit, &learnt, verdict.form, violation)
+        .and(|| withheld(&material, &identified, trial, &parameters, uncertain_share(&band)));
+    if let Some(bending) = (sound != Soundness::Sound).then(|| bends(&material, trial)).flatten() {
+        (parameters, sound) = (bending.parameters, Soundness::NotIdentifiable(bending.sentence));
+    }
     Ok(Outcome {
         joint: name,
         axis: material.samples.axis,

@@ -6,6 +6,9 @@ use crate::numerics::statistics::quantile;
 
 pub(super) struct LoadFriction;
 
+/// Shares (0..1) of the inertia behind the gear that are tried beside all of it.
+const ROTOR_SHARES: [f64; 2] = [0.0, 0.5];
+
 /// Shares of an actuator's torque that its gear turns into friction where that is tried, refined afterwards: from a belt to a worm.
 const LOSSES: [f64; 3] = [0.1, 0.2, 0.4];
 
@@ -16,13 +19,29 @@ fn varied_load(state: &JointState) -> Option<&[f64]> {
     (spread(0.95) - spread(0.05) > 1e-6 * (1.0 + spread(0.95))).then_some(load)
 }
 
+/// What the load has beside gravity: the torque of the inertia. `None` where the load was recorded, or no rigid body is given.
+fn of_inertia(state: &JointState) -> Option<Vec<f64>> {
+    let (load, gravity) = (state.load.as_deref()?, state.gravity.as_deref()?);
+    let inertial = state.map(|i| load[i] - gravity[i]);
+    inertial.iter().any(|torque| *torque != 0.0).then_some(inertial)
+}
+
+/// The load where only a share (0..1) of the inertia is behind the gear: the rest is the rotor's, whose torque no tooth carries.
+fn carried(state: &JointState, share: f64) -> Option<Vec<f64>> {
+    let load = state.load.clone()?;
+    match of_inertia(state).filter(|_| share < 1.0) {
+        Some(inertial) => Some(state.map(|i| load[i] - (1.0 - share) * inertial[i])),
+        None => Some(load),
+    }
+}
+
 impl Hypothesis for LoadFriction {
     fn id(&self) -> EffectId {
         EffectId::LoadFriction
     }
 
     fn equation(&self) -> &'static str {
-        "dF = mu |tau_l|^m (1 + kappa exp(-(v/v_s)^2)) tanh(v/v_eps)"
+        "dF = mu |tau_l|^m (1 + kappa exp(-(v/v_s)^2)) tanh(v/v_eps), tau_l = gravity + s J a where it is the given body's"
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
@@ -30,10 +49,13 @@ impl Hypothesis for LoadFriction {
             return Vec::new();
         }
         let top = state.top_speed();
-        let mut shapes = vec![vec![1.0, 0.0], vec![2.0, 0.0]];
-        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity]));
+        let mut shapes = vec![vec![1.0, 0.0, 1.0], vec![2.0, 0.0, 1.0]];
+        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity, 1.0]));
+        if of_inertia(state).is_some() {
+            shapes.extend(ROTOR_SHARES.map(|share| vec![1.0, 0.0, share]));
+        }
         if state.commanded.is_some() {
-            shapes.extend(LOSSES.map(|loss| vec![1.0, 0.0, loss]));
+            shapes.extend(LOSSES.map(|loss| vec![1.0, 0.0, 1.0, loss]));
         }
         shapes
     }
@@ -43,11 +65,11 @@ impl Hypothesis for LoadFriction {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let Some(load) = &state.load else { return Vec::new() };
+        let Some(load) = carried(state, shape[2]) else { return Vec::new() };
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
         let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
         // Friction of the torque that the actuator puts in is part of that torque: driving adds to the load, backdriving takes from it.
-        let loss = shape.get(2).copied().unwrap_or(0.0);
+        let loss = shape.get(3).copied().unwrap_or(0.0);
         let put_in = |i: usize| load[i] / (1.0 - loss * (load[i] * state.velocity[i]).signum());
         let mut columns = vec![state.map(|i| grow(put_in(i)) * state.sign[i])];
         if shape[1] > 0.0 {
@@ -68,15 +90,22 @@ impl Hypothesis for LoadFriction {
         vec![
             ShapeName::new("load_exponent", "m", Dimension::One),
             ShapeName::new("load_stribeck_velocity", "v_s", Dimension::Velocity),
+            ShapeName::new("inertia_behind_gear", "s", Dimension::One),
             ShapeName::new("variant", "variant", Dimension::One),
         ]
     }
 
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
-        if index == 2 {
-            return Some((0.5 * LOSSES[0], 1.5 * LOSSES[LOSSES.len() - 1]));
+        match index {
+            1 if shape[1] > 0.0 => Some((0.005 * state.top_speed(), 0.3 * state.top_speed())),
+            2 if shape[2] < 1.0 => Some((0.0, 1.0)),
+            3 => Some((0.5 * LOSSES[0], 1.5 * LOSSES[LOSSES.len() - 1])),
+            _ => None,
         }
-        (index == 1 && shape[1] > 0.0).then(|| (0.005 * state.top_speed(), 0.3 * state.top_speed()))
+    }
+
+    fn step(&self, _state: &JointState, index: usize, shape: &[f64]) -> f64 {
+        if index == 2 { 0.25 } else { 0.25 * shape[index].abs() }
     }
 }
 
@@ -127,5 +156,34 @@ impl Hypothesis for DriveBackdrive {
 
     fn shape_names(&self, _shape: &[f64]) -> Vec<ShapeName> {
         vec![ShapeName::new("variant", "variant", Dimension::One)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::measurement::signals::Signals;
+
+    #[test]
+    fn what_a_rotor_takes_to_accelerate_loads_no_gear() {
+        let period = 0.01;
+        let time: Vec<f64> = (0..3000).map(|i| period * f64::from(i)).collect();
+        let position: Vec<f64> = time.iter().map(|t| t.sin()).collect();
+        let mut state = Signals::without_gap(period, time, position.clone(), position).states();
+        state.gravity = Some(state.map(|i| 6.0 * state.position[i].sin()));
+        let body = |inertia: f64| state.map(|i| 6.0 * state.position[i].sin() + inertia * state.acceleration[i]);
+        let (all, link) = (body(2.0), body(0.6));
+        state.load = Some(all);
+        let shares = |state: &JointState| {
+            let mut shares: Vec<f64> = LoadFriction.shapes(state).iter().map(|shape| shape[2]).collect();
+            shares.dedup();
+            shares
+        };
+        assert_eq!(shares(&state), [1.0, 0.0, 0.5]);
+        let column = &LoadFriction.columns(&state, &[1.0, 0.0, 0.3])[0];
+        assert!((0..state.len()).all(|i| (column[i] - link[i].abs() * state.sign[i]).abs() < 1e-12));
+        // A load that was recorded is what the gear transmits.
+        state.gravity = state.load.clone();
+        assert_eq!(shares(&state), [1.0]);
     }
 }

@@ -5,7 +5,7 @@ use jiff::civil::DateTime;
 use jiff::tz::Offset;
 
 use super::quantity::{Quantity, Unit};
-use super::table::RawTable;
+use super::table::{EXACT, RawTable};
 
 /// How the cells of the time column are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ const NAMES: [&str; 12] = [
 const EPOCH_DIGITS: [(usize, &str); 4] = [(10, "s"), (13, "ms"), (16, "us"), (19, "ns")];
 
 /// Stamps from here on are counted from the first one: a double no longer holds nanoseconds, s.
-pub(super) const LONG_AGO_S: f64 = (1_u64 << 53) as f64 * 1e-9;
+pub(super) const LONG_AGO_S: f64 = EXACT;
 
 /// The time column among columns whose names say no unit: a pair of seconds and nanoseconds, a calendar, or an epoch.
 pub(super) fn self_told(raw: &RawTable) -> Option<SelfTold> {
@@ -86,14 +86,14 @@ pub(super) fn reading_of(raw: &RawTable, index: usize) -> Reading {
 
 /// The time of row `row` in billionths of the column's unit; `None` where it cannot be read.
 pub(super) fn ticks(raw: &RawTable, row: usize, index: usize, reading: Reading) -> Option<i128> {
-    let cell = |index| raw.table.cell(row, index);
+    let number = |index: usize| match raw.table.kept(row, index) {
+        Some(cell) => decimal(cell, raw.decimal_comma),
+        None => Some(billionths(raw.numbers[index].values[row])).filter(|_| raw.numbers[index].values[row].is_finite()),
+    };
     match reading {
-        Reading::Number => decimal(cell(index), raw.decimal_comma),
-        Reading::Calendar => calendar(cell(index)),
-        Reading::WithNanoseconds(other) => {
-            let nanoseconds = decimal(cell(other), raw.decimal_comma)? / 1_000_000_000;
-            Some(decimal(cell(index), raw.decimal_comma)? + nanoseconds)
-        }
+        Reading::Number => number(index),
+        Reading::Calendar => calendar(raw.table.cell(row, index)),
+        Reading::WithNanoseconds(other) => Some(number(index)? + number(other)? / 1_000_000_000),
     }
 }
 
@@ -163,6 +163,12 @@ fn decimal(cell: &str, decimal_comma: bool) -> Option<i128> {
     let ten = 10_i128.checked_pow(power.unsigned_abs());
     let scaled = if power >= 0 { value.checked_mul(ten?)? } else { ten.map_or(0, |ten| value / ten) };
     Some(if negative { -scaled } else { scaled })
+}
+
+/// A finite number in billionths, as far as it holds them.
+fn billionths(number: f64) -> i128 {
+    let whole = number.trunc();
+    whole as i128 * 1_000_000_000 + ((number - whole) * 1e9).round() as i128
 }
 
 /// A calendar time in nanoseconds since 1970.

@@ -21,31 +21,30 @@ pub(super) struct Converted {
     pub(super) notes: Vec<String>,
 }
 
-/// Numbers as they stand in the file; not finite where the cell is empty or says so.
-#[derive(Default)]
-struct Numbers {
-    values: Vec<f64>,
-    missing: usize,
-    is_text: bool,
-}
-
 /// Reads the numbers of every column.
 ///
 /// # Errors
 /// `FRK-D005` and `FRK-D006` with row, column and value where a standard quantity is no number; `FRK-D014` for a missing parameter.
-pub(super) fn convert(raw: &RawTable, assigned: &Assigned, joint: &Joint) -> Result<Converted> {
+pub(super) fn convert(raw: &mut RawTable, assigned: &Assigned, joint: &Joint) -> Result<Converted> {
     let columns = &assigned.columns;
     let rows = raw.table.len();
     let is_time = |column: &Assignment| column.known.is_some_and(|known| known.quantity == Quantity::Time);
     let by_ticks = assigned.reading != Reading::Number;
-    let (numbers, refused) = numbers(raw, columns, |column| by_ticks && is_time(column))?;
-    let known = || columns.iter().zip(&numbers).filter(|(column, _)| column.known.is_some());
-    let is_merged = known().any(|(_, numbers)| numbers.missing as f64 >= MERGED_SHARE * rows as f64);
-    let gap_in_clock = known().any(|(column, numbers)| is_time(column) && numbers.missing > 0);
+    let told_by_ticks = |column: &Assignment| by_ticks && is_time(column);
+    let refused = refused(raw, columns, told_by_ticks)?;
+    let known = || columns.iter().filter(|column| column.known.is_some() && !told_by_ticks(column));
+    let missing = |column: &Assignment| raw.numbers[column.index].missing;
+    let is_merged = known().any(|column| missing(column) as f64 >= MERGED_SHARE * rows as f64);
+    let gap_in_clock = known().any(|column| is_time(column) && missing(column) > 0);
     let has_clock = columns.iter().any(is_time);
     if let Some(error) = refused.filter(|_| !is_merged || gap_in_clock || !has_clock) {
         return Err(error);
     }
+    let mut long_clock = match columns.iter().find(|column| is_time(column)) {
+        Some(column) => long_clock(raw, column, assigned.reading, joint)?,
+        None => None,
+    };
+    let numbers = std::mem::take(&mut raw.numbers);
     let mut converted = Converted { channels: Vec::new(), rows: None, notes: Vec::new() };
     for (column, numbers) in columns.iter().zip(numbers) {
         let name = &raw.table.header()[column.index];
@@ -70,8 +69,8 @@ pub(super) fn convert(raw: &RawTable, assigned: &Assigned, joint: &Joint) -> Res
         for value in &mut values {
             *value = *value * factor + known.unit.offset;
         }
-        if is_time(column) {
-            let relative = take_long_clock(&mut values, raw, column.index, assigned.reading, factor)?;
+        if let Some((seconds, relative)) = is_time(column).then(|| long_clock.take()).flatten() {
+            values = seconds;
             converted.notes.extend(relative.then(|| "the time is counted from the first row".to_owned()));
         }
         converted.channels.push(Channel {
@@ -95,64 +94,44 @@ pub(super) fn convert(raw: &RawTable, assigned: &Assigned, joint: &Joint) -> Res
     Ok(converted)
 }
 
-/// The numbers of the columns that are not to be passed over, and the first cell of a known one that is missing.
-fn numbers(
-    raw: &RawTable,
-    columns: &[Assignment],
-    pass_over: impl Fn(&Assignment) -> bool,
-) -> Result<(Vec<Numbers>, Option<Error>)> {
-    let mut numbers: Vec<Numbers> = Vec::new();
-    numbers.resize_with(columns.len(), Numbers::default);
-    let passed: Vec<bool> = columns.iter().map(pass_over).collect();
-    let mut first = None;
-    for row in 0..raw.table.len() {
-        for (index, field) in raw.table.row(row).enumerate() {
-            let (column, list) = (&columns[index], &mut numbers[index]);
-            if list.is_text {
-                continue;
-            }
-            if passed[index] {
-                list.values.push(0.0);
-                continue;
-            }
-            match raw.number(field, row, &raw.table.header()[index]) {
-                Ok(number) => list.values.push(number),
-                Err(error) => {
-                    let missing = field.is_empty() || error.code() == &codes::NOT_FINITE;
-                    list.is_text = !missing;
-                    list.missing += usize::from(missing);
-                    list.values.push(f64::NAN);
-                    if column.known.is_some() {
-                        let first = first.get_or_insert(error);
-                        if !missing {
-                            return Err(first.clone());
-                        }
-                    }
-                }
-            }
-        }
+/// The first cell of a known column that is missing; an error where one is text. Columns to be passed over may hold anything.
+fn refused(raw: &RawTable, columns: &[Assignment], pass_over: impl Fn(&Assignment) -> bool) -> Result<Option<Error>> {
+    let known = || columns.iter().filter(|column| column.known.is_some() && !pass_over(column));
+    let numbers = |column: &Assignment| &raw.numbers[column.index];
+    let first = known().filter_map(|column| numbers(column).refused.as_ref().map(|(row, text)| (*row, column, text)));
+    let first = first.min_by_key(|(row, column, _)| (*row, column.index));
+    let error = first.map(|(row, column, text)| raw.refusal(text, row, &raw.table.header()[column.index]));
+    match error {
+        Some(error) if known().any(|column| numbers(column).is_text) => Err(error),
+        other => Ok(other),
     }
-    Ok((numbers, first))
 }
 
-/// Puts the time in place that a double would have lost digits of, counted from the first row, or that is no plain number.
-fn take_long_clock(values: &mut Vec<f64>, raw: &RawTable, index: usize, reading: Reading, factor: f64) -> Result<bool> {
-    if reading == Reading::Number && values.first().is_none_or(|first| first.abs() < clock::LONG_AGO_S) {
-        return Ok(false);
+/// The time (s) where a double would have lost digits of it, counted from the first row, or where it is no plain number; whether it is so counted.
+fn long_clock(
+    raw: &RawTable,
+    column: &Assignment,
+    reading: Reading,
+    joint: &Joint,
+) -> Result<Option<(Vec<f64>, bool)>> {
+    let (index, name) = (column.index, &raw.table.header()[column.index]);
+    let Some(known) = column.known else { return Ok(None) };
+    let factor = joint_side_factor(&known, name, joint)?;
+    let first = raw.numbers[index].values.first();
+    if reading == Reading::Number && first.is_none_or(|first| (first * factor).abs() < clock::LONG_AGO_S) {
+        return Ok(None);
     }
     let mut ticks = Vec::with_capacity(raw.table.len());
     for row in 0..raw.table.len() {
         match clock::ticks(raw, row, index, reading) {
             Some(tick) => ticks.push(tick),
             // A number that no clock counts to; the checks will say so.
-            None if reading == Reading::Number => return Ok(false),
+            None if reading == Reading::Number => return Ok(None),
             None => {
                 let error = Error::new(&codes::NOT_A_NUMBER, "this is not a time").at_row(raw.table.line(row));
-                return Err(error.in_column(&raw.table.header()[index]).with_value(raw.table.cell(row, index)));
+                return Err(error.in_column(name).with_value(raw.table.cell(row, index)));
             }
         }
     }
-    let (seconds, from_first) = clock::seconds(&ticks, factor, reading);
-    *values = seconds;
-    Ok(from_first)
+    Ok(Some(clock::seconds(&ticks, factor, reading)))
 }

@@ -33,7 +33,7 @@ pub use text::RECORD_LIMIT_BYTES;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use source::Fingerprinted;
-use table::RawTable;
+use table::{Keep, RawTable};
 
 /// Fewest rows of data that a recording may have; below it no filter and no split makes sense.
 pub const MINIMUM_ROWS: usize = 20;
@@ -51,7 +51,7 @@ pub struct Recording {
     pub content_hash: u64,
     /// Facts about clock, resolution and clipping, not yet judged.
     pub health: Health,
-    /// The rows as text.
+    /// The rows as text, as far as it was kept.
     pub table: TextTable,
     /// Columns that nearly have the name of a quantity that no column has, with that name.
     pub nearly_named: Vec<(String, String)>,
@@ -90,6 +90,18 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
     Ok(recording)
 }
 
+/// The same without the text of its rows, which a large file cannot afford: 8 B a number.
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn load_numbers(path: &Path, joint: &Joint) -> Result<Recording> {
+    let (file, label) = names_of(path);
+    let (raw, fingerprint) = read(source::open(path)?, Keep::Numbers).map_err(|error| error.in_file(&file))?;
+    let mut recording = interpret(&label, raw, fingerprint, joint).map_err(|error| error.in_file(&file))?;
+    recording.file = file;
+    Ok(recording)
+}
+
 /// A path as it is shown, and the name of its file.
 fn names_of(path: &Path) -> (String, String) {
     if path == Path::new("-") {
@@ -117,7 +129,7 @@ pub fn load_joints(path: &Path, joints: &[Joint]) -> Result<Vec<Recording>> {
 /// # Errors
 /// As [`parse`]; `FRK-D013` where no column is the position of a joint.
 pub fn parse_joints(label: &str, source: impl std::io::Read, joints: &[Joint]) -> Result<Vec<Recording>> {
-    let (raw, fingerprint) = read(source)?;
+    let (raw, fingerprint) = read(source, Keep::Numbers)?;
     let parts = of_joints::take_apart(&raw, joints)?;
     parts.into_iter().map(|(part, joint)| interpret(label, part, fingerprint, &joint)).collect()
 }
@@ -127,7 +139,7 @@ pub fn parse_joints(label: &str, source: impl std::io::Read, joints: &[Joint]) -
 /// # Errors
 /// `FRK-D...` with row, column and value; `FRK-I001` when the stream itself fails.
 pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<Recording> {
-    let (raw, fingerprint) = read(source)?;
+    let (raw, fingerprint) = read(source, Keep::Text)?;
     interpret(label, raw, fingerprint, joint)
 }
 
@@ -137,7 +149,7 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
 /// As [`load`], where the file cannot be read even so.
 pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
     let (file, label) = names_of(path);
-    let (raw, fingerprint) = read(source::open(path)?).map_err(|error| error.in_file(&file))?;
+    let (raw, fingerprint) = read(source::open(path)?, Keep::Numbers).map_err(|error| error.in_file(&file))?;
     let stem = Path::new(&label).file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     let proposal = guess::propose(&raw, &stem);
     let recording = Joint::parse(&proposal.toml).and_then(|joint| interpret(&label, raw, fingerprint, &joint));
@@ -147,16 +159,18 @@ pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
 }
 
 /// The table in a stream of bytes, long enough, and the fingerprint of the stream.
-fn read(source: impl std::io::Read) -> Result<(RawTable, u64)> {
+fn read(source: impl std::io::Read, keep: Keep) -> Result<(RawTable, u64)> {
     let mut bytes = Fingerprinted::new(source);
-    let raw = source::decompressed(&mut bytes).map_err(|error| source::failed(&error)).and_then(formats::read)?;
+    let raw = source::decompressed(&mut bytes)
+        .map_err(|error| source::failed(&error))
+        .and_then(|source| formats::read(source, keep))?;
     refuse_short(&raw.table)?;
     Ok((raw, bytes.fingerprint()))
 }
 
-fn interpret(label: &str, raw: RawTable, fingerprint: u64, joint: &Joint) -> Result<Recording> {
+fn interpret(label: &str, mut raw: RawTable, fingerprint: u64, joint: &Joint) -> Result<Recording> {
     let assigned = columns::assign(&raw, joint)?;
-    let converted = convert::convert(&raw, &assigned, joint)?;
+    let converted = convert::convert(&mut raw, &assigned, joint)?;
     let (channels, mut table) = (converted.channels, raw.table);
     if let Some(kept) = &converted.rows {
         table = table.with_rows(kept);
@@ -197,7 +211,8 @@ fn refuse_backward_time(time: &Channel, table: &TextTable) -> Result<()> {
             let error = Error::new(&codes::TIME_NOT_INCREASING, "time has to increase from row to row")
                 .at_row(table.line(before + 1))
                 .in_column(&time.column);
-            Err(error.with_value(table.row(before + 1).nth(column).unwrap_or("")))
+            let number = || (time.values[before + 1] / time.si_per_column_unit).to_string();
+            Err(error.with_value(table.kept(before + 1, column).map_or_else(number, str::to_owned)))
         }
     }
 }

@@ -1,32 +1,69 @@
-//! The text of a recording as it was, so that a command can copy its columns unchanged; numbers of other formats in their shortest text.
+//! The text of a recording as it was, so that a command can copy its columns unchanged, with the numbers of its
+//! columns; numbers of other formats in their shortest text.
 
 use std::collections::HashSet;
 
 use super::vectors::{self, Expansion};
 use crate::error::{Error, Result, codes};
 
-/// Header and rows of a recording as text, in one allocation.
+/// What is kept of the text of a recording beside its numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Keep {
+    /// All of it, so that it can be written again.
+    #[default]
+    Text,
+    /// That of the first rows, and of columns whose numbers a double does not hold to the last digit.
+    Numbers,
+}
+
+/// Rows at the start whose text is kept in any case: layout and clock are told from them.
+const FIRST_ROWS: usize = 200;
+
+/// Numbers below this are held to their billionths by a double.
+pub(super) const EXACT: f64 = (1_u64 << 53) as f64 * 1e-9;
+
+/// Header and rows of a recording as text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextTable {
     header: Vec<String>,
     header_line: u64,
+    columns: Vec<Cells>,
+    rows: usize,
+    /// Rows that do not stand on the line behind that of the row before, with their lines.
+    jumps: Vec<(usize, u64)>,
+}
+
+/// The cells of a column from the first row on, in one allocation.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Cells {
     text: String,
     ends: Vec<usize>,
-    lines: Vec<u64>,
+}
+
+impl Cells {
+    fn push(&mut self, cell: &str) {
+        self.text.push_str(cell);
+        self.ends.push(self.text.len());
+    }
+
+    fn get(&self, row: usize) -> Option<&str> {
+        let end = *self.ends.get(row)?;
+        let start = if row == 0 { 0 } else { self.ends[row - 1] };
+        Some(&self.text[start..end])
+    }
 }
 
 impl TextTable {
     fn new(header: Vec<String>, header_line: u64) -> Self {
-        Self { header, header_line, ..Self::default() }
+        let columns = vec![Cells::default(); header.len()];
+        Self { header, header_line, columns, ..Self::default() }
     }
 
     fn begin_row(&mut self, line: u64) {
-        self.lines.push(line);
-    }
-
-    fn push_field(&mut self, field: &str) {
-        self.text.push_str(field);
-        self.ends.push(self.text.len());
+        if self.rows == 0 || self.line(self.rows) != line {
+            self.jumps.push((self.rows, line));
+        }
+        self.rows += 1;
     }
 
     /// Line number in the file of the header, 1 where the format has none.
@@ -44,57 +81,83 @@ impl TextTable {
     /// Number of rows of data.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.lines.len()
+        self.rows
     }
 
     /// Whether there is no row of data.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lines.is_empty()
+        self.rows == 0
     }
 
     /// Line number in the file of row `index` (counted from zero), the header being line 1.
     #[must_use]
     pub fn line(&self, index: usize) -> u64 {
-        self.lines[index]
+        let jump = self.jumps[self.jumps.partition_point(|(row, _)| *row <= index) - 1];
+        jump.1 + (index - jump.0) as u64
     }
 
-    /// The field of a row in a column, both counted from zero.
+    /// The field of a row in a column, both counted from zero; empty where its text was not kept.
     #[must_use]
     pub fn cell(&self, row: usize, column: usize) -> &str {
-        self.field(row * self.header.len() + column)
+        self.kept(row, column).unwrap_or_default()
+    }
+
+    /// The same; `None` where its text was not kept.
+    pub(super) fn kept(&self, row: usize, column: usize) -> Option<&str> {
+        self.columns[column].get(row)
     }
 
     /// The fields of row `index`, counted from zero.
     pub fn row(&self, index: usize) -> impl Iterator<Item = &str> {
-        let width = self.header.len();
-        (index * width..(index + 1) * width).map(|field| self.field(field))
+        self.columns.iter().map(move |cells| cells.get(index).unwrap_or_default())
     }
 
     /// The same columns with the rows `kept` only (increasing indices); a row keeps its line number.
     pub(super) fn with_rows(&self, kept: &[usize]) -> Self {
         let mut table = Self::new(self.header.clone(), self.header_line);
-        for row in kept {
-            table.begin_row(self.line(*row));
-            self.row(*row).for_each(|field| table.push_field(field));
+        kept.iter().for_each(|row| table.begin_row(self.line(*row)));
+        for (cells, own) in table.columns.iter_mut().zip(&self.columns) {
+            kept.iter().map_while(|row| own.get(*row)).for_each(|cell| cells.push(cell));
         }
         table
     }
 
     /// The same rows with the columns `kept` only (increasing indices).
     fn with_columns(&self, kept: &[usize]) -> Self {
-        let header = kept.iter().map(|column| self.header[*column].clone()).collect();
-        let mut table = Self::new(header, self.header_line);
-        for row in 0..self.len() {
-            table.begin_row(self.line(row));
-            kept.iter().for_each(|column| table.push_field(self.cell(row, *column)));
+        Self {
+            header: kept.iter().map(|column| self.header[*column].clone()).collect(),
+            header_line: self.header_line,
+            columns: kept.iter().map(|column| self.columns[*column].clone()).collect(),
+            rows: self.rows,
+            jumps: self.jumps.clone(),
         }
-        table
     }
+}
 
-    fn field(&self, index: usize) -> &str {
-        let start = if index == 0 { 0 } else { self.ends[index - 1] };
-        &self.text[start..self.ends[index]]
+/// The numbers of a column as they stand in the file; not finite where a cell is empty, says so, or is text.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Numbers {
+    pub(super) values: Vec<f64>,
+    /// Cells that are empty or not finite.
+    pub(super) missing: usize,
+    /// Whether a cell is neither a number nor missing.
+    pub(super) is_text: bool,
+    /// Row and text of the first cell that is no finite number.
+    pub(super) refused: Option<(usize, String)>,
+}
+
+impl Numbers {
+    fn push(&mut self, cell: &str, decimal_comma: bool) {
+        let number = number(cell, decimal_comma).ok();
+        let finite = number.filter(|value| value.is_finite());
+        if finite.is_none() {
+            let missing = cell.is_empty() || number.is_some();
+            self.missing += usize::from(missing);
+            self.is_text |= !missing;
+            self.refused.get_or_insert_with(|| (self.values.len(), cell.to_owned()));
+        }
+        self.values.push(finite.unwrap_or(f64::NAN));
     }
 }
 
@@ -102,6 +165,8 @@ impl TextTable {
 #[derive(Debug)]
 pub(super) struct RawTable {
     pub(super) table: TextTable,
+    /// One for each column.
+    pub(super) numbers: Vec<Numbers>,
     /// Cells of a row of units under the header, one a column; empty where there is no such row.
     pub(super) units: Vec<String>,
     pub(super) decimal_comma: bool,
@@ -109,21 +174,23 @@ pub(super) struct RawTable {
     pub(super) notes: Vec<String>,
 }
 
+fn number(field: &str, decimal_comma: bool) -> std::result::Result<f64, std::num::ParseFloatError> {
+    match field.parse::<f64>() {
+        Err(_) if decimal_comma && !field.contains('.') => field.replacen(',', ".", 1).parse(),
+        other => other,
+    }
+}
+
 impl RawTable {
-    /// Reads a field as a finite number.
-    pub(super) fn number(&self, field: &str, row: usize, column: &str) -> Result<f64> {
+    /// The error of a field that is no finite number.
+    pub(super) fn refusal(&self, field: &str, row: usize, column: &str) -> Error {
         let here = |code, message: &str| {
             Error::new(code, message).at_row(self.table.line(row)).in_column(column).with_value(field)
         };
-        let parsed = match field.parse::<f64>() {
-            Err(_) if self.decimal_comma && !field.contains('.') => field.replacen(',', ".", 1).parse(),
-            other => other,
-        };
-        match parsed {
-            Ok(number) if number.is_finite() => Ok(number),
-            Ok(_) => Err(here(&codes::NOT_FINITE, "this value is not finite")),
-            Err(_) if field.is_empty() => Err(here(&codes::NOT_A_NUMBER, "this field is empty")),
-            Err(_) => Err(here(&codes::NOT_A_NUMBER, "this is not a number")),
+        match number(field, self.decimal_comma) {
+            Ok(_) => here(&codes::NOT_FINITE, "this value is not finite"),
+            Err(_) if field.is_empty() => here(&codes::NOT_A_NUMBER, "this field is empty"),
+            Err(_) => here(&codes::NOT_A_NUMBER, "this is not a number"),
         }
     }
 
@@ -133,6 +200,7 @@ impl RawTable {
             if self.units.is_empty() { Vec::new() } else { kept.iter().map(|c| self.units[*c].clone()).collect() };
         Self {
             table: self.table.with_columns(kept),
+            numbers: kept.iter().map(|c| self.numbers[*c].clone()).collect(),
             units,
             decimal_comma: self.decimal_comma,
             notes: self.notes.clone(),
@@ -151,6 +219,9 @@ pub(super) struct TableBuilder {
     file_header: Vec<String>,
     expansion: Expansion,
     table: TextTable,
+    numbers: Vec<Numbers>,
+    decimal_comma: bool,
+    keep: Keep,
 }
 
 impl TableBuilder {
@@ -171,7 +242,24 @@ impl TableBuilder {
                 .at_row(header_line)
                 .in_column(name.as_str()));
         }
-        Ok(Self { file_header: header, expansion, table: TextTable::new(names, header_line) })
+        let (numbers, table) = (vec![Numbers::default(); names.len()], TextTable::new(names, header_line));
+        Ok(Self { file_header: header, expansion, table, numbers, decimal_comma: false, keep: Keep::Text })
+    }
+
+    /// The same for numbers with a comma for their point or without, of whose text only so much is kept.
+    pub(super) fn reading(self, decimal_comma: bool, keep: Keep) -> Self {
+        Self { decimal_comma, keep, ..self }
+    }
+
+    /// Adds a cell to the row that was begun last.
+    fn push_field(&mut self, column: usize, cell: &str) {
+        let (numbers, row) = (&mut self.numbers[column], self.table.len() - 1);
+        numbers.push(cell, self.decimal_comma);
+        // A double holds the billionths of numbers below that; NaN, where the first cell is no number, is not below anything.
+        let is_exact = numbers.values[0].abs() < EXACT;
+        if self.keep == Keep::Text || row < FIRST_ROWS || !is_exact {
+            self.table.columns[column].push(cell);
+        }
     }
 
     /// Adds a row that has as many cells as the header.
@@ -180,25 +268,28 @@ impl TableBuilder {
     /// `FRK-D007` where a list is shorter or longer than that of the first row.
     pub(super) fn push<'a>(&mut self, line: u64, cells: impl Iterator<Item = &'a str>) -> Result<()> {
         self.table.begin_row(line);
+        let mut column = 0;
         for (index, cell) in cells.enumerate() {
             let Some(length) = self.expansion.length(index) else {
-                self.table.push_field(cell);
+                self.push_field(column, cell);
+                column += 1;
                 continue;
             };
             let mut count = 0;
             for element in vectors::elements(cell).into_iter().flatten() {
-                count += 1;
-                if count <= length {
-                    self.table.push_field(element);
+                if count < length {
+                    self.push_field(column + count, element);
                 }
+                count += 1;
             }
             if cell.is_empty() {
-                (0..length).for_each(|_| self.table.push_field(""));
+                (0..length).for_each(|element| self.push_field(column + element, ""));
             } else if count != length {
                 let message = format!("this list has {count} elements, that of the first row has {length}");
                 let error = Error::new(&codes::RAGGED_ROW, message).at_row(line);
                 return Err(error.in_column(&self.file_header[index]).with_value(cell));
             }
+            column += length;
         }
         Ok(())
     }
@@ -216,6 +307,7 @@ impl TableBuilder {
 
     /// The table as it is to be interpreted.
     pub(super) fn finish(self) -> RawTable {
-        RawTable { table: self.table, units: Vec::new(), decimal_comma: false, notes: Vec::new() }
+        let Self { table, numbers, decimal_comma, .. } = self;
+        RawTable { table, numbers, units: Vec::new(), decimal_comma, notes: Vec::new() }
     }
 }

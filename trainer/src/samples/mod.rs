@@ -25,8 +25,9 @@ pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
 pub(crate) use grid::interpolate;
 pub use plan::{Preparation, Request, VelocitySource};
+pub(crate) use prepare::prepare_every_row_of;
 pub use prepare::{prepare, prepare_every_row};
-pub(crate) use width::smooth_friction_columns;
+pub(crate) use width::{smooth_friction_columns, thinned};
 
 use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};

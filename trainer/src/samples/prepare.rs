@@ -40,7 +40,7 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
         samples.time.extend((0..count).map(|i| segment.start_s + (first + i * stride) as f64 * grid.period_s));
         let motion = |channel: &[f64], order| filter.apply(&on_grid(channel), order, stride);
         let torque = |channel: &[f64]| torque_filter.apply(&on_grid(channel), Order::Smooth, stride);
-        extend(&mut samples, recording, preparation, motion, torque);
+        extend(&mut samples, recording, preparation, &|_| true, motion, torque);
         if let Some(channel) = target(recording) {
             let unfiltered = on_grid(channel);
             samples.recorded.get_or_insert_default().extend((0..count).map(|i| unfiltered[first + i * stride]));
@@ -78,6 +78,18 @@ pub(super) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Seg
 /// # Errors
 /// `FRK-D009` when the task lacks a column.
 pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Result<Samples> {
+    prepare_every_row_of(recording, preparation, &|_| true)
+}
+
+/// The same with those named channels only that are read: a large recording may have many.
+///
+/// # Errors
+/// As [`prepare_every_row`].
+pub(crate) fn prepare_every_row_of(
+    recording: &Recording,
+    preparation: &Preparation,
+    is_read: &dyn Fn(&str) -> bool,
+) -> Result<Samples> {
     let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording)) };
     let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
     let grid = Grid::of(recording, time);
@@ -91,7 +103,7 @@ pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Re
             if grid.resampled { interpolate(&nodes, &filtered, &time[rows.clone()]) } else { filtered }
         };
         samples.time.extend(&time[rows.clone()]);
-        extend(&mut samples, recording, preparation, at_rows, |channel| at_rows(channel, Order::Smooth));
+        extend(&mut samples, recording, preparation, is_read, at_rows, |channel| at_rows(channel, Order::Smooth));
         samples.segments.push(rows);
     }
     samples.recorded = target(recording).map(<[f64]>::to_vec);
@@ -110,6 +122,7 @@ fn extend(
     samples: &mut Samples,
     recording: &Recording,
     preparation: &Preparation,
+    is_read: &dyn Fn(&str) -> bool,
     apply: impl Fn(&[f64], Order) -> Vec<f64>,
     apply_to_actuator: impl Fn(&[f64]) -> Vec<f64>,
 ) {
@@ -136,7 +149,7 @@ fn extend(
     }
     grow(&mut samples.rigid_body, recording.values(Quantity::RigidBodyTorque), Order::Smooth);
     grow(&mut samples.friction, recording.separated_friction().map(|c| c.values.as_slice()), Order::Smooth);
-    for (name, values) in named_channels(recording) {
+    for (name, values) in named_channels(recording).filter(|(name, _)| is_read(name)) {
         let filtered = apply(values, Order::Smooth);
         match samples.channels.iter_mut().find(|(own, _)| own == name) {
             Some((_, list)) => list.extend(filtered),

@@ -113,27 +113,30 @@ fn held_out_gain(target: &[f64], input: &[f64], direction: Option<&[f64]>, folds
         let place = edges.partition_point(|edge| *edge <= input[i]);
         place + if direction.is_some_and(|v| v[i] < 0.0) { edges.len() + 1 } else { 0 }
     };
+    let bins: Vec<usize> = (0..target.len()).map(bin).collect();
+    let count = 2 * (edges.len() + 1);
+    // Sum and number of the targets in each bin of each fold.
+    let sums_in = |fold: &Vec<Range<usize>>| {
+        let mut sums = vec![(0.0, 0.0); count];
+        for i in fold.iter().cloned().flatten() {
+            let (sum, number) = &mut sums[bins[i]];
+            *sum += target[i];
+            *number += 1.0;
+        }
+        sums
+    };
+    let by_fold: Vec<Vec<(f64, f64)>> = folds.iter().map(sums_in).collect();
+    let added = |a: (f64, f64), b: &(f64, f64)| (a.0 + b.0, a.1 + b.1);
     let mut gain = 0.0;
     for held in 0..folds.len() {
-        let mut sums = vec![(0.0, 0.0); 2 * (edges.len() + 1)];
-        let (mut all_sum, mut all_count) = (0.0, 0.0);
-        let single = folds.len() == 1;
-        for i in folds
-            .iter()
-            .enumerate()
-            .filter(|(f, _)| *f != held || single)
-            .flat_map(|(_, f)| f.iter().cloned().flatten())
-        {
-            let (sum, count) = &mut sums[bin(i)];
-            *sum += target[i];
-            *count += 1.0;
-            all_sum += target[i];
-            all_count += 1.0;
-        }
-        let overall = all_sum / f64::max(all_count, 1.0);
+        let learnt = |fold: &usize| *fold != held || folds.len() == 1;
+        let over = |bin: usize| (0..folds.len()).filter(learnt).map(|fold| &by_fold[fold][bin]).fold((0.0, 0.0), added);
+        let sums: Vec<(f64, f64)> = (0..count).map(over).collect();
+        let (all_sum, all_number) = sums.iter().fold((0.0, 0.0), added);
+        let overall = all_sum / f64::max(all_number, 1.0);
         for i in folds[held].iter().cloned().flatten() {
-            let (sum, count) = sums[bin(i)];
-            let mean = if count > 0.0 { sum / count } else { overall };
+            let (sum, number) = sums[bins[i]];
+            let mean = if number > 0.0 { sum / number } else { overall };
             gain += (target[i] - overall).powi(2) - (target[i] - mean).powi(2);
         }
     }
@@ -143,7 +146,7 @@ fn held_out_gain(target: &[f64], input: &[f64], direction: Option<&[f64]>, folds
 /// Inner edges of equally filled bins; fewer where values repeat.
 fn quantile_edges(values: &[f64]) -> Vec<f64> {
     let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    sorted.sort_unstable_by(f64::total_cmp);
     let mut edges: Vec<f64> = (1..BINS).filter_map(|k| sorted.get(k * sorted.len() / BINS).copied()).collect();
     edges.dedup();
     edges

@@ -54,7 +54,7 @@ pub(super) fn ladder(shortest: f64, longest: f64) -> Vec<f64> {
 pub(super) fn trials(recordings: &[&Recording], preparations: &[Preparation], residual: &Residual<'_>) -> Vec<Trial> {
     let tried = preparations.par_iter().map(|preparation| {
         let parts: Result<Vec<Samples>> =
-            recordings.iter().map(|r| prepare(r, &thinned(recordings, preparation))).collect();
+            recordings.iter().map(|r| prepare(r, &thinned(recordings, preparation, MOST_SAMPLES))).collect();
         let samples = parts.and_then(Samples::join).ok()?;
         let (left, inertia) = residual(&samples).ok()?;
         let blocks = block_means(&samples, &left);
@@ -63,14 +63,14 @@ pub(super) fn trials(recordings: &[&Recording], preparations: &[Preparation], re
     tried.collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
-/// The same filter with no more samples than are needed to score it.
-fn thinned(recordings: &[&Recording], preparation: &Preparation) -> Preparation {
+/// The same filter with `most` samples of all recordings together at most: filtered where they are taken, not at every row.
+pub(crate) fn thinned(recordings: &[&Recording], preparation: &Preparation, most: f64) -> Preparation {
     let span = |recording: &&Recording| {
         let time = recording.values(crate::recording::Quantity::Time)?;
         Some(time.last()? - time.first()?)
     };
     let seconds: f64 = recordings.iter().filter_map(span).sum();
-    let most = MOST_SAMPLES / seconds.max(f64::MIN_POSITIVE);
+    let most = most / seconds.max(f64::MIN_POSITIVE);
     Preparation { rate_hz: Some(preparation.rate_hz.map_or(most, |rate| rate.min(most))), ..*preparation }
 }
 

@@ -44,6 +44,17 @@ impl Source<'_> {
         }
     }
 
+    /// The same without the text of its rows, for what only learns from it.
+    ///
+    /// # Errors
+    /// As [`recording::load`].
+    fn read_numbers(self, joint: &Joint) -> Result<Recording> {
+        match self {
+            Self::File(path) => recording::load_numbers(path, joint),
+            Self::Bytes { .. } => self.read(joint),
+        }
+    }
+
     /// The recordings of each of these joints that stand there together.
     ///
     /// # Errors
@@ -109,7 +120,7 @@ pub(crate) fn load<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(
 /// # Errors
 /// As [`Source::read`] and [`checks::review`].
 pub(crate) fn load_with_faults<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
-    checks::review(source.into().read(joint)?, joint).map(with_warnings)
+    checks::review(source.into().read_numbers(joint)?, joint).map(with_warnings)
 }
 
 /// A recording of which only the motion is used, or a simulation.

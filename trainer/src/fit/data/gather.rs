@@ -12,13 +12,16 @@ use crate::samples::blocks::{Split, blocks, correlation_time};
 use crate::samples::delay::torque_delay;
 use crate::samples::rigid_body::{Separation, TermKind, separate, separate_averaged};
 use crate::samples::states::{States, states};
-use crate::samples::{Preparation, Request, Samples, prepare};
+use crate::samples::{Preparation, Request, Samples, prepare, thinned};
 
 /// Below this share of the top speed friction is no function of velocity.
 pub(in crate::fit) const REST_SHARE: f64 = 0.001;
 
 /// A law of a few tens of parameters learns nothing from more samples than this; only time would grow with them.
-const MOST_ROWS: usize = 200_000;
+const MOST_ROWS: usize = 50_000;
+
+/// Most samples of all recordings together, whose blocks, correlation and inputs are looked at: some 150 B each.
+const MOST_SAMPLES: f64 = 500_000.0;
 
 /// Fewest blocks: three to learn from, one to choose by, one to compare on.
 const LEAST_BLOCKS: usize = 5;
@@ -81,6 +84,7 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
     }
     let request = Request { rate_hz: options.rate_hz, ..Request::default() };
     let planned = Preparation::plan(&borrowed, joint, &request)?;
+    let planned = thinned(&borrowed, &planned, MOST_SAMPLES);
     let preparation = Preparation { torque_delay_s: torque_delay(&borrowed, joint, &planned), ..planned };
     let parts = recordings.iter().map(|recording| prepare(recording, &preparation)).collect::<Result<Vec<_>>>()?;
     let samples = Samples::join(parts)?;

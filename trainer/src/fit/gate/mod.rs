@@ -1,7 +1,9 @@
 //! Before an image: whether the motion tells the constants of friction apart, and whether the law is worth anything on rows that it has
 //! not seen. Knows the material and the errors of a law, not the law.
 
+pub(super) mod bending;
 pub(super) mod confounded;
+mod speeds;
 pub(super) mod worth;
 
 use super::choice::choose::Trial;
@@ -12,8 +14,9 @@ use crate::error::Result;
 use crate::joint::Joint;
 use crate::parameter::Parameter;
 use crate::recording::Recording;
+use bending::{Bending, bending};
 use confounded::{Constant, Identified};
-use worth::worthless;
+use worth::{Worthless, worthless};
 
 /// What is fixed where a joint goes one way only.
 const ONE_WAY: &str = "In one direction friction and offset are one constant: the offset is fixed at 0, and the law holds in \
@@ -23,11 +26,11 @@ const ONE_WAY: &str = "In one direction friction and offset are one constant: th
 const UNACCELERATED: &str = "The joint accelerates by no more than the noise, as in strokes of constant speed: nothing tells its inertia, which is \
                              left at 0.";
 
-/// What is fixed at a stated value because nothing tells it, in sentences.
+/// What is fixed at a stated value because nothing tells it, and what strokes of constant speed tell, in sentences.
 pub(super) fn fixed(material: &Material, identified: &Identified) -> Vec<String> {
     let one_way = identified.is_one_way().then_some(ONE_WAY);
     let still = (material.is_without_acceleration && material.separation.is_some()).then_some(UNACCELERATED);
-    one_way.into_iter().chain(still).map(str::to_owned).collect()
+    one_way.into_iter().chain(still).map(str::to_owned).chain(speeds::left_out(material)).collect()
 }
 
 /// What recordings of one joint can tell of it.
@@ -66,6 +69,12 @@ pub fn identifiable(recordings: &[Recording], joint: &Joint) -> Result<Identifia
     Ok(Identifiable { shares, record_next })
 }
 
+/// How the joint bends, where that is what it does in place of sliding, which a law that is not sound may be due to.
+pub(super) fn bends(material: &Material, trial: Option<&Trial>) -> Option<Bending> {
+    let is_spring = trial.and_then(|trial| worthless(material, trial)) == Some(Worthless::Spring);
+    is_spring.then(|| bending(material)).flatten()
+}
+
 /// What keeps a law that converged from going into an image.
 pub(super) fn withheld(
     material: &Material,
@@ -83,7 +92,7 @@ pub(super) fn withheld(
         ));
     }
     if let Some(why) = trial.and_then(|trial| worthless(material, trial)) {
-        return Soundness::NotIdentifiable(why.to_owned());
+        return Soundness::NotIdentifiable(why.sentence().to_owned());
     }
     let unknown = identified.unknown();
     if let Some(first) =

@@ -6,32 +6,53 @@ use crate::fit::data::gather::Material;
 use crate::fit::data::turns::open;
 use crate::numerics::regression::least_squares;
 
-/// Why a law is worth nothing, in a sentence; `None` where it is worth something. `trial` holds its errors.
-pub(in crate::fit) fn worthless(material: &Material, trial: &Trial) -> Option<&'static str> {
+/// Why a law is worth nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::fit) enum Worthless {
+    /// A constant torque does as well.
+    Constant,
+    /// A spring alone does better.
+    Spring,
+    /// Coulomb friction alone does better.
+    Coulomb,
+}
+
+impl Worthless {
+    pub(in crate::fit) fn sentence(self) -> &'static str {
+        match self {
+            Self::Constant => {
+                "the law predicts rows that it has not seen no better than a constant torque does: the joint does not slide, or this is not its \
+                 torque; record it sliding, both ways, at several speeds"
+            }
+            Self::Spring => {
+                "a spring alone predicts rows that it has not seen better than the law does: the joint bends and does not slide, or a spring acts \
+                 on it; record it sliding, both ways, at several speeds"
+            }
+            Self::Coulomb => {
+                "Coulomb friction alone predicts rows that it has not seen better than the law does: record more, so that the law is determined"
+            }
+        }
+    }
+}
+
+/// Why a law is worth nothing; `None` where it is worth something. `trial` holds its errors.
+pub(in crate::fit) fn worthless(material: &Material, trial: &Trial) -> Option<Worthless> {
     let velocity = material.samples.velocity.as_deref().unwrap_or_default();
     let ones = vec![1.0; velocity.len()];
     let constant = baseline(material, std::slice::from_ref(&ones));
     if constant.is_some_and(|constant| !constant.is_clearly_beaten_by(trial)) {
-        return Some(
-            "the law predicts rows that it has not seen no better than a constant torque does: the joint does not slide, or this is not its \
-             torque; record it sliding, both ways, at several speeds",
-        );
+        return Some(Worthless::Constant);
     }
     if let Some(position) = &material.samples.position {
         let spring = baseline(material, &[ones, position.clone()]);
         if spring.is_some_and(|spring| trial.is_clearly_beaten_by(&spring)) {
-            return Some(
-                "a spring alone predicts rows that it has not seen better than the law does: the joint bends and does not slide, or a spring acts \
-                 on it; record it sliding, both ways, at several speeds",
-            );
+            return Some(Worthless::Spring);
         }
     }
     let sign = velocity.iter().map(|v| v.signum()).collect();
     let rigid = material.columns.iter().map(|column| column.values.clone());
     let coulomb = baseline(material, &std::iter::once(sign).chain(rigid).collect::<Vec<_>>());
-    coulomb.is_some_and(|coulomb| trial.is_clearly_beaten_by(&coulomb)).then_some(
-        "Coulomb friction alone predicts rows that it has not seen better than the law does: record more, so that the law is determined",
-    )
+    coulomb.is_some_and(|coulomb| trial.is_clearly_beaten_by(&coulomb)).then_some(Worthless::Coulomb)
 }
 
 /// Errors of a linear model beside the given rigid body, fitted to what each turn leaves open; `None` where that does not determine it.
@@ -81,7 +102,7 @@ mod tests {
         let velocity = material.samples.velocity.clone().unwrap();
         let mut columns = vec![velocity.iter().map(|v| v.signum()).collect(), velocity];
         columns.extend(material.columns.iter().map(|column| column.values.clone()));
-        worthless(material, &baseline(material, &columns).unwrap())
+        worthless(material, &baseline(material, &columns).unwrap()).map(Worthless::sentence)
     }
 
     fn drive(time: f64) -> f64 {

@@ -19,7 +19,7 @@ use std::io::{Cursor, Read};
 use std::panic::catch_unwind;
 
 use super::source::failed;
-use super::table::RawTable;
+use super::table::{Keep, RawTable};
 use super::text;
 use crate::error::{Error, Result, codes};
 
@@ -35,16 +35,16 @@ const START_BYTES: u64 = 128;
 /// A way to read a whole file.
 type Reader = fn(&[u8]) -> Result<RawTable>;
 
-/// Reads a table of any format.
+/// Reads a table of any format; of a text only what is to be kept, other formats are read as a whole.
 ///
 /// # Errors
 /// `FRK-D043` for a format that is not read, with what to do instead; those of the format's reader.
-pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
+pub(super) fn read(mut source: impl Read, keep: Keep) -> Result<RawTable> {
     let mut start = Vec::new();
     source.by_ref().take(START_BYTES).read_to_end(&mut start).map_err(|error| failed(&error))?;
     let reader = reader_of(&start)?;
     let mut source = Cursor::new(start).chain(source);
-    let Some(reader) = reader else { return text::read(source) };
+    let Some(reader) = reader else { return text::read(source, keep) };
     let mut bytes = Vec::new();
     source.by_ref().take(WHOLE_LIMIT_BYTES + 1).read_to_end(&mut bytes).map_err(|error| failed(&error))?;
     if bytes.len() as u64 > WHOLE_LIMIT_BYTES {

@@ -176,8 +176,7 @@ fn tell_units(raw: &RawTable, found: &mut [Candidate]) -> Option<f64> {
 
 /// The numbers of a column, not finite where there is none.
 fn numbers(raw: &RawTable, column: usize) -> Vec<f64> {
-    let rows = raw.table.len().min(ROWS_LOOKED_AT);
-    (0..rows).map(|row| raw.number(raw.table.cell(row, column), row, "").unwrap_or(f64::NAN)).collect()
+    raw.numbers[column].values.iter().take(ROWS_LOOKED_AT).copied().collect()
 }
 
 fn is_number(raw: &RawTable, column: usize) -> bool {
@@ -248,9 +247,10 @@ mod tests {
     use super::super::{Quantity, read};
     use super::{Proposal, propose};
     use crate::joint::Joint;
+    use crate::recording::table::Keep;
 
     fn proposed(text: &str) -> Proposal {
-        propose(&read(text.as_bytes()).unwrap().0, "arm")
+        propose(&read(text.as_bytes(), Keep::Numbers).unwrap().0, "arm")
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod records;
 use std::io::{BufRead, BufReader, Read};
 
 use super::source::failed;
-use super::table::{RawTable, TableBuilder};
+use super::table::{Keep, RawTable, TableBuilder};
 use crate::error::{Error, Result, codes};
 use dialect::{Dialect, Header, dialect_of, leading_records};
 pub use records::RECORD_LIMIT_BYTES;
@@ -16,7 +16,7 @@ use records::Records;
 const PROBE_BYTES: usize = 1 << 16;
 
 /// Reads header and rows; every row has as many fields as the header.
-pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
+pub(super) fn read(mut source: impl Read, keep: Keep) -> Result<RawTable> {
     let mut probe = Vec::with_capacity(PROBE_BYTES);
     source.by_ref().take(PROBE_BYTES as u64).read_to_end(&mut probe).map_err(|error| failed(&error))?;
     let whole = probe.len() < PROBE_BYTES;
@@ -30,7 +30,8 @@ pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
         .filter(|row| row.len() == heading.names.len())
         .map(|row| row.iter().map(String::as_str).collect())
         .collect();
-    let mut builder = TableBuilder::new(std::mem::take(&mut heading.names), heading.line, &sample)?;
+    let builder = TableBuilder::new(std::mem::take(&mut heading.names), heading.line, &sample)?;
+    let mut builder = builder.reading(dialect.separator != b',', keep);
     if heading.first_is_data {
         push_row(&mut builder, &records)?;
     }
@@ -38,7 +39,7 @@ pub(super) fn read(mut source: impl Read) -> Result<RawTable> {
         push_row(&mut builder, &records)?;
     }
     let units = builder.expanded(&heading.units);
-    Ok(RawTable { units, decimal_comma: dialect.separator != b',', ..builder.finish() })
+    Ok(RawTable { units, ..builder.finish() })
 }
 
 struct Heading {
