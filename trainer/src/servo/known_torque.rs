@@ -52,7 +52,14 @@ pub(crate) fn known_torque(
     let payload = commanded.payload.as_ref().map_or_else(Body::default, Body::of_payload);
     let excess = payload.inertia - reference;
     let carried = |row: usize| payload.gravity(position[row]) + excess * acceleration.get(row).copied().unwrap_or(0.0);
-    let whole: Vec<f64> = (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect();
+    let whole: Vec<f64> = match load {
+        // A diagnosis filters torque and motion alike: what was filtered before it would lag behind the motion's own.
+        Load::OfPayload => {
+            let time = recording.values(Quantity::Time).unwrap_or_default();
+            (0..recording.len()).map(|row| applied[row].at(difference(time, position, row))).collect()
+        }
+        Load::None | Load::OfActuator => (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect(),
+    };
     let torque = whole.iter().enumerate().map(|(row, torque)| torque - carried(row)).collect();
     let load = match load {
         Load::None => None,
@@ -61,6 +68,13 @@ pub(crate) fn known_torque(
     };
     let others = load.map(|load| (Quantity::LoadTorque.name().to_owned(), load)).into_iter().collect();
     Ok(recording.clone().with_torque(torque, others))
+}
+
+/// Velocity at a row by the rows beside it, rad/s.
+fn difference(time: &[f64], position: &[f64], row: usize) -> f64 {
+    let (before, after) = (row.saturating_sub(1), (row + 1).min(position.len().saturating_sub(1)));
+    let span = time[after] - time[before];
+    if span > 0.0 { (position[after] - position[before]) / span } else { 0.0 }
 }
 
 /// A fit of such recordings as one of the joint without payload: its inertia is less by `reference`, kg m2, and what was identified of the
