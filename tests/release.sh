@@ -14,10 +14,11 @@ tool() {
 }
 
 tests/setup.sh
-target/deny/bin/cargo-deny check licenses bans sources
+tool deny
+cargo deny check licenses bans sources
 # Advisories come from the network.
-if target/deny/bin/cargo-deny fetch db; then
-    target/deny/bin/cargo-deny check advisories
+if cargo deny fetch db; then
+    cargo deny check advisories
 else
     echo "release: the advisories cannot be fetched; nothing is known of them"
 fi

