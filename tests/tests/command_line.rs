@@ -135,3 +135,26 @@ fn results_never_replace_an_input_or_each_other() {
     assert!(std::fs::read(folder.path().join("train.csv")).unwrap() == before);
     assert_eq!(names(folder.path()), ["test.csv", "train.csv"]);
 }
+
+#[test]
+fn the_form_of_the_law_may_be_fixed() {
+    let folder = bench();
+    let at = folder.path();
+    let fit =
+        |form: &[&str]| run(at, &[&["fit", "train.csv", "-o", "m.frk", "--json", "m.json", "--quiet"], form].concat());
+    let fixed = fit(&["--form", "coulomb-viscous"]);
+    assert_eq!(fixed.status, 0, "{}", fixed.messages);
+    let json: Value = serde_json::from_slice(&std::fs::read(at.join("m.json")).unwrap()).unwrap();
+    let parameters = json["parameters"].as_array().unwrap().iter();
+    let names: Vec<&str> = parameters.map(|parameter| parameter["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"coulomb_torque") && names.contains(&"viscous_coefficient"), "{names:?}");
+    assert!(!names.iter().any(|name| name.contains("stribeck")), "{names:?}");
+    assert_eq!(json["representation"], "expression");
+
+    let misspelt = fit(&["--form", "stribek"]);
+    assert_eq!(misspelt.status, 2);
+    assert!(misspelt.messages.contains("stribeck"), "{}", misspelt.messages);
+    let both = fit(&["--form", "stribeck", "--representation", "table"]);
+    assert_eq!(both.status, 2);
+    assert!(both.messages.contains("cannot be a table"), "{}", both.messages);
+}

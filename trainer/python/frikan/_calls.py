@@ -27,6 +27,7 @@ def fit(
     joint: Joint = None,
     inputs: Optional[Sequence[str]] = None,
     representation: Optional[str] = None,
+    form: Optional[str] = None,
     rate: Optional[float] = None,
     max_bytes: Optional[int] = None,
     max_instructions: Optional[int] = None,
@@ -37,7 +38,7 @@ def fit(
     """Fits the friction law of one joint.
 
     ``test`` is only scored; ``inputs`` of the law are chosen by relevance when absent; ``representation`` is ``"table"`` or
-    ``"expression"``; ``rate`` of the samples in Hz; ``target`` is the drive that has to have room for the image; one without floating-point unit gets a table of integers
+    ``"expression"``; ``form`` a law of the literature such as ``"stribeck"`` to fit in any case, by the names of the command line; ``rate`` of the samples in Hz; ``target`` is the drive that has to have room for the image; one without floating-point unit gets a table of integers
     (``Fitted.integers``). ``progress`` is called
     with stage, steps and error while it works. One seed, one result.
     """
@@ -47,6 +48,7 @@ def fit(
         joint_file(joint),
         None if inputs is None else list(inputs),
         representation,
+        form,
         rate,
         max_bytes,
         max_instructions,

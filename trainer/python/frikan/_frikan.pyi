@@ -51,6 +51,7 @@ def fit(
     joint_file: Joint,
     inputs: Optional[list[str]],
     representation: Optional[str],
+    form: Optional[str],
     rate: Optional[float],
     max_bytes: Optional[int],
     max_instructions: Optional[int],

@@ -11,6 +11,7 @@ use frikan_trainer::compile::profile::Profile;
 use frikan_trainer::error::Error;
 use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::fit::{Budget, Options, model};
+use frikan_trainer::law::KnownForm;
 use frikan_trainer::plant;
 use frikan_trainer::workflow::arm::{self as fitting_arms, Recorded};
 use frikan_trainer::workflow::diagnose::{Against, BaseKind, Request};
@@ -27,7 +28,7 @@ use work::{Progress, watched};
 
 /// Fits recordings; `progress` is called with a stage, steps and an error.
 #[pyfunction]
-#[pyo3(signature = (recordings, tests, joint_file, inputs, representation, rate, max_bytes, max_instructions, target, seed, progress))]
+#[pyo3(signature = (recordings, tests, joint_file, inputs, representation, form, rate, max_bytes, max_instructions, target, seed, progress))]
 #[expect(clippy::too_many_arguments, reason = "the Python package names them all")]
 fn fit(
     py: Python<'_>,
@@ -36,6 +37,7 @@ fn fit(
     joint_file: Option<(bool, String)>,
     inputs: Option<Vec<String>>,
     representation: Option<&str>,
+    form: Option<&str>,
     rate: Option<f64>,
     max_bytes: Option<usize>,
     max_instructions: Option<u32>,
@@ -50,10 +52,11 @@ fn fit(
         Some("expression") => Some(Representation::Expression),
         Some(other) => return Err(unknown("representation", other)),
     };
+    let form = form.map(|name| KnownForm::named(name).ok_or_else(|| unknown("form", name))).transpose()?;
     let target = profile(target)?;
     let budget = Budget { bytes: max_bytes, instructions: max_instructions, target: target.unwrap_or_default() };
     let integers = target.is_some_and(|target| !target.has_floats);
-    let options = Options { seed, inputs, representation, rate_hz: rate, budget, integers, ..Options::default() };
+    let options = Options { seed, inputs, representation, form, rate_hz: rate, budget, integers, ..Options::default() };
     let done = watched(py, progress, move |progress: &Progress| {
         let [recordings, tests] =
             [&recordings, &tests].map(|all| all.iter().map(Recording::source).collect::<Vec<_>>());

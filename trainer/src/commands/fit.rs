@@ -11,10 +11,12 @@ use super::output::{Outputs, command_line, print, refuse_unwritable, say};
 use super::progress::Reporter;
 use crate::actuator::Kind;
 use crate::compile::profile::Profile;
+use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Representation;
 use crate::fit::{Budget, Options, Progress, Training};
 use crate::kan::{Architecture, Sparsity};
+use crate::law::KnownForm;
 use crate::workflow::fit::{Fitted, fit};
 
 /// Fit a friction law to recordings of one joint and export it as an image.
@@ -35,6 +37,10 @@ pub struct Fit {
     /// Form of the law in the image; the better one on held-out blocks when absent
     #[arg(long, value_enum)]
     pub representation: Option<Form>,
+    /// Law of the literature to fit, over velocity, in place of the one that the samples ask for: coulomb, coulomb-static, coulomb-viscous, stribeck-dry,
+    /// bengisu-akay, awrejcewicz, stribeck, stribeck-gaussian, stribeck-exponent, asymmetric, power-law or arctangent
+    #[arg(long, value_name = "NAME", value_parser = known_form)]
+    pub form: Option<KnownForm>,
     /// Rate at which samples are fitted, Hz; follows the filter when absent
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
@@ -75,6 +81,12 @@ pub struct Fit {
     /// How the network is trained
     #[command(flatten)]
     pub training: TrainingArguments,
+}
+
+fn known_form(name: &str) -> std::result::Result<KnownForm, String> {
+    let names = KnownForm::ALL.map(KnownForm::key);
+    KnownForm::named(name)
+        .ok_or_else(|| format!("there is no form of this name{}; there are {}", hint(name, names), names.join(", ")))
 }
 
 /// How the network is trained; rarely needed.
@@ -153,6 +165,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
             Form::Table => Representation::Table,
             Form::Expression => Representation::Expression,
         }),
+        form: arguments.form,
         rate_hz: arguments.rate,
         budget: Budget {
             bytes: arguments.max_bytes,

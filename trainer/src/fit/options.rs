@@ -3,6 +3,7 @@
 use super::outcome::Representation;
 use crate::compile::profile::Profile;
 use crate::kan::{Architecture, FitOptions, Smoothing, Sparsity};
+use crate::law::KnownForm;
 
 /// Settings of a fit.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +14,8 @@ pub struct Options {
     pub inputs: Option<Vec<String>>,
     /// Form of the law in the image; the better one when absent.
     pub representation: Option<Representation>,
+    /// The law of the literature that is fitted, over velocity; the one that the samples ask for when absent.
+    pub form: Option<KnownForm>,
     /// Rate of the samples, Hz; follows the filter when absent.
     pub rate_hz: Option<f64>,
     /// What the law may cost on the drive.

@@ -26,7 +26,7 @@ use super::outcome::{
 };
 use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
-use crate::error::Result;
+use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::law::{FormFit, Law, LawData};
 use crate::parameter::Parameter;
@@ -52,7 +52,7 @@ pub fn fit(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<Outcome> {
-    let options = &of_velocity(options)?;
+    let options = &of_velocity(&of_form(options)?)?;
     let first = fit_once(recordings, tests, joint, options, progress);
     let too_large = first.as_ref().is_err_and(|error| *error == no_image());
     if !too_large || options.inputs.is_some() {
@@ -65,6 +65,25 @@ pub fn fit(
         .remarks
         .push("A law of all relevant inputs does not fit into an image; this one reads velocity alone.".into());
     Ok(outcome)
+}
+
+/// The options of a fit of a law of the literature, where one is asked for: it is a formula of the velocity.
+///
+/// # Errors
+/// `FRK-U001` where other inputs or a table are asked for.
+fn of_form(options: &Options) -> Result<Options> {
+    let Some(form) = options.form else { return Ok(options.clone()) };
+    let velocity = vec!["velocity".to_owned()];
+    let refused = |what: &str| {
+        Error::new(&codes::USAGE, format!("the form `{}` is a formula of the velocity: {what}", form.key()))
+    };
+    if options.representation == Some(Representation::Table) {
+        return Err(refused("it cannot be a table as well"));
+    }
+    if options.inputs.as_ref().is_some_and(|inputs| *inputs != velocity) {
+        return Err(refused("it reads no other input"));
+    }
+    Ok(Options { inputs: Some(velocity), ..options.clone() })
 }
 
 fn fit_once(
@@ -84,7 +103,7 @@ fn fit_once(
     let data = law_data(&material, &inputs);
     let points = at_velocity(&material, &data);
     let turns = material.turns.iter();
-    let turns = turns.map(|split| Turn::take(&builder, &training, (&points, &data), split, progress));
+    let turns = turns.map(|split| Turn::take(&builder, &training, (&points, &data), split, options.form, progress));
     let turns = turns.collect::<Result<Vec<_>>>()?;
     let trials = turn::trials(&turns, &material.turns, &material)?;
     let first = turns.first().ok_or_else(no_image)?;

@@ -13,7 +13,7 @@ use crate::fit::model::HostModel;
 use crate::fit::options::{Progress, ProgressCallback, Stage};
 use crate::fit::outcome::Form;
 use crate::kan::{FitResult, Pruned};
-use crate::law::LawData;
+use crate::law::{KnownForm, LawData};
 use crate::samples::blocks::Split;
 
 /// What one turn brings.
@@ -28,7 +28,7 @@ pub(in crate::fit) struct Turn {
 }
 
 impl Turn {
-    /// Trains, searches and builds without the locked blocks.
+    /// Trains, searches and builds without the locked blocks; a law of the form `asked` alone, where one is asked for.
     ///
     /// # Errors
     /// `FRK-N...` and `FRK-D...` when nothing can be learnt at all.
@@ -37,6 +37,7 @@ impl Turn {
         training: &TrainingData,
         (points, data): (&LawData, &LawData),
         split: &Split,
+        asked: Option<KnownForm>,
         progress: ProgressCallback<'_>,
     ) -> Result<Self> {
         let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
@@ -44,14 +45,16 @@ impl Turn {
         let (fitted, pruned) = training.train(split, progress)?;
         tell(Stage::Searching);
         let learnt = training.learnt(&pruned.result);
-        let found = search(split, points, data, activations::starts(&learnt.network, &learnt.graph, builder.inputs))?;
+        let starts = activations::starts(&learnt.network, &learnt.graph, builder.inputs);
+        let found = search(split, (points, data), starts, asked)?;
         let (sound, free) = simple(&data.select(&turns::open(split)));
         let of = |simple: &Option<Simple>| simple.as_ref().and_then(|simple| builder.expression(&simple.fit));
         let models = Form::ALL.map(|form| match form {
+            Form::Found => builder.expression(&found.open),
+            _ if asked.is_some() => None,
             Form::Simple => of(&sound),
             // Where no sign is wrong in this turn it is the same.
             Form::SimpleAsFitted => of(&free).or_else(|| of(&sound)),
-            Form::Found => builder.expression(&found.open),
             Form::Network => builder.table(&learnt),
         });
         Ok(Self { fitted, pruned, found, simple: [sound, free], models })

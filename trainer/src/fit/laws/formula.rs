@@ -82,8 +82,13 @@ fn law_states(states: &samples::states::States, inputs: &[ChosenInput]) -> law::
 }
 
 /// Looks for the formula in `points`, beginning also at `starts`, and fits it to `data`, the averages of the same rows. Another law of the search's
-/// front or a classical one that describes those better, its constants paid for, takes its place.
-pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, starts: Vec<Start>) -> Result<Found> {
+/// front or a classical one that describes those better, its constants paid for, takes its place; a `form` that is asked for in any case.
+pub(in crate::fit) fn search(
+    split: &Split,
+    (points, data): (&LawData, &LawData),
+    starts: Vec<Start>,
+    form: Option<KnownForm>,
+) -> Result<Found> {
     let open = turns::open(split);
     let options = SearchOptions { starts, intervals: Interval::Linearised, ..SearchOptions::default() };
     let discovery = discover(&points.select(&open), &options).map_err(|error| refused(&error))?;
@@ -111,9 +116,19 @@ pub(in crate::fit) fn search(split: &Split, points: &LawData, data: &LawData, st
     let judged: Vec<_> = rivals.collect::<Vec<_>>().par_iter().map(judged).collect();
     let constants_of = |judged: &Option<(f64, Structure, Vec<f64>)>| judged.as_ref().map(|(.., c)| c.clone());
     let of_classical = judged.iter().take(classical.len()).map(constants_of).collect();
-    let better = judged.into_iter().flatten().filter(|(value, ..)| *value < limit);
-    let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (structure, constants) = best.map_or((law.structure.clone(), own.constants), |(_, s, c)| (s, c));
+    let (structure, constants) = match form {
+        Some(form) => {
+            let structure = form.structure();
+            let left = remainder(&structure, &few, discovery.explored.get(&structure).map(Vec::as_slice));
+            let constants = left.map_err(|error| refused(&error))?.constants;
+            (structure, constants)
+        }
+        None => {
+            let better = judged.into_iter().flatten().filter(|(value, ..)| *value < limit);
+            let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
+            best.map_or((law.structure.clone(), own.constants), |(_, structure, constants)| (structure, constants))
+        }
+    };
     let (open, _) = settled((&structure, &constants), &open_data, Interval::Linearised)?;
     Ok(Found { open, constants, classical: of_classical, discovery })
 }

@@ -82,6 +82,29 @@ impl KnownForm {
         }
     }
 
+    /// Its name on the command line.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Coulomb => "coulomb",
+            Self::CoulombStatic => "coulomb-static",
+            Self::CoulombViscous => "coulomb-viscous",
+            Self::StribeckDry => "stribeck-dry",
+            Self::BengisuAkay => "bengisu-akay",
+            Self::Awrejcewicz => "awrejcewicz",
+            Self::Stribeck => "stribeck",
+            Self::StribeckGaussian => "stribeck-gaussian",
+            Self::StribeckExponent => "stribeck-exponent",
+            Self::AsymmetricCoulombViscous => "asymmetric",
+            Self::PowerLaw => "power-law",
+            Self::ArctanCoulombViscous => "arctangent",
+        }
+    }
+
+    /// The form of such a name.
+    pub fn named(key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|form| form.key() == key)
+    }
+
     /// Its structure.
     pub fn structure(self) -> Structure {
         use Shape::{
