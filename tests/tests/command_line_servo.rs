@@ -129,9 +129,10 @@ fn a_servo_is_rehearsed_before_there_is_one() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     // Friction of 2 N m and 1.2 N m s/rad, an inertia of 0.5 kg m2: the default of the plant.
-    let joint = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 900\nkd_Nms_rad = 30\n[plant.drive]\nrate_Hz = 250\n[plant]\ngravity_torque_Nm = [6.0]\n";
+    // What the drive filters its velocity by is not in the law of the actuator, and is a part of what seems viscous.
+    let joint = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 150\nkd_Nms_rad = 10\n[plant.control]\nvelocity_corner_Hz = 400\n[plant]\ngravity_torque_Nm = [6.0]\n";
     std::fs::write(at.join("joint.toml"), joint).unwrap();
-    let simulated = run(at, &["simulate", "joint.toml", "-o", "real.csv", "--duration", "60", "--quiet"]);
+    let simulated = run(at, &["simulate", "joint.toml", "-o", "real.csv", "--duration", "24", "--quiet"]);
     assert_eq!(simulated.status, 0, "{}", simulated.messages);
     let words = "fit real.csv --joint joint.toml -o model.frk --inputs velocity --json told.json --quiet";
     let fitted = run(at, &words.split(' ').collect::<Vec<_>>());
@@ -143,7 +144,9 @@ fn a_servo_is_rehearsed_before_there_is_one() {
             .find(|parameter| parameter["name"] == name)
             .map_or(f64::NAN, |parameter| parameter["value"].as_f64().unwrap())
     };
-    for (name, value) in [("coulomb_torque", 2.0), ("viscous_coefficient", 1.2), ("inertia", 0.5)] {
-        assert!((of(name) / value - 1.0).abs() < 0.05, "{name}: {} for {value}", of(name));
+    for (name, value, within) in
+        [("coulomb_torque", 2.0, 0.02), ("viscous_coefficient", 1.2, 0.1), ("inertia", 0.5, 0.05)]
+    {
+        assert!((of(name) / value - 1.0).abs() < within, "{name}: {} for {value}", of(name));
     }
 }
