@@ -4,9 +4,9 @@ use frikan_runtime::evaluate::evaluate;
 use frikan_shared::image::Image;
 use frikan_shared::model::{MAX_INPUTS, Provenance};
 
-use super::choice::choose::Trial;
 use super::choice::physical::Violation;
 use super::choice::rivals::{Freedom, judge, no_image};
+use super::choice::shipped::{Shipped, on_all_rows, shipped};
 use super::choice::turn::{self, Turn};
 use super::data::gather::{Material, gather};
 use super::data::inputs::{ChosenInput, choose};
@@ -18,7 +18,7 @@ use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
 use super::laws::formula::{self, at_velocity, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
-use super::laws::simple::{Simple, simple};
+use super::laws::simple::Simple;
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{
@@ -28,13 +28,10 @@ use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
-use crate::law::{FormFit, Law, LawData};
+use crate::law::{FormFit, Law};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
-use crate::samples::blocks::Split;
 
-/// The law refitted to all rows may leave this much more of them, as a ratio of mean squares, than the one that was compared.
-const WORSE_SHARE: f64 = 1.05;
 /// Share of the inertia that noise may take untold.
 const TOLD_ATTENUATION: f64 = 0.01;
 /// Most points of a picture.
@@ -175,58 +172,6 @@ fn fit_once(
         band,
         image,
     })
-}
-
-/// The law that goes into the image, with the formula that is told of it.
-struct Shipped {
-    model: Box<HostModel>,
-    fit: FormFit,
-}
-
-/// Refits the chosen form to all rows. Where that does worse on the recorded rows than what the choice was made by, or breaks
-/// physics where the other did not, the latter is taken.
-fn shipped(
-    builder: &Builder<'_>,
-    form: Form,
-    first: &Turn,
-    found: FormFit,
-    learnt: &TrainedNetwork,
-    data: &LawData,
-    options: &Options,
-) -> Result<Shipped> {
-    let of = |fit: FormFit| builder.expression(&fit).map(|model| Shipped { model, fit });
-    let (last, compared_fit) = match form {
-        Form::Network => (builder.table(learnt).map(|model| Shipped { model, fit: found.clone() }), Some(found)),
-        Form::Found => (of(found), Some(first.found.open.clone())),
-        Form::Simple | Form::SimpleAsFitted => {
-            let (sound, free) = simple(data);
-            let pick = |sound: Option<Simple>, free: Option<Simple>| {
-                let chosen = if form == Form::Simple { sound } else { free.or(sound) };
-                chosen.map(|simple| simple.fit)
-            };
-            let [held_sound, held_free] = first.simple.clone();
-            (pick(sound, free).and_then(of), pick(held_sound, held_free))
-        }
-    };
-    let compared = first.models[form.place()].clone().zip(compared_fit).map(|(model, fit)| Shipped { model, fit });
-    let material = builder.material;
-    let is_better = |held: &Shipped, last: &Shipped| {
-        let breaks = |shipped: &Shipped| Violation::of(&shipped.model, material).is_any();
-        on_all_rows(&last.model, material) > WORSE_SHARE * on_all_rows(&held.model, material)
-            || breaks(last) && !breaks(held)
-    };
-    let allowed = last.filter(|last| options.budget.allows(&last.model));
-    let kept = allowed.filter(|last| compared.as_ref().is_none_or(|held| !is_better(held, last)));
-    kept.or(compared).ok_or_else(no_image)
-}
-
-/// Mean square of what a model leaves of the recorded torque.
-fn on_all_rows(model: &HostModel, material: &Material) -> f64 {
-    let mut trial = Trial::default();
-    match trial.add(model, material, &Split::default()) {
-        Ok(()) => trial.mean_square(),
-        Err(_) => f64::INFINITY,
-    }
 }
 
 /// What each form is free to choose, in the order of [`Form::ALL`].

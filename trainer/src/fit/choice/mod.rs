@@ -3,4 +3,5 @@
 pub(in crate::fit) mod choose;
 pub(in crate::fit) mod physical;
 pub(in crate::fit) mod rivals;
+pub(in crate::fit) mod shipped;
 pub(in crate::fit) mod turn;

@@ -70,7 +70,8 @@ impl Controller {
             + self.feed_forward * nominal;
         let limited = if self.limit > 0.0 { torque.clamp(-self.limit, self.limit) } else { torque };
         if let Some(servo) = &mut self.servo {
-            return servo.drive(target, limited, Motion { position: measured, velocity: self.velocity });
+            let reference = Motion { position: target.position, velocity: target.velocity };
+            return servo.drive(reference, limited, Motion { position: measured, velocity: self.velocity });
         }
         let torque = round_to(limited, self.resolution);
         (torque, torque)

@@ -1,6 +1,5 @@
 //! A drive without torque sensor: its actuator makes a torque of a reference, a current or a duty, and it writes down these alone.
 
-use super::control::Target;
 use crate::actuator::{Actuator, Command, Kind, Motion, RateLimited};
 use crate::plant::joint::Joint;
 use std::collections::VecDeque;
@@ -28,9 +27,9 @@ impl Servo {
         })
     }
 
-    /// Torque over the sample that begins now, N m, and what is written down as commanded: current in A or duty where these are, for which a
-    /// controller of its own asks for the torque `wanted`.
-    pub(crate) fn drive(&mut self, target: &Target, wanted: f64, motion: Motion) -> (f64, f64) {
+    /// Torque over the sample that begins now, N m, under a reference, rad and rad/s, and what is written down as commanded: current in A or duty
+    /// where these are, for which a controller of its own asks for the torque `wanted`.
+    pub(crate) fn drive(&mut self, reference: Motion, wanted: f64, motion: Motion) -> (f64, f64) {
         let actuator = &self.actuator;
         let effort = match actuator.kind {
             Kind::Current => wanted / actuator.gain,
@@ -43,8 +42,8 @@ impl Servo {
         self.under_way.push_back(Command {
             effort,
             is_voltage: false,
-            reference: self.reference.follow(target.position, self.sample_s),
-            reference_velocity: target.velocity,
+            reference: self.reference.follow(reference.position, self.sample_s),
+            reference_velocity: reference.velocity,
             feed_forward: 0.0,
             supply: actuator.supply,
             kp: actuator.kp,
