@@ -138,17 +138,22 @@ fn results_never_replace_an_input_or_each_other() {
 
 #[test]
 fn the_form_of_the_law_may_be_fixed() {
-    let folder = bench();
+    let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let fit =
-        |form: &[&str]| run(at, &[&["fit", "train.csv", "-o", "m.frk", "--json", "m.json", "--quiet"], form].concat());
-    let fixed = fit(&["--form", "coulomb-viscous"]);
+    let [recording, joint] =
+        ["elbow.csv", "elbow.toml"].map(|name| format!("{}/../fixtures/{name}", env!("CARGO_MANIFEST_DIR")));
+    let fit = |form: &[&str]| {
+        let words = ["fit", &recording, "--joint", &joint, "-o", "m.frk", "--json", "m.json", "--quiet"];
+        run(at, &[&words, form].concat())
+    };
+    // Friction of the elbow is Coulomb's, viscous, and falls with the speed; the form that is asked for has the first alone.
+    let fixed = fit(&["--form", "coulomb"]);
     assert_eq!(fixed.status, 0, "{}", fixed.messages);
     let json: Value = serde_json::from_slice(&std::fs::read(at.join("m.json")).unwrap()).unwrap();
     let parameters = json["parameters"].as_array().unwrap().iter();
     let names: Vec<&str> = parameters.map(|parameter| parameter["name"].as_str().unwrap()).collect();
-    assert!(names.contains(&"coulomb_torque") && names.contains(&"viscous_coefficient"), "{names:?}");
-    assert!(!names.iter().any(|name| name.contains("stribeck")), "{names:?}");
+    assert!(names.contains(&"coulomb_torque"), "{names:?}");
+    assert!(!names.iter().any(|name| name.contains("stribeck") || name.contains("viscous")), "{names:?}");
     assert_eq!(json["representation"], "expression");
 
     let misspelt = fit(&["--form", "stribek"]);
