@@ -8,8 +8,7 @@ tests/setup.sh python
 cargo build --workspace --tests --lib --bin trainer
 FRIKAN_TRAINER="$(realpath "${CARGO_TARGET_DIR:-target}")/debug/trainer" cargo nextest run --workspace "$@"
 # The C library as it is by default is among them; here with all that it can have.
-# Among the workspace, so that its dependencies are those that are built.
-cargo nextest run --workspace --features "$(printf 'frikan-c/%s,' integer auth signature expression network effects)" -E 'package(frikan-c)' "$@"
+cargo nextest run -p frikan-c --features integer,auth,signature,expression,network,effects "$@"
 cargo test --workspace --doc
 tests/python.sh
 # Says which measured pages are older than what they measure; that is no failure.
