@@ -120,6 +120,12 @@ effects! {
 }
 
 impl EffectId {
+    /// Whether it is a constant of the actuator of a joint that reports no torque: nothing of an image corrects it.
+    #[must_use]
+    pub fn is_of_actuator(self) -> bool {
+        matches!(self, Self::ActuatorGain | Self::SupplyOrDutyLimit | Self::CommandDelay | Self::DeadBand)
+    }
+
     /// The effect of a name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|effect| effect.name() == name)

@@ -54,6 +54,9 @@ fn answer(page: &mut Page, question: &str, text: &str) {
 fn what_to_do(found: &Finding, content: &DiagnosisPage<'_>) -> String {
     let act = match found.action {
         Action::FeedForward => "Add it to the model: the improved image has it, for a drive as for a simulator.",
+        Action::Parameter if found.effect.is_of_actuator() => {
+            "Correct the constant of the actuator in joint.toml and in the simulator; no image holds it."
+        }
         Action::Parameter => "Correct the parameter of the model; the improved image has it corrected.",
         Action::Measurement => "Put the measurement right; it is not compensated.",
         Action::Maintenance if found.effect == EffectId::Unknown => {

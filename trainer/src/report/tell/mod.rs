@@ -279,6 +279,9 @@ fn figure(parameter: &Parameter) -> String {
 fn action(found: &Finding) -> &'static str {
     match found.action {
         Action::FeedForward => "",
+        Action::Parameter if found.effect.is_of_actuator() => {
+            " The constant of the actuator is to be corrected, in joint.toml and in the simulator."
+        }
         Action::Parameter => " A parameter of the model is to be corrected.",
         Action::Measurement => " The measurement is to be repaired, not compensated.",
         Action::Maintenance if found.effect == EffectId::Unknown => " It is not compensated.",
