@@ -89,6 +89,16 @@ impl Partial {
         partial
     }
 
+    /// What has to be known to simulate it and is not, its supply where that is asked for.
+    #[must_use]
+    pub fn lacking(&self, needs_supply: bool) -> Option<Constant> {
+        let actuator = &self.actuator;
+        let lacks_error_gain = actuator.kind == Kind::PositionServo && actuator.error_gain <= 0.0;
+        let open = self.open.first().map(|open| open.constant(actuator.kind));
+        open.or((needs_supply && actuator.supply.is_nan()).then_some(Constant::Supply))
+            .or(lacks_error_gain.then_some(Constant::FirmwareErrorGain))
+    }
+
     /// The same with a value for what is open.
     #[must_use]
     pub fn with(mut self, open: Open, value: f64) -> Self {

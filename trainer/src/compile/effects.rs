@@ -260,7 +260,7 @@ impl Terms {
                 Effect::Spring { stiffness: c[0] as f32, rest: 0.0 }
             }
             EffectId::Coupling => return Err("the motion of the other joint is not a channel of the image"),
-            EffectId::ActuatorGain | EffectId::SupplyOrDutyLimit | EffectId::CommandDelay | EffectId::DeadBand => {
+            _ if effect.is_of_actuator() => {
                 return Err("it is a constant of the actuator, to be corrected in joint.toml");
             }
             _ => return Err("the image has no torque term for it"),

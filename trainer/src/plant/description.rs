@@ -50,17 +50,11 @@ fn actuator(file: &crate::joint::Joint) -> Result<Option<Actuator>> {
     if kind == Kind::Torque {
         return Ok(None);
     }
-    let Partial { actuator, open, .. } = Partial::of(kind, &file.actuator.constants);
-    let lacking = open.first().map(|open| open.constant(kind));
-    let lacks_supply = kind.is_motor() && actuator.supply.is_nan();
-    let lacks_error_gain = kind == Kind::PositionServo && actuator.error_gain <= 0.0;
+    let partial = Partial::of(kind, &file.actuator.constants);
     let lacks_kp = kind == Kind::PositionServo && !file.actuator.constants.contains_key(&Constant::FirmwareKp);
-    let lacking = lacking
-        .or(lacks_supply.then_some(Constant::Supply))
-        .or(lacks_error_gain.then_some(Constant::FirmwareErrorGain))
-        .or(lacks_kp.then_some(Constant::FirmwareKp));
+    let lacking = partial.lacking(kind.is_motor()).or(lacks_kp.then_some(Constant::FirmwareKp));
     match lacking {
-        None => Ok(Some(actuator)),
+        None => Ok(Some(partial.actuator)),
         Some(constant) => {
             let message =
                 format!("to simulate an actuator of kind `{}` its `{}` has to be known", kind.name(), constant.key());

@@ -72,23 +72,28 @@ impl Base {
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);
         add_soft_sign(prepared, &mut columns, &target);
-        let in_step = fit_residual(&columns, &target, &runs)?;
-        let mut rate = prepared.state.rate_of(&prepared.state.predicted);
-        rate.iter_mut().for_each(|value| *value = -*value);
-        columns.push(prepared.filtered(&rate));
-        let with_delay = least_squares(&columns, &target, &runs)?;
-        let late = with_delay[columns.len() - 1];
-        let mut left = residual(&columns, &target, &with_delay);
-        let delay = if prepared.state.commanded.is_some() {
-            columns.pop();
-            left = in_step;
-            Delay::None
-        } else if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
-            Delay::OfSampling(late)
+        let (left, delay) = if prepared.state.commanded.is_some() {
+            (fit_residual(&columns, &target, &runs)?, Delay::None)
         } else {
-            columns.pop();
-            let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
-            if explained < position_error_energy(prepared, comparison) { Delay::OfPositionError } else { Delay::Open }
+            let mut rate = prepared.state.rate_of(&prepared.state.predicted);
+            rate.iter_mut().for_each(|value| *value = -*value);
+            columns.push(prepared.filtered(&rate));
+            let with_delay = least_squares(&columns, &target, &runs)?;
+            let late = with_delay[columns.len() - 1];
+            let left = residual(&columns, &target, &with_delay);
+            let delay = if late.abs() <= LONGEST_SAMPLING_DELAY * prepared.state.period {
+                Delay::OfSampling(late)
+            } else {
+                columns.pop();
+                let in_step = fit_residual(&columns, &target, &runs)?;
+                let explained = dot(&in_step, &in_step, &runs) - dot(&left, &left, &runs);
+                if explained < position_error_energy(prepared, comparison) {
+                    Delay::OfPositionError
+                } else {
+                    Delay::Open
+                }
+            };
+            (left, delay)
         };
         let (reference_effects, uncertain_directions) = match &comparison.reference {
             Some(reference) => (reference.effects.clone(), &reference.uncertainty[..]),

@@ -31,13 +31,10 @@ impl SimulatedActuator {
     /// `FRK-D014` for a constant that is neither given nor identified.
     pub fn of(joint: &Joint) -> Result<Option<Self>> {
         let partial = Partial::of(joint.actuator.kind, &joint.actuator.constants);
-        let missing = |key: &str| {
-            let message = "a simulator needs this constant of the actuator; `trainer fit` identifies it and writes it beside its image";
-            Error::new(&codes::MISSING_PARAMETER, message).in_column(format!("actuator.{key}"))
-        };
         let actuator = partial.actuator;
-        if let Some(open) = partial.open.first() {
-            return Err(missing(open.constant(actuator.kind).key()));
+        if let Some(lacking) = partial.lacking(actuator.kind == Kind::PositionServo) {
+            let message = "a simulator needs this constant of the actuator; `trainer fit` identifies it and writes it beside its image";
+            return Err(Error::new(&codes::MISSING_PARAMETER, message).in_column(format!("actuator.{}", lacking.key())));
         }
         let limit_of_torque = Some(actuator.limits.torque).filter(|limit| limit.is_finite());
         let stall = actuator.gain * actuator.supply * actuator.limits.duty;
@@ -46,8 +43,6 @@ impl SimulatedActuator {
             Kind::Pd => (Law::Position { kp: actuator.kp, kv: actuator.kd }, limit_of_torque),
             Kind::Current => (Law::Effort { gain: actuator.gain, kv: 0.0 }, limit_of_torque),
             Kind::DcMotor => (Law::Effort { gain: actuator.gain, kv: actuator.back_emf }, None),
-            Kind::PositionServo if actuator.supply.is_nan() => return Err(missing("supply_V")),
-            Kind::PositionServo if actuator.error_gain == 0.0 => return Err(missing("firmware_error_gain")),
             Kind::PositionServo => {
                 let kp = actuator.gain * actuator.supply * actuator.error_gain * actuator.kp;
                 (Law::Position { kp, kv: actuator.back_emf }, Some(stall))

@@ -54,8 +54,7 @@ impl Hypothesis for SupplyOrDutyLimit {
         let Some(commanded) = &state.commanded else { return Vec::new() };
         let of = |variant: f64| levels(state, variant).into_iter().map(move |level| vec![level, variant]);
         let mut shapes: Vec<Shape> = [TORQUE, DUTY, REFERENCE_SPEED].into_iter().flat_map(of).collect();
-        let has_supply = |actuator: &Actuator| actuator.kind.is_motor();
-        if commanded.actuators.iter().any(|(_, actuator)| has_supply(actuator)) {
+        if commanded.actuators.iter().any(|(_, actuator)| actuator.kind.is_motor()) {
             shapes.push(vec![LESS_VOLTAGE, VOLTAGE]);
         }
         shapes

@@ -26,7 +26,7 @@ pub(super) fn on_the_drive(effect: EffectId) -> &'static str {
         GravityError | InertiaError | TorqueScale | TorqueOffset => {
             "Nothing to run: the rigid-body parameters of the model are corrected."
         }
-        ActuatorGain | SupplyOrDutyLimit | CommandDelay | DeadBand => {
+        _ if effect.is_of_actuator() => {
             "Nothing to run: a constant of the actuator is corrected, in joint.toml and in the simulator."
         }
         SlowDrift => "Frozen at its value at the end of the recording; fit again when it has moved on.",

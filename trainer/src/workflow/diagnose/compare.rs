@@ -45,7 +45,8 @@ impl Compared {
     }
 }
 
-/// The real recordings, with what the actuators of commanded joints were told, and what they are compared with; `in_one_model` puts the rows of a simulation beside theirs.
+/// The real recordings, with what the actuators of commanded joints were told, and what they are compared with; `in_one_model` puts the rows of a
+/// simulation beside theirs.
 pub(super) fn comparison(
     against: &Against<'_>,
     (real, told): (&[Recording], &[Commands]),
