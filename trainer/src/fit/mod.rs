@@ -2,6 +2,7 @@
 //!
 //! [`fit`] is the way, [`predict`](predict::predict) what a model makes of samples, [`Outcome`] all that is to be told.
 
+mod agreement;
 mod choice;
 mod data;
 mod forces;

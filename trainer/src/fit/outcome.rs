@@ -1,5 +1,6 @@
 //! What a fit brings back: everything that a terminal, a JSON file and a report show of it. Plain data.
 
+use super::agreement::Agreement;
 use super::integer_summary::IntegerSummary;
 use crate::kan::{GraphSummary, Removed, Step};
 use crate::parameter::Parameter;
@@ -301,11 +302,14 @@ pub struct RestScore {
     pub inside_breakaway: f64,
 }
 
-/// A recording as the exported image predicts it, one value a row.
+/// A recording as the exported image predicts it, one value a row, or of a very long recording at every [`stride`](Self::stride)-th row; scores
+/// are of all rows.
 #[derive(Clone, Debug)]
 pub struct Trace {
     /// File name of the recording.
     pub label: String,
+    /// Rows from one that is kept to the next.
+    pub stride: usize,
     /// Time, s; row number where the recording has no clock.
     pub time: Vec<f64>,
     /// Velocity as the model sees it.
@@ -324,6 +328,9 @@ pub struct Trace {
     pub split: SplitScore,
     /// After a low-pass, at 100 samples a second: what is left of noise beyond the motion's band does not count.
     pub filtered_score: Score,
+    /// What [`score`](Self::score) is made of, and that of moving rows.
+    pub(super) agreement: Agreement,
+    pub(super) moving: Agreement,
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! How well a prediction agrees: on all rows, after a low-pass, and on moving rows and rows at rest apart.
 
+use super::agreement::Agreement;
 use super::model::HostModel;
 use super::outcome::{RestScore, Score, SplitScore, Trace};
-use super::predict::{Prediction, every_row, nothing_recorded, predict};
+use super::predict::{EveryRowPredicted, Prediction, nothing_recorded, predict_every_row};
 use crate::error::{Error, Result};
 use crate::numerics::between_samples::between_samples;
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
-use crate::recording::Recording;
-use crate::samples::{Samples, top_speed};
+use crate::recording::{Quantity, Recording};
+use crate::samples::top_speed;
 use frikan_shared::model::SLOW_SHARE;
 use std::ops::Range;
 
@@ -19,10 +20,14 @@ const COMPARISON_SIGMA_S: f64 = 0.2415 / (0.5 * COMPARISON_RATE_HZ);
 /// Below this share of the top speed a row is at rest: friction is any value within break-away there.
 const REST_SHARE: f64 = 0.01;
 
+/// Most rows that a trace holds: more than any picture shows. Chosen with what is kept of a row, 48 B, in mind.
+const MOST_TRACED_ROWS: usize = 1 << 20;
+
 /// What a model makes of a recording, and how well it agrees.
 ///
 /// # Errors
-/// As [`predict`] and [`every_row`]; `FRK-D009` when the recording has neither actuator nor friction.
+/// As [`predict`](super::predict::predict) and [`every_row`](super::predict::every_row); `FRK-D009` when the recording has neither actuator nor
+/// friction.
 pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
     trace_delayed(model, recording, 0.0)
 }
@@ -33,113 +38,151 @@ pub fn trace(model: &HostModel, recording: &Recording) -> Result<Trace> {
 /// As [`trace`].
 pub(super) fn trace_delayed(model: &HostModel, recording: &Recording, torque_delay_s: f64) -> Result<Trace> {
     let in_file = |error: Error| error.in_file(recording.file());
-    let rows = every_row(model, recording).map_err(in_file)?;
-    let prediction = delayed(predict(model, &rows).map_err(in_file)?, &rows, torque_delay_s);
-    let measured = rows.recorded.clone().ok_or_else(|| in_file(nothing_recorded()))?;
-    let predicted = prediction.total();
-    let (slow_measured, slow_predicted) = (low_passed(&rows, &measured), low_passed(&rows, &predicted));
-    let time = if rows.time.is_empty() { (0..rows.len()).map(|row| row as f64).collect() } else { rows.time.clone() };
+    let rows = predict_every_row(model, recording).map_err(in_file)?.delayed(torque_delay_s);
+    let measured = measured(recording).ok_or_else(|| in_file(nothing_recorded()))?;
+    let Prediction { friction, rigid_body } = &rows.prediction;
+    let predicted = |row: usize| friction[row] + rigid_body[row];
+    let (slow_measured, slow_predicted) = (rows.low_passed(|row| measured[row]), rows.low_passed(predicted));
+    let velocity = Some(&rows.velocity[..]).filter(|velocity| !velocity.is_empty());
+    let (agreement, split) =
+        (Agreement::of(0..measured.len(), |row| measured[row], predicted), Split::of(&rows, measured));
+    let stride = measured.len().div_ceil(MOST_TRACED_ROWS).max(1);
+    let traced = |value: &dyn Fn(usize) -> f64| (0..measured.len()).step_by(stride).map(value).collect::<Vec<f64>>();
+    let time = recording.values(Quantity::Time);
     Ok(Trace {
         label: recording.label.clone(),
-        time,
-        velocity: rows.velocity.clone().unwrap_or_default(),
-        score: Score::of(&measured, &predicted),
-        split: SplitScore::of(rows.velocity.as_deref(), &measured, &prediction),
+        stride,
+        time: traced(&|row| time.map_or(row as f64, |time| time[row])),
+        velocity: velocity.map(|velocity| traced(&|row| velocity[row])).unwrap_or_default(),
+        score: agreement.score(),
+        split: split.score(),
         filtered_score: Score::of(&slow_measured, &slow_predicted),
-        friction: measured.iter().zip(&prediction.rigid_body).map(|(total, body)| total - body).collect(),
-        predicted_friction: prediction.friction,
-        measured,
-        predicted,
+        friction: traced(&|row| measured[row] - rigid_body[row]),
+        predicted_friction: traced(&|row| friction[row]),
+        measured: traced(&|row| measured[row]),
+        predicted: traced(&predicted),
+        agreement,
+        moving: split.moving,
     })
 }
 
-/// A prediction as it is recorded with a delay.
-fn delayed(prediction: Prediction, rows: &Samples, delay_s: f64) -> Prediction {
-    let samples = rows.rate_hz.map_or(0.0, |rate| rate * delay_s);
-    if samples == 0.0 {
-        return prediction;
-    }
-    let late = |series: Vec<f64>| -> Vec<f64> {
-        let segment = |segment: &Range<usize>| {
-            let series = &series[segment.clone()];
-            (0..series.len()).map(|i| between_samples(series, i as f64 - samples)).collect::<Vec<f64>>()
-        };
-        rows.segments.iter().flat_map(segment).collect()
-    };
-    Prediction { friction: late(prediction.friction), rigid_body: late(prediction.rigid_body) }
+/// What a model leaves of the actuator at every row of a recording.
+///
+/// # Errors
+/// As [`trace`].
+pub fn residual(model: &HostModel, recording: &Recording) -> Result<Vec<f64>> {
+    let in_file = |error: Error| error.in_file(recording.file());
+    let Prediction { friction, rigid_body } = predict_every_row(model, recording).map_err(in_file)?.prediction;
+    let measured = measured(recording).ok_or_else(|| in_file(nothing_recorded()))?;
+    let predicted = friction.iter().zip(&rigid_body).map(|(friction, body)| friction + body);
+    Ok(measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect())
 }
 
-/// A column of a recording's rows after a zero-phase low-pass, at the rate of comparison and without the ends that the
-/// filter does not reach; as it is where the recording is not faster.
-fn low_passed(rows: &Samples, column: &[f64]) -> Vec<f64> {
-    let Some(rate_hz) = rows.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else { return column.to_vec() };
-    let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
-    let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
-    let segment = |range: &Range<usize>| filter.apply(&column[range.clone()], Order::Smooth, stride);
-    let long_enough = rows.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
-    long_enough.flat_map(segment).collect()
+/// What a prediction is scored on: friction that was separated, or else the actuator.
+fn measured(recording: &Recording) -> Option<&[f64]> {
+    recording.separated_friction().or_else(|| recording.actuator()).map(|channel| channel.values.as_slice())
+}
+
+impl EveryRowPredicted {
+    /// The prediction as it is recorded with a delay, s.
+    fn delayed(mut self, delay_s: f64) -> Self {
+        let samples = self.rate_hz.map_or(0.0, |rate| rate * delay_s);
+        if samples == 0.0 {
+            return self;
+        }
+        for series in [&mut self.prediction.friction, &mut self.prediction.rigid_body] {
+            for segment in &self.segments {
+                let segment = &mut series[segment.clone()];
+                let late: Vec<f64> = (0..segment.len()).map(|i| between_samples(segment, i as f64 - samples)).collect();
+                segment.copy_from_slice(&late);
+            }
+        }
+        self
+    }
+
+    /// A value a row after a zero-phase low-pass, at the rate of comparison and without the ends that the filter does not reach; as it is where
+    /// the recording is not faster.
+    fn low_passed(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
+        let Some(rate_hz) = self.rate_hz.filter(|rate| *rate > COMPARISON_RATE_HZ) else {
+            return (0..self.prediction.friction.len()).map(value).collect();
+        };
+        let filter = GaussianFilter::new(COMPARISON_SIGMA_S, 1.0 / rate_hz);
+        let stride = (rate_hz / COMPARISON_RATE_HZ).round().max(1.0) as usize;
+        let segment = |range: &Range<usize>| {
+            filter.apply(&range.clone().map(&value).collect::<Vec<f64>>(), Order::Smooth, stride)
+        };
+        let long_enough = self.segments.iter().filter(|segment| segment.len() > 2 * filter.half_width());
+        long_enough.flat_map(segment).collect()
+    }
+}
+
+impl Agreement {
+    fn score(&self) -> Score {
+        let share = |of: f64| if of > 0.0 { self.residual / of } else { 0.0 };
+        Score {
+            n: self.n,
+            r2: 1.0 - share(self.spread),
+            rmse: (self.residual / self.n.max(1) as f64).sqrt(),
+            relative_error: share(self.power).sqrt(),
+        }
+    }
 }
 
 impl Score {
     /// Agreement of a prediction with a measurement of the same length.
     #[must_use]
     pub fn of(measured: &[f64], predicted: &[f64]) -> Self {
-        let n = measured.len();
-        let count = n.max(1) as f64;
-        let mean = measured.iter().sum::<f64>() / count;
-        let residual: f64 = measured.iter().zip(predicted).map(|(m, p)| (m - p).powi(2)).sum();
-        let spread: f64 = measured.iter().map(|m| (m - mean).powi(2)).sum();
-        let power: f64 = measured.iter().map(|m| m * m).sum();
-        let share = |of: f64| if of > 0.0 { residual / of } else { 0.0 };
-        Self { n, r2: 1.0 - share(spread), rmse: (residual / count).sqrt(), relative_error: share(power).sqrt() }
+        Agreement::of(0..measured.len(), |row| measured[row], |row| predicted[row]).score()
     }
 
     /// Agreement over several recordings taken as one.
     #[must_use]
     pub fn over(traces: &[Trace]) -> Self {
-        let join =
-            |pick: fn(&Trace) -> &Vec<f64>| traces.iter().flat_map(|t| pick(t).iter().copied()).collect::<Vec<_>>();
-        Self::of(&join(|trace| &trace.measured), &join(|trace| &trace.predicted))
+        traces.iter().fold(Agreement::default(), |all, trace| all.with(&trace.agreement)).score()
+    }
+}
+
+/// Moving rows, and rows at rest.
+struct Split {
+    moving: Agreement,
+    rest: RestScore,
+}
+
+impl Split {
+    /// Agreement on moving rows, and the share of rows at rest whose torque, less the rigid body, lies within the largest
+    /// friction that the law has at low speed, give or take the error on moving rows. Without a velocity every row moves.
+    fn of(rows: &EveryRowPredicted, measured: &[f64]) -> Self {
+        let Prediction { friction, rigid_body } = &rows.prediction;
+        let speed = |row: usize| rows.velocity.get(row).map_or(f64::INFINITY, |velocity| velocity.abs());
+        let top = top_speed(&rows.velocity);
+        let moves = |row: &usize| speed(*row) > REST_SHARE * top;
+        let all = 0..measured.len();
+        let predicted = |row: usize| friction[row] + rigid_body[row];
+        let moving = Agreement::of(all.clone().filter(moves), |row| measured[row], predicted);
+        let slow = all.clone().filter(|row| speed(*row) <= SLOW_SHARE * top);
+        let breakaway = slow.fold(0.0_f64, |most, row| most.max(friction[row].abs())) + moving.score().rmse;
+        let rest = || all.clone().filter(|row| !moves(row));
+        let n = rest().count();
+        let inside = rest().filter(|row| (measured[*row] - rigid_body[*row]).abs() <= breakaway).count();
+        let share = if n == 0 { 1.0 } else { inside as f64 / n as f64 };
+        Self { moving, rest: RestScore { n, inside_breakaway: share } }
+    }
+
+    fn score(&self) -> SplitScore {
+        SplitScore { moving: self.moving.score(), rest: self.rest }
     }
 }
 
 impl SplitScore {
-    /// Agreement on moving rows, and the share of rows at rest whose torque, less the rigid body, lies within the largest
-    /// friction that the law has at low speed, give or take the error on moving rows. Without a velocity every row moves.
-    #[must_use]
-    pub fn of(velocity: Option<&[f64]>, measured: &[f64], prediction: &Prediction) -> Self {
-        let speed = |row: usize| velocity.map_or(f64::INFINITY, |velocity| velocity[row].abs());
-        let top = velocity.map_or(0.0, top_speed);
-        let (moving, rest): (Vec<usize>, Vec<usize>) =
-            (0..measured.len()).partition(|&row| speed(row) > REST_SHARE * top);
-        let total = prediction.total();
-        let pick = |column: &[f64]| moving.iter().map(|&row| column[row]).collect::<Vec<f64>>();
-        let moving_score = Score::of(&pick(measured), &pick(&total));
-        let slow = prediction.friction.iter().enumerate().filter(|(row, _)| speed(*row) <= SLOW_SHARE * top);
-        let breakaway = slow.fold(0.0_f64, |most, (_, friction)| most.max(friction.abs())) + moving_score.rmse;
-        let is_inside = |row: &&usize| (measured[**row] - prediction.rigid_body[**row]).abs() <= breakaway;
-        let inside = rest.iter().filter(is_inside).count();
-        let share = if rest.is_empty() { 1.0 } else { inside as f64 / rest.len() as f64 };
-        Self { moving: moving_score, rest: RestScore { n: rest.len(), inside_breakaway: share } }
-    }
-
     /// Agreement over several recordings taken as one.
     #[must_use]
     pub fn over(traces: &[Trace]) -> Self {
-        let rows = |trace: &Trace| trace.split.rest.n as f64;
-        let (mut measured, mut predicted) = (Vec::new(), Vec::new());
+        let moving = traces.iter().fold(Agreement::default(), |all, trace| all.with(&trace.moving));
         let n = traces.iter().map(|trace| trace.split.rest.n).sum();
+        let rows = |trace: &Trace| trace.split.rest.n as f64;
         let inside: f64 = traces.iter().map(|trace| rows(trace) * trace.split.rest.inside_breakaway).sum();
-        for trace in traces {
-            let top = top_speed(&trace.velocity);
-            let moves = |row: &usize| trace.velocity.get(*row).is_none_or(|v| v.abs() > REST_SHARE * top);
-            for row in (0..trace.measured.len()).filter(moves) {
-                measured.push(trace.measured[row]);
-                predicted.push(trace.predicted[row]);
-            }
-        }
         let share = if n == 0 { 1.0 } else { inside / n as f64 };
-        Self { moving: Score::of(&measured, &predicted), rest: RestScore { n, inside_breakaway: share } }
+        Self { moving: moving.score(), rest: RestScore { n, inside_breakaway: share } }
     }
 }
 
@@ -153,6 +196,7 @@ mod tests {
             (0..200).map(|i| if i < 100 { 0.0 } else { 0.05 + f64::from(i - 100) * 0.01 }).collect();
         let friction: Vec<f64> = velocity.iter().map(|v| if *v > 0.0 { 2.0 } else { 0.0 }).collect();
         let prediction = Prediction { friction: friction.clone(), rigid_body: vec![1.0; 200] };
+        let rows = EveryRowPredicted { prediction, velocity, ..EveryRowPredicted::default() };
         // At rest anything up to break-away is right, and a quarter of the rows is beyond.
         let measured: Vec<f64> = (0..200)
             .map(|i| {
@@ -165,7 +209,7 @@ mod tests {
                 }
             })
             .collect();
-        let found = SplitScore::of(Some(&velocity), &measured, &prediction);
+        let found = Split::of(&rows, &measured).score();
         assert_eq!((found.moving.n, found.rest.n), (100, 100));
         assert!(found.moving.rmse < 1e-6 && (found.rest.inside_breakaway - 0.75).abs() < 1e-12, "{found:?}");
     }

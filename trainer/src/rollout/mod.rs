@@ -14,7 +14,7 @@ mod simulate;
 
 pub use body::{Body, payload};
 pub use image::{ImageFriction, law};
-pub use of_image::{Rollout, default_window_s, of_image};
+pub use of_image::{Rollout, default_window_s, of_image, score_of_image};
 pub use resistance::{Instant, Levels, Resistance, Split};
 pub use score::Score;
 pub use series::Series;

@@ -21,17 +21,9 @@ impl Score {
     /// Errors of simulated states against recorded ones of the same length.
     #[must_use]
     pub fn of(simulated: &[State], recorded: &[State]) -> Self {
-        let count = simulated.len().max(1) as f64;
-        let mut score = Self { n: simulated.len(), ..Self::default() };
-        let (mut squares, mut of_velocity) = (0.0, 0.0);
-        for (simulated, recorded) in simulated.iter().zip(recorded) {
-            let error = (simulated.position - recorded.position).abs();
-            score.mae += error / count;
-            squares += error * error;
-            score.max = score.max.max(error);
-            of_velocity += (simulated.velocity - recorded.velocity).powi(2);
-        }
-        Self { rmse: (squares / count).sqrt(), velocity_rmse: (of_velocity / count).sqrt(), ..score }
+        let mut errors = Errors::of_rows(simulated.len());
+        simulated.iter().zip(recorded).for_each(|(simulated, recorded)| errors.add(simulated, recorded));
+        errors.score()
     }
 
     /// Errors over several recordings taken as one.
@@ -48,5 +40,37 @@ impl Score {
             max: scores.iter().fold(0.0, |most, score| most.max(score.max)),
             velocity_rmse: mean(&|score| score.velocity_rmse.powi(2)).sqrt(),
         }
+    }
+}
+
+/// Sums of errors, row by row.
+pub(super) struct Errors {
+    score: Score,
+    squares: f64,
+    of_velocity: f64,
+}
+
+impl Errors {
+    /// None yet, of so many rows.
+    pub(super) fn of_rows(n: usize) -> Self {
+        Self { score: Score { n, ..Score::default() }, squares: 0.0, of_velocity: 0.0 }
+    }
+
+    fn count(&self) -> f64 {
+        self.score.n.max(1) as f64
+    }
+
+    /// Adds a row.
+    pub(super) fn add(&mut self, simulated: &State, recorded: &State) {
+        let error = (simulated.position - recorded.position).abs();
+        self.score.mae += error / self.count();
+        self.squares += error * error;
+        self.score.max = self.score.max.max(error);
+        self.of_velocity += (simulated.velocity - recorded.velocity).powi(2);
+    }
+
+    pub(super) fn score(self) -> Score {
+        let mean = |sum: f64| sum / self.count();
+        Score { rmse: mean(self.squares).sqrt(), velocity_rmse: mean(self.of_velocity).sqrt(), ..self.score }
     }
 }

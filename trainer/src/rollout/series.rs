@@ -3,6 +3,7 @@
 use crate::actuator::{Actuator, Command, Kind, RateLimited};
 use crate::error::{Error, Result, codes};
 use crate::recording::{Quantity, Recording};
+use std::ops::Range;
 
 /// Commands of a recording, one a row.
 #[derive(Clone, Debug)]
@@ -23,22 +24,30 @@ impl Series {
     /// # Errors
     /// `FRK-D009` where a column is missing that the actuator follows, `FRK-D014` where a constant is neither in joint.toml nor a column.
     pub fn of(recording: &Recording, actuator: &Actuator) -> Result<Self> {
+        Self::of_rows(recording, actuator, &(0..recording.len()))
+    }
+
+    /// The same of some rows; a reference that moves no faster than the firmware lets it begins anew at the first of them.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub(super) fn of_rows(recording: &Recording, actuator: &Actuator, rows: &Range<usize>) -> Result<Self> {
         let kind = actuator.kind;
         let purpose = format!("an actuator of kind `{}`", kind.name());
-        let time = recording.require(&[Quantity::Time], &purpose)?.values.clone();
-        let column = |quantity| recording.values(quantity);
-        let mut effort = None;
+        let time = recording.require(&[Quantity::Time], &purpose)?.values[rows.clone()].to_vec();
+        let column = |quantity| recording.values(quantity).map(|values| &values[rows.clone()]);
+        let mut effort: Option<&[f64]> = None;
         let mut is_voltage = false;
         match kind {
             Kind::Torque => {
                 let any = [Quantity::Torque, Quantity::Force, Quantity::Current];
-                effort = Some(recording.require(&any, &purpose)?.values.as_slice());
+                effort = Some(&recording.require(&any, &purpose)?.values[rows.clone()]);
             }
-            Kind::Current => effort = Some(recording.require(&[Quantity::Current], &purpose)?.values.as_slice()),
+            Kind::Current => effort = Some(&recording.require(&[Quantity::Current], &purpose)?.values[rows.clone()]),
             Kind::DcMotor => {
                 let either = recording.require(&[Quantity::Duty, Quantity::Voltage], &purpose)?;
                 is_voltage = either.quantity == Some(Quantity::Voltage);
-                effort = Some(either.values.as_slice());
+                effort = Some(&either.values[rows.clone()]);
             }
             Kind::Pd | Kind::PositionServo => {
                 recording.require(&[Quantity::ReferencePosition], &purpose)?;

@@ -39,29 +39,51 @@ pub struct Rig {
     pub body: Body,
 }
 
+/// The recorded states of a recording.
+#[derive(Clone, Copy)]
+pub(super) struct Recorded<'r> {
+    time: &'r [f64],
+    position: &'r [f64],
+    velocity: Option<&'r [f64]>,
+}
+
+impl<'r> Recorded<'r> {
+    /// # Errors
+    /// `FRK-D009` without clock or position.
+    pub(super) fn of(recording: &'r Recording) -> Result<Self> {
+        Ok(Self {
+            time: &recording.require(&[Quantity::Time], "a forward simulation")?.values,
+            position: &recording.require(&[Quantity::Position], "a forward simulation")?.values,
+            velocity: recording.values(Quantity::Velocity),
+        })
+    }
+
+    /// The state at a row.
+    pub(super) fn at(&self, row: usize) -> State {
+        let velocity = self.velocity.map_or_else(|| slope(self.time, self.position, row), |velocity| velocity[row]);
+        State { position: self.position[row], velocity }
+    }
+}
+
 /// Rows of a recording from which its recorded state is taken anew, with that state: the first, those after a gap, and one every
 /// `window_s` where that is given.
 ///
 /// # Errors
 /// `FRK-D009` without clock or position.
 pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize, State)>> {
-    let time = &recording.require(&[Quantity::Time], "a forward simulation")?.values;
-    let position = &recording.require(&[Quantity::Position], "a forward simulation")?.values;
-    let velocity = recording.values(Quantity::Velocity);
+    let recorded = Recorded::of(recording)?;
+    let time = recorded.time;
     let gap = recording.health.period_s.map_or(f64::INFINITY, |period| GAP_PERIODS * period);
+    let interruptions = &recording.health.interruptions;
     let mut rows: Vec<usize> = Vec::new();
     for row in 0..time.len() {
         let is_due = rows.last().is_none_or(|last| window_s.is_some_and(|window| time[row] - time[*last] >= window));
-        let interrupted = row > 0 && time[row] - time[row - 1] > gap || recording.health.interruptions.contains(&row);
+        let interrupted = row > 0 && time[row] - time[row - 1] > gap || interruptions.binary_search(&row).is_ok();
         if is_due || interrupted {
             rows.push(row);
         }
     }
-    let state = |row: usize| {
-        let velocity = velocity.map_or_else(|| slope(time, position, row), |velocity| velocity[row]);
-        (row, State { position: position[row], velocity })
-    };
-    Ok(rows.into_iter().map(state).collect())
+    Ok(rows.into_iter().map(|row| (row, recorded.at(row))).collect())
 }
 
 /// The recorded state at every row.
@@ -69,7 +91,8 @@ pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize
 /// # Errors
 /// As [`starts`].
 pub fn recorded(recording: &Recording) -> Result<Vec<State>> {
-    Ok(starts(recording, Some(0.0))?.into_iter().map(|(_, state)| state).collect())
+    let recorded = Recorded::of(recording)?;
+    Ok((0..recording.len()).map(|row| recorded.at(row)).collect())
 }
 
 /// Slope of the line through the positions around a row.
@@ -88,7 +111,7 @@ fn slope(time: &[f64], position: &[f64], row: usize) -> f64 {
     if square > 0.0 { product / square } else { 0.0 }
 }
 
-/// The motion at every row, begun anew at `starts` (row and state in order, the first at row 0).
+/// The motion at every row from the first of `starts` on, begun anew at each of them (row and state in order).
 ///
 /// # Errors
 /// `FRK-N004` where the motion leaves all bounds.
@@ -99,9 +122,10 @@ pub fn simulate(
     starts: &[(usize, State)],
 ) -> Result<Vec<State>> {
     let mut states = Vec::with_capacity(series.time.len());
+    let first = starts.first().map_or(series.time.len(), |(row, _)| *row);
     let mut starts = starts.iter().peekable();
     let mut moving = Motion1D::default();
-    for row in 0..series.time.len() {
+    for row in first..series.time.len() {
         if let Some((_, state)) = starts.next_if(|(start, _)| *start == row) {
             moving = Motion1D { position: state.position, velocity: state.velocity };
             resistance.restart();

@@ -53,7 +53,10 @@ impl EvenClock {
             even.segments.push(begin..even.time.len());
         }
         for channel in recording.channels.iter().filter(|channel| channel.quantity != Some(Quantity::Time)) {
-            let values = grid.segments.iter().flat_map(|segment| grid.values(segment, time, &channel.values)).collect();
+            let mut values = Vec::with_capacity(even.time.len());
+            grid.segments
+                .iter()
+                .for_each(|segment| values.extend_from_slice(&grid.values(segment, time, &channel.values)));
             even.channels.push((channel.quantity, channel.name.clone(), values));
         }
         Ok(even)

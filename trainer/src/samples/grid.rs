@@ -1,5 +1,6 @@
 //! A uniform time grid under time stamps that jitter or have gaps.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::recording::Recording;
@@ -74,14 +75,49 @@ impl Grid {
     }
 
     /// Values of one channel on the grid of `segment`, linearly interpolated between rows where the clock jitters.
-    pub(super) fn values(&self, segment: &Segment, time: &[f64], channel: &[f64]) -> Vec<f64> {
+    pub(super) fn values<'a>(&self, segment: &Segment, time: &[f64], channel: &'a [f64]) -> Cow<'a, [f64]> {
+        self.values_at(segment, &(0..segment.points), time, channel)
+    }
+
+    /// The same at some of its points.
+    pub(super) fn values_at<'a>(
+        &self,
+        segment: &Segment,
+        points: &Range<usize>,
+        time: &[f64],
+        channel: &'a [f64],
+    ) -> Cow<'a, [f64]> {
         let (time, channel) = (&time[segment.rows.clone()], &channel[segment.rows.clone()]);
         if !self.resampled {
-            return channel.to_vec();
+            return Cow::Borrowed(&channel[points.clone()]);
         }
-        let grid: Vec<f64> = (0..segment.points).map(|i| segment.start_s + i as f64 * self.period_s).collect();
-        interpolate(time, channel, &grid)
+        Cow::Owned(interpolate_part(time, channel, &self.times(segment, points)))
     }
+
+    /// Times of some points of `segment`, s.
+    pub(super) fn times(&self, segment: &Segment, points: &Range<usize>) -> Vec<f64> {
+        points.clone().map(|point| segment.start_s + point as f64 * self.period_s).collect()
+    }
+
+    /// The points of `segment` between which these of its rows lie.
+    pub(super) fn points_around(&self, segment: &Segment, time: &[f64], rows: &Range<usize>) -> Range<usize> {
+        let begin = segment.rows.start;
+        if !self.resampled {
+            return rows.start - begin..rows.end - begin;
+        }
+        let place = |row: usize| ((time[row] - segment.start_s) / self.period_s).max(0.0) as usize;
+        // A point more at each end, since the place of a row at a point may be rounded to either side.
+        let last = (place(rows.end - 1) + 3).min(segment.points);
+        place(rows.start).saturating_sub(1).min(last - 1)..last
+    }
+}
+
+/// As [`interpolate`], of the values around `at` alone.
+pub(super) fn interpolate_part(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+    let (Some(from), Some(to)) = (at.first(), at.last()) else { return Vec::new() };
+    let begin = time.partition_point(|time| time <= from).saturating_sub(1).min(time.len().saturating_sub(2));
+    let end = (time.partition_point(|time| time <= to) + 1).min(time.len());
+    interpolate(&time[begin..end], &values[begin..end], at)
 }
 
 /// Linear interpolation of `values` at increasing `time` onto increasing `at`; beyond the ends the last value holds.
@@ -104,6 +140,17 @@ pub(crate) fn interpolate(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_part_is_interpolated_as_the_whole() {
+        let time: Vec<f64> = (0..300).map(|i| f64::from(i) + 0.3 * f64::from(i % 7)).collect();
+        let values: Vec<f64> = time.iter().map(|t| (0.1 * t).sin()).collect();
+        let at: Vec<f64> = (0..320).map(|i| 0.97 * f64::from(i) - 1.0).collect();
+        let whole = interpolate(&time, &values, &at);
+        for part in [0..1, 0..40, 17..180, 290..320, 319..320] {
+            assert_eq!(interpolate_part(&time, &values, &at[part.clone()]), whole[part]);
+        }
+    }
 
     #[test]
     fn interpolation_is_exact_on_a_line_and_holds_beyond_the_ends() {

@@ -257,8 +257,8 @@ impl Motion {
         // On the rows themselves an uneven clock would look like noise.
         let grid = Grid::of(recording, time);
         let longest = grid.segments.iter().max_by_key(|segment| segment.points);
-        let even = |channel: &[f64]| longest.map_or_else(Vec::new, |segment| grid.values(segment, time, channel));
-        let velocity_noise = recording.values(Quantity::Velocity).map(|velocity| white_noise(&even(velocity)));
+        let noise = |channel| longest.map_or(0.0, |segment| white_noise(&grid.values(segment, time, channel)));
+        let velocity_noise = recording.values(Quantity::Velocity).map(noise);
         let Some(position) = recording.values(Quantity::Position) else {
             let velocity = motion.values.clone();
             let rms_velocity = root_mean_square(&velocity);
@@ -282,7 +282,7 @@ impl Motion {
         let time_scale = if rms_velocity > 0.0 { root_mean_square(&centred) / rms_velocity } else { span };
         Ok(Self {
             period_s,
-            position_noise: Some(white_noise(&even(position)).max(rounding)),
+            position_noise: Some(noise(position).max(rounding)),
             velocity_noise,
             velocity: rates,
             rms_velocity,

@@ -1,9 +1,9 @@
-//! Applies the planned filter to a recording: samples for a fit, or one value for every row for a prediction.
+//! Applies the planned filter to a recording: samples for a fit.
 
 use std::ops::Range;
 
 use super::Samples;
-use super::grid::{Grid, Segment, interpolate};
+use super::grid::{Grid, Segment};
 use super::plan::{Preparation, VelocitySource};
 use crate::error::{Error, Result, codes};
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
@@ -18,7 +18,7 @@ const TEMPERATURE_SIGMA_S: f64 = 2.0;
 /// # Errors
 /// `FRK-D009` when the task lacks a column, `FRK-D017` when no stretch is long enough for the filter.
 pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Samples> {
-    let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording)) };
+    let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording, &(0..recording.len()))) };
     let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
     let grid = Grid::of(recording, time);
     let filter = GaussianFilter::new(sigma_s, grid.period_s);
@@ -32,17 +32,17 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
     }
 
     let mut samples = empty(recording, preparation, Some(1.0 / (grid.period_s * stride as f64)));
+    let everything = |_: &str| true;
     for segment in usable {
         let start = samples.time.len();
-        let on_grid = |channel: &[f64]| grid.values(segment, time, channel);
         let count = (segment.points - window) / stride + 1;
         let first = filter.half_width();
         samples.time.extend((0..count).map(|i| segment.start_s + (first + i * stride) as f64 * grid.period_s));
-        let motion = |channel: &[f64], order| filter.apply(&on_grid(channel), order, stride);
-        let torque = |channel: &[f64]| torque_filter.apply(&on_grid(channel), Order::Smooth, stride);
-        extend(&mut samples, recording, preparation, &|_| true, motion, torque);
+        let motion = |channel: &[f64], order| filter.apply(&grid.values(segment, time, channel), order, stride);
+        let torque = |channel: &[f64]| torque_filter.apply(&grid.values(segment, time, channel), Order::Smooth, stride);
+        extend(&mut samples, recording, preparation, &everything, motion, torque);
         if let Some(channel) = target(recording) {
-            let unfiltered = on_grid(channel);
+            let unfiltered = grid.values(segment, time, channel);
             samples.recorded.get_or_insert_default().extend((0..count).map(|i| unfiltered[first + i * stride]));
         }
         samples.segments.push(start..start + count);
@@ -72,53 +72,13 @@ pub(super) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Seg
     grid.segments.iter().filter(|segment| segment.points > 2 * filter.half_width()).collect()
 }
 
-/// One sample for every row of the recording, at the row's own time: for predictions beside the recorded rows. The
-/// actuator, recorded rigid body and named channels are filtered like the motion; near ends and gaps the motion is continued by point reflection.
-///
-/// # Errors
-/// `FRK-D009` when the task lacks a column.
-pub fn prepare_every_row(recording: &Recording, preparation: &Preparation) -> Result<Samples> {
-    prepare_every_row_of(recording, preparation, &|_| true)
-}
-
-/// The same with those named channels only that are read: a large recording may have many.
-///
-/// # Errors
-/// As [`prepare_every_row`].
-pub(crate) fn prepare_every_row_of(
-    recording: &Recording,
-    preparation: &Preparation,
-    is_read: &dyn Fn(&str) -> bool,
-) -> Result<Samples> {
-    let Some(sigma_s) = preparation.sigma_s else { return Ok(unfiltered(recording)) };
-    let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
-    let grid = Grid::of(recording, time);
-    let filter = GaussianFilter::new(sigma_s, grid.period_s);
-    let mut samples = empty(recording, preparation, Some(1.0 / grid.period_s));
-    for segment in &grid.segments {
-        let rows = segment.rows.clone();
-        let nodes: Vec<f64> = (0..segment.points).map(|i| segment.start_s + i as f64 * grid.period_s).collect();
-        let at_rows = |channel: &[f64], order| {
-            let filtered = filter.apply_everywhere(&grid.values(segment, time, channel), order);
-            if grid.resampled { interpolate(&nodes, &filtered, &time[rows.clone()]) } else { filtered }
-        };
-        samples.time.extend(&time[rows.clone()]);
-        extend(&mut samples, recording, preparation, is_read, at_rows, |channel| at_rows(channel, Order::Smooth));
-        samples.segments.push(rows);
-    }
-    samples.recorded = target(recording).map(<[f64]>::to_vec);
-    smooth_temperatures(&mut samples);
-    samples.recordings = vec![(recording.label.clone(), 0..samples.time.len())];
-    Ok(samples)
-}
-
 /// What a prediction is scored on.
-fn target(recording: &Recording) -> Option<&[f64]> {
+pub(super) fn target(recording: &Recording) -> Option<&[f64]> {
     recording.separated_friction().or_else(|| recording.actuator()).map(|channel| channel.values.as_slice())
 }
 
 /// Appends one segment of every channel, filtered by `apply`, that of the actuator by `apply_to_actuator`.
-fn extend(
+pub(super) fn extend(
     samples: &mut Samples,
     recording: &Recording,
     preparation: &Preparation,
@@ -179,9 +139,14 @@ fn named_channels(recording: &Recording) -> impl Iterator<Item = (&str, &[f64])>
         .map(|channel| (channel.name.as_str(), channel.values.as_slice()))
 }
 
+/// What smooths temperatures of so many samples a second once more.
+pub(super) fn temperature_filter(rate_hz: f64) -> GaussianFilter {
+    GaussianFilter::new(TEMPERATURE_SIGMA_S, 1.0 / rate_hz)
+}
+
 fn smooth_temperatures(samples: &mut Samples) {
     let Some(rate_hz) = samples.rate_hz else { return };
-    let filter = GaussianFilter::new(TEMPERATURE_SIGMA_S, 1.0 / rate_hz);
+    let filter = temperature_filter(rate_hz);
     let segments: Vec<Range<usize>> = samples.segments.clone();
     for (_, values) in samples.channels.iter_mut().filter(|(name, _)| name == "temperature") {
         for segment in &segments {
@@ -191,32 +156,31 @@ fn smooth_temperatures(samples: &mut Samples) {
     }
 }
 
-/// A separated recording as it is: nothing to differentiate, so nothing to filter.
-fn unfiltered(recording: &Recording) -> Samples {
-    let own = |quantity| recording.values(quantity).map(<[f64]>::to_vec);
-    let rows = recording.len();
-    let mut samples = Samples {
+/// Rows of a separated recording as they are: nothing to differentiate, so nothing to filter.
+pub(super) fn unfiltered(recording: &Recording, rows: &Range<usize>) -> Samples {
+    let of = |values: &[f64]| values[rows.clone()].to_vec();
+    let own = |quantity| recording.values(quantity).map(of);
+    let named = named_channels(recording).map(|(name, values)| (name.to_owned(), of(values)));
+    Samples {
         axis: recording.axis,
         time: own(Quantity::Time).unwrap_or_default(),
         position: own(Quantity::Position),
         velocity: own(Quantity::Velocity),
         acceleration: own(Quantity::Acceleration),
-        actuator: recording.actuator().map(|channel| channel.values.clone()),
+        actuator: recording.actuator().map(|channel| of(&channel.values)),
         actuator_unit: unit_of(recording),
         rigid_body: own(Quantity::RigidBodyTorque),
-        friction: recording.separated_friction().map(|channel| channel.values.clone()),
-        recorded: target(recording).map(<[f64]>::to_vec),
-        channels: Vec::new(),
-        segments: std::iter::once(0..rows).collect(),
-        recordings: vec![(recording.label.clone(), 0..rows)],
+        friction: recording.separated_friction().map(|channel| of(&channel.values)),
+        recorded: target(recording).map(of),
+        channels: named.collect(),
+        segments: std::iter::once(0..rows.len()).collect(),
+        recordings: vec![(recording.label.clone(), 0..rows.len())],
         rate_hz: None,
         filter: "friction recorded already separated; not filtered".to_owned(),
-    };
-    samples.channels = named_channels(recording).map(|(name, values)| (name.to_owned(), values.to_vec())).collect();
-    samples
+    }
 }
 
-fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>) -> Samples {
+pub(super) fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>) -> Samples {
     Samples {
         axis: recording.axis,
         time: Vec::new(),

@@ -10,7 +10,7 @@ use crate::fit::model::from_bytes;
 use crate::fit::{Options, Outcome, ProgressCallback, fit};
 use crate::joint::{Joint, RigidBody};
 use crate::recording::Recording;
-use crate::rollout::{Score, default_window_s, of_image};
+use crate::rollout::{Score, default_window_s, score_of_image};
 
 /// A recording simulated with the image.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ fn simulated(
     let known = identified.joint(joint);
     let window_s = default_window_s(joint.actuator.kind);
     let of = |recording: &Recording| {
-        let score = of_image(&model, recording, &known, window_s).ok().map(|rollout| rollout.score);
+        let score = score_of_image(&model, recording, &known, window_s).ok();
         Simulated { label: recording.label.clone(), score }
     };
     Ok(recordings.iter().map(of).collect())

@@ -108,8 +108,8 @@ fn fitted(tasks: &Tasks, task: &Task) -> Result<Fitted> {
 fn strongest_ripple(fitted: &Fitted) -> Option<[f64; 2]> {
     let (recording, trace) = (fitted.recordings.first()?, fitted.outcome.train.first()?);
     let residual: Vec<f64> = trace.measured.iter().zip(&trace.predicted).map(|(m, p)| m - p).collect();
-    let position = recording.values(Quantity::Position)?;
-    let found = ripple(&Rows { position, velocity: &trace.velocity, residual: &residual })?;
+    let position: Vec<f64> = recording.values(Quantity::Position)?.iter().step_by(trace.stride).copied().collect();
+    let found = ripple(&Rows { position: &position, velocity: &trace.velocity, residual: &residual })?;
     Some([found.amplitude, found.order])
 }
 

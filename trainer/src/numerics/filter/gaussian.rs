@@ -4,8 +4,9 @@
 //! derivative, so that F, F D and F D2 have the same gain at every frequency and terms that are linear in the motion
 //! match the filtered torque exactly (rule P1).
 
-use super::continued;
+use super::Part;
 use crate::numerics::products::dot;
+use std::ops::Range;
 
 /// The kernel is cut off at this many standard deviations.
 const HALF_WIDTH_SIGMAS: f64 = 4.0;
@@ -103,18 +104,40 @@ impl GaussianFilter {
     /// slope. Values within a half width of an end are less certain.
     #[must_use]
     pub fn apply_everywhere(&self, signal: &[f64], order: Order) -> Vec<f64> {
-        let padded = continued(signal, self.half_width());
-        let stride = (self.sigma_s / self.period_s / NODES_IN_SIGMA) as usize;
+        self.apply_within(&Part::all(signal), order, &(0..signal.len()))
+    }
+
+    /// The same at the `wanted` samples, of which the part holds what [`needed`](Self::needed) says.
+    pub(crate) fn apply_within(&self, part: &Part, order: Order, wanted: &Range<usize>) -> Vec<f64> {
+        let (half, stride) = (self.half_width(), self.node_stride());
         if stride < 2 {
-            return self.apply(&padded, order, 1);
+            return self.apply(&part.continued(wanted, half), order, 1);
         }
-        let nodes = self.apply(&padded, order, stride);
+        let between_nodes = self.between_nodes(wanted, part.whole());
+        let nodes = self.apply(&part.continued(&between_nodes, half), order, stride);
         let between = |row: usize| {
             let (node, beyond) = (row / stride, row % stride);
             let next = nodes.get(node + 1).unwrap_or(&nodes[node]);
             nodes[node] + (next - nodes[node]) * beyond as f64 / stride as f64
         };
-        (0..signal.len()).map(between).collect()
+        (wanted.start - between_nodes.start..wanted.end - between_nodes.start).map(between).collect()
+    }
+
+    /// The samples that the filter needs for the `wanted` ones, of a signal of length `whole`.
+    pub(crate) fn needed(&self, wanted: &Range<usize>, whole: usize) -> Range<usize> {
+        let (half, between_nodes) = (self.half_width(), self.between_nodes(wanted, whole));
+        between_nodes.start.saturating_sub(half)..(between_nodes.end + half).min(whole)
+    }
+
+    /// The samples from the node before the `wanted` ones to that behind them.
+    fn between_nodes(&self, wanted: &Range<usize>, whole: usize) -> Range<usize> {
+        let stride = self.node_stride().max(1);
+        wanted.start / stride * stride..(wanted.end.div_ceil(stride) * stride + 1).min(whole)
+    }
+
+    /// Samples from one node of a wide filter to the next.
+    fn node_stride(&self) -> usize {
+        (self.sigma_s / self.period_s / NODES_IN_SIGMA) as usize
     }
 
     fn kernel(&self, order: Order) -> &[f64] {

@@ -4,9 +4,8 @@
 use crate::diagnose::answer::sealed::{Residuals, SealedScore};
 use crate::diagnose::measurement::join::follow_s;
 use crate::fit::HostModel;
-use crate::fit::outcome::Trace;
-use crate::fit::score::trace;
-use crate::recording::Recording;
+use crate::fit::score::residual;
+use crate::recording::{Quantity, Recording};
 use serde_json::{Value, json};
 
 /// Scores two models on stretches (from, to; s) of recordings that follow each other. `None` where there are none, or a model cannot
@@ -22,18 +21,13 @@ pub(super) fn sealed_score(
     }
     let mut all = Residuals { time: Vec::new(), before: Vec::new(), after: Vec::new() };
     for recording in recordings {
-        let [before, after] = [trace(before, recording).ok()?, trace(after, recording).ok()?];
-        let shift_s = follow_s(&all.time, &before.time, period_s);
-        all.before.extend(residual(&before));
-        all.after.extend(residual(&after));
-        all.time.extend(before.time.iter().map(|time| time + shift_s));
+        let time = recording.values(Quantity::Time)?;
+        let shift_s = follow_s(&all.time, time, period_s);
+        all.before.extend(residual(before, recording).ok()?);
+        all.after.extend(residual(after, recording).ok()?);
+        all.time.extend(time.iter().map(|time| time + shift_s));
     }
     SealedScore::of(&all, when_s)
-}
-
-/// Recorded less predicted actuator.
-fn residual(trace: &Trace) -> impl Iterator<Item = f64> {
-    trace.measured.iter().zip(&trace.predicted).map(|(measured, predicted)| measured - predicted)
 }
 
 /// As the JSON of a diagnosis carries it.

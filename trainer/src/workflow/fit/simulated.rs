@@ -8,7 +8,7 @@ use crate::fit::Outcome;
 use crate::fit::model;
 use crate::joint::Joint;
 use crate::recording::{Axis, Recording};
-use crate::rollout::{default_window_s, of_image};
+use crate::rollout::{default_window_s, score_of_image};
 use crate::servo::{ServoFit, Simulated};
 
 /// Simulated recordings.
@@ -42,8 +42,8 @@ impl SimulatedMotions {
         let image = model::from_bytes(&outcome.image).ok()?;
         let window_s = default_window_s(joint.actuator.kind);
         let simulated = |recording: &Recording| {
-            let rollout = of_image(&image.model, recording, joint, window_s).ok();
-            Simulated { label: recording.label.clone(), score: rollout.map(|rollout| rollout.score) }
+            let score = score_of_image(&image.model, recording, joint, window_s).ok();
+            Simulated { label: recording.label.clone(), score }
         };
         let unit = if recordings.first()?.axis == Axis::Rotary { "rad" } else { "m" };
         let train: Vec<Simulated> = recordings.iter().map(simulated).collect();
