@@ -43,10 +43,11 @@ struct Jump {
 }
 
 fn jumps(recording: &Recording, time: &[f64], position: &[f64]) -> Vec<Jump> {
+    let least_of_encoder = OVER_RESOLUTION * resolution(position).unwrap_or(0.0);
     let gaps = &recording.health.gaps;
     let is_gap = |row: usize| gaps.binary_search(&row).is_ok();
     let speed = |row: usize| (position[row] - position[row - 1]) / (time[row] - time[row - 1]);
-    let rows: Vec<usize> = (1..position.len()).filter(|row| !is_gap(*row)).collect();
+    let rows = (1..position.len()).filter(|row| !is_gap(*row));
     // Beyond what the motion beside a row makes in its time.
     let change = |row: usize| {
         let beside = [row.wrapping_sub(2), row.wrapping_sub(1), row + 1, row + 2];
@@ -54,7 +55,7 @@ fn jumps(recording: &Recording, time: &[f64], position: &[f64]) -> Vec<Jump> {
         let motion = quantile(beside.map(speed), 0.5) * (time[row] - time[row - 1]);
         position[row] - position[row - 1] - motion
     };
-    let mut changes: Vec<Jump> = rows.iter().map(|row| Jump { row: *row, height: change(*row) }).collect();
+    let mut changes: Vec<Jump> = rows.map(|row| Jump { row, height: change(row) }).collect();
     changes.sort_by(|a, b| b.height.abs().total_cmp(&a.height.abs()));
     // The fewest jumps that all stand out of everything else.
     let found = (1..=MOST.min(changes.len().saturating_sub(1))).find_map(|count| {
@@ -63,9 +64,7 @@ fn jumps(recording: &Recording, time: &[f64], position: &[f64]) -> Vec<Jump> {
         let others = || changes.iter().filter(|jump| is_other(&jump.row));
         let largest_change = others().map(|jump| jump.height.abs()).next()?;
         let largest_step = others().map(|jump| (position[jump.row] - position[jump.row - 1]).abs()).fold(0.0, f64::max);
-        let least = (OVER_STEPS * largest_step)
-            .max(OVER_CHANGES * largest_change)
-            .max(OVER_RESOLUTION * resolution(position).unwrap_or(0.0));
+        let least = (OVER_STEPS * largest_step).max(OVER_CHANGES * largest_change).max(least_of_encoder);
         found.iter().all(|jump| jump.height.abs() > least).then(|| found.to_vec())
     });
     let mut found = found.unwrap_or_default();

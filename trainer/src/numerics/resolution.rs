@@ -24,24 +24,34 @@ pub(crate) fn resolution(values: &[f64]) -> Option<f64> {
 /// Step of a series whose stretches may be shifted against each other by anything.
 pub(crate) fn resolution_of_stretches<'a>(stretches: impl Iterator<Item = &'a [f64]> + Clone) -> Option<f64> {
     let rounding = ROUNDING * stretches.clone().flatten().fold(0.0_f64, |peak, value| peak.max(value.abs()));
-    let step =
-        common_step(&stretches.clone().flat_map(|values| gaps(values.to_vec(), rounding)).collect::<Vec<f64>>())?;
-    let differences = stretches.map(|values| values.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>());
-    let differences: Vec<Vec<f64>> = differences.collect();
-    let counts = Counts::of(&differences, step);
+    let step = {
+        let mut all = Vec::new();
+        for values in stretches.clone() {
+            let mut of_stretch = gaps(values.to_vec(), rounding);
+            // Of a series in one piece nothing is copied.
+            if all.is_empty() { all = of_stretch } else { all.append(&mut of_stretch) }
+        }
+        common_step(&all)?
+    };
+    let counts = Counts::of(stretches.clone(), step);
     if counts.in_a_row <= TRAVEL * counts.interruptions.max(1) {
         return Some(step);
     }
     // The travel of one sample and that of another differ by whole steps as well, and so does none in passing.
-    let travelled = differences.iter().flatten().map(|difference| difference.abs()).filter(|travel| *travel > rounding);
+    let travel = stretches.flat_map(|values| values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
     let in_passing = (counts.interruptions > 0).then_some(0.0);
-    common_step(&gaps(travelled.chain(in_passing).collect(), rounding))
+    common_step(&gaps(travel.filter(|travel| *travel > rounding).chain(in_passing).collect(), rounding))
 }
 
 /// Gaps between neighbouring values of a series in the order of size.
 fn gaps(mut values: Vec<f64>, rounding: f64) -> Vec<f64> {
     values.sort_unstable_by(f64::total_cmp);
-    values.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > rounding).collect()
+    for next in 1..values.len() {
+        values[next - 1] = values[next] - values[next - 1];
+    }
+    values.pop();
+    values.retain(|gap| *gap > rounding);
+    values
 }
 
 /// The step of which all gaps are multiples.
@@ -69,14 +79,15 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(stretches: &[Vec<f64>], step: f64) -> Self {
+    fn of<'a>(stretches: impl Iterator<Item = &'a [f64]>, step: f64) -> Self {
         let mut counts = Self::default();
-        for differences in stretches {
-            let steps: Vec<f64> = differences.iter().map(|difference| (difference / step).round()).collect();
-            for at in 1..steps.len() {
-                counts.in_a_row += usize::from(steps[at].abs() == 1.0 && steps[at] == steps[at - 1]);
-                let is_passed_over = at > 1 && steps[at - 1] == 0.0 && steps[at] * steps[at - 2] > 0.0;
-                counts.interruptions += usize::from(steps[at].abs() > 1.0 || is_passed_over);
+        for values in stretches {
+            let steps = |at: usize| ((values[at + 1] - values[at]) / step).round();
+            for at in 1..values.len().saturating_sub(1) {
+                let (now, before) = (steps(at), steps(at - 1));
+                counts.in_a_row += usize::from(now.abs() == 1.0 && now == before);
+                let is_passed_over = at > 1 && before == 0.0 && now * steps(at - 2) > 0.0;
+                counts.interruptions += usize::from(now.abs() > 1.0 || is_passed_over);
             }
         }
         counts

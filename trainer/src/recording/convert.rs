@@ -48,7 +48,10 @@ pub(super) fn convert(raw: &mut RawTable, assigned: &Assigned, joint: &Joint) ->
     let mut converted = Converted { channels: Vec::new(), rows: None, notes: Vec::new() };
     for (column, numbers) in columns.iter().zip(numbers) {
         let name = &raw.table.header()[column.index];
-        let dropped = numbers.is_text || (numbers.missing > 0 && !is_merged) || numbers.missing == rows;
+        let dropped = numbers.values.len() < rows
+            || numbers.is_text
+            || (numbers.missing > 0 && !is_merged)
+            || numbers.missing == rows;
         if name.is_empty() || (column.known.is_none() && dropped) {
             continue;
         }

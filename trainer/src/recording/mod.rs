@@ -9,6 +9,7 @@ mod convert;
 mod formats;
 mod guess;
 mod health;
+mod in_use;
 mod merged;
 mod names;
 mod of_joints;
@@ -32,8 +33,9 @@ pub use text::RECORD_LIMIT_BYTES;
 
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
+use in_use::{InUse, Keep};
 use source::Fingerprinted;
-use table::{Keep, RawTable};
+use table::RawTable;
 
 /// Fewest rows of data that a recording may have; below it no filter and no split makes sense.
 pub const MINIMUM_ROWS: usize = 20;
@@ -53,6 +55,8 @@ pub struct Recording {
     pub health: Health,
     /// The rows as text, as far as it was kept.
     pub table: TextTable,
+    /// Whether its interruptions are those of an excerpt, between whose stretches the motion went on.
+    pub is_excerpt: bool,
     /// Columns that nearly have the name of a quantity that no column has, with that name.
     pub nearly_named: Vec<(String, String)>,
     unusable: Vec<(Quantity, String)>,
@@ -90,15 +94,18 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
     Ok(recording)
 }
 
-/// The same without the text of its rows, which a large file cannot afford: 8 B a number.
+/// The same without the text of its rows, which a large file cannot afford: 8 B a number. Of a long one only those columns that are in use, as
+/// `inputs` are.
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn load_numbers(path: &Path, joint: &Joint) -> Result<Recording> {
+pub(crate) fn load_numbers(path: &Path, joint: &Joint, inputs: &[String]) -> Result<Recording> {
     let (file, label) = names_of(path);
-    let (raw, fingerprint) = read(source::open(path)?, Keep::Numbers).map_err(|error| error.in_file(&file))?;
+    let keep = Keep::Numbers(InUse::of(joint, inputs));
+    let (raw, fingerprint) = read(source::open(path)?, keep).map_err(|error| error.in_file(&file))?;
     let mut recording = interpret(&label, raw, fingerprint, joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
+    recording.table.forget_text();
     Ok(recording)
 }
 
@@ -129,7 +136,7 @@ pub fn load_joints(path: &Path, joints: &[Joint]) -> Result<Vec<Recording>> {
 /// # Errors
 /// As [`parse`]; `FRK-D013` where no column is the position of a joint.
 pub fn parse_joints(label: &str, source: impl std::io::Read, joints: &[Joint]) -> Result<Vec<Recording>> {
-    let (raw, fingerprint) = read(source, Keep::Numbers)?;
+    let (raw, fingerprint) = read(source, Keep::Numbers(InUse::all()))?;
     let parts = of_joints::take_apart(&raw, joints)?;
     parts.into_iter().map(|(part, joint)| interpret(label, part, fingerprint, &joint)).collect()
 }
@@ -149,7 +156,8 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
 /// As [`load`], where the file cannot be read even so.
 pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
     let (file, label) = names_of(path);
-    let (raw, fingerprint) = read(source::open(path)?, Keep::Numbers).map_err(|error| error.in_file(&file))?;
+    let (raw, fingerprint) =
+        read(source::open(path)?, Keep::Numbers(InUse::all())).map_err(|error| error.in_file(&file))?;
     let stem = Path::new(&label).file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     let proposal = guess::propose(&raw, &stem);
     let recording = Joint::parse(&proposal.toml).and_then(|joint| interpret(&label, raw, fingerprint, &joint));
@@ -187,6 +195,7 @@ fn interpret(label: &str, mut raw: RawTable, fingerprint: u64, joint: &Joint) ->
         content_hash: fingerprint,
         health,
         table,
+        is_excerpt: false,
         nearly_named: assigned.nearly,
         unusable: assigned.unusable,
         file: label.to_owned(),

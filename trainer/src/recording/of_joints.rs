@@ -176,7 +176,7 @@ fn no_position(header: &[String], joint: &Joint) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::table::Keep;
+    use crate::recording::in_use::{InUse, Keep};
 
     fn joints(names: [&str; 2]) -> Vec<Joint> {
         names.map(|name| Joint { name: Some(name.to_owned()), ..Joint::default() }).to_vec()
@@ -185,7 +185,7 @@ mod tests {
     fn parts(header: &str, names: [&str; 2]) -> Result<Vec<(RawTable, Joint)>> {
         let row = vec!["1"; header.split(',').count()].join(",");
         let text = format!("{header}\n{}", format!("{row}\n").repeat(30));
-        take_apart(&super::super::read(text.as_bytes(), Keep::Numbers).unwrap().0, &joints(names))
+        take_apart(&super::super::read(text.as_bytes(), Keep::Numbers(InUse::all())).unwrap().0, &joints(names))
     }
 
     #[test]

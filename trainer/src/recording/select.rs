@@ -1,6 +1,7 @@
 //! A recording with some of its rows, or with the values of a channel put right: what the checks hand on.
 
 use super::{Axis, Channel, Health, Quantity, Recording};
+use std::ops::Range;
 
 /// What becomes of the motion where rows are left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,38 @@ impl Recording {
             interruptions.extend((1..kept.len()).filter(|index| kept[*index] > kept[index - 1] + 1));
         }
         self.interrupted_at(interruptions)
+    }
+
+    /// Stretches of the recording (in order and apart), interrupted between them; without its text.
+    #[must_use]
+    pub(crate) fn excerpt(&self, stretches: &[Range<usize>]) -> Self {
+        let moved = |row: usize| {
+            let before = stretches.partition_point(|stretch| stretch.end <= row);
+            let rows: usize = stretches[..before].iter().map(Range::len).sum();
+            let within = stretches.get(before).map_or(0, |stretch| row.saturating_sub(stretch.start));
+            rows + within
+        };
+        let starts = stretches.iter().map(|stretch| stretch.start);
+        let interruptions = self.health.interruptions.iter().copied().chain(starts).map(moved).collect();
+        let of = |channel: &Channel| Channel {
+            values: stretches.iter().flat_map(|stretch| &channel.values[stretch.clone()]).copied().collect(),
+            name: channel.name.clone(),
+            column: channel.column.clone(),
+            column_unit: channel.column_unit.clone(),
+            ..*channel
+        };
+        let excerpt = Self {
+            label: self.label.clone(),
+            channels: self.channels.iter().map(of).collect(),
+            health: Health { notes: self.health.notes.clone(), ..Health::default() },
+            table: self.table.excerpt(stretches),
+            is_excerpt: true,
+            nearly_named: self.nearly_named.clone(),
+            unusable: self.unusable.clone(),
+            file: self.file.clone(),
+            ..*self
+        };
+        excerpt.interrupted_at(interruptions)
     }
 
     /// The same recording whose motion is interrupted before each of `rows` as well.

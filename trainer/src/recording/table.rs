@@ -2,19 +2,11 @@
 //! columns; numbers of other formats in their shortest text.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
+use super::in_use::{InUse, Keep};
 use super::vectors::{self, Expansion};
 use crate::error::{Error, Result, codes};
-
-/// What is kept of the text of a recording beside its numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Keep {
-    /// All of it, so that it can be written again.
-    #[default]
-    Text,
-    /// That of the first rows, and of columns whose numbers a double does not hold to the last digit.
-    Numbers,
-}
 
 /// Rows at the start whose text is kept in any case: layout and clock are told from them.
 const FIRST_ROWS: usize = 200;
@@ -123,6 +115,18 @@ impl TextTable {
         table
     }
 
+    /// Forgets the text of the rows.
+    pub(super) fn forget_text(&mut self) {
+        self.columns.iter_mut().for_each(|cells| *cells = Cells::default());
+    }
+
+    /// Stretches of the rows (in order and apart) without their text; a row keeps its line number.
+    pub(super) fn excerpt(&self, stretches: &[Range<usize>]) -> Self {
+        let mut table = Self::new(self.header.clone(), self.header_line);
+        stretches.iter().cloned().flatten().for_each(|row| table.begin_row(self.line(row)));
+        table
+    }
+
     /// The same rows with the columns `kept` only (increasing indices).
     fn with_columns(&self, kept: &[usize]) -> Self {
         Self {
@@ -138,6 +142,7 @@ impl TextTable {
 /// The numbers of a column as they stand in the file; not finite where a cell is empty, says so, or is text.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Numbers {
+    /// Empty where the column is not kept.
     pub(super) values: Vec<f64>,
     /// Cells that are empty or not finite.
     pub(super) missing: usize,
@@ -215,16 +220,18 @@ impl RawTable {
 
 /// Takes rows in; cells that hold a list become a column for each element.
 #[derive(Debug)]
-pub(super) struct TableBuilder {
+pub(super) struct TableBuilder<'a> {
     file_header: Vec<String>,
     expansion: Expansion,
     table: TextTable,
     numbers: Vec<Numbers>,
     decimal_comma: bool,
-    keep: Keep,
+    keep: Keep<'a>,
+    /// Whether columns were left out, by their places.
+    left_out: Vec<bool>,
 }
 
-impl TableBuilder {
+impl<'a> TableBuilder<'a> {
     /// A table of these columns, of which the first rows hold the cells `sample`.
     ///
     /// # Errors
@@ -243,21 +250,25 @@ impl TableBuilder {
                 .in_column(name.as_str()));
         }
         let (numbers, table) = (vec![Numbers::default(); names.len()], TextTable::new(names, header_line));
-        Ok(Self { file_header: header, expansion, table, numbers, decimal_comma: false, keep: Keep::Text })
+        let left_out = vec![false; numbers.len()];
+        Ok(Self { file_header: header, expansion, table, numbers, decimal_comma: false, keep: Keep::Text, left_out })
     }
 
     /// The same for numbers with a comma for their point or without, of whose text only so much is kept.
-    pub(super) fn reading(self, decimal_comma: bool, keep: Keep) -> Self {
+    pub(super) fn reading(self, decimal_comma: bool, keep: Keep<'a>) -> Self {
         Self { decimal_comma, keep, ..self }
     }
 
     /// Adds a cell to the row that was begun last.
     fn push_field(&mut self, column: usize, cell: &str) {
+        if self.left_out[column] {
+            return;
+        }
         let (numbers, row) = (&mut self.numbers[column], self.table.len() - 1);
         numbers.push(cell, self.decimal_comma);
         // A double holds the billionths of numbers below that; NaN, where the first cell is no number, is not below anything.
         let is_exact = numbers.values[0].abs() < EXACT;
-        if self.keep == Keep::Text || row < FIRST_ROWS || !is_exact {
+        if matches!(self.keep, Keep::Text) || row < FIRST_ROWS || !is_exact {
             self.table.columns[column].push(cell);
         }
     }
@@ -266,8 +277,13 @@ impl TableBuilder {
     ///
     /// # Errors
     /// `FRK-D007` where a list is shorter or longer than that of the first row.
-    pub(super) fn push<'a>(&mut self, line: u64, cells: impl Iterator<Item = &'a str>) -> Result<()> {
+    pub(super) fn push<'c>(&mut self, line: u64, cells: impl Iterator<Item = &'c str>) -> Result<()> {
         self.table.begin_row(line);
+        if let Keep::Numbers(in_use) = self.keep
+            && self.table.len() == in_use.from_rows
+        {
+            self.leave_out(&in_use);
+        }
         let mut column = 0;
         for (index, cell) in cells.enumerate() {
             let Some(length) = self.expansion.length(index) else {
@@ -294,6 +310,15 @@ impl TableBuilder {
         Ok(())
     }
 
+    /// Lets go of the columns that are not in use.
+    fn leave_out(&mut self, in_use: &InUse) {
+        for (column, _) in self.table.header.iter().enumerate().filter(|(_, name)| !in_use.holds(name)) {
+            self.left_out[column] = true;
+            self.numbers[column].values = Vec::new();
+            self.table.columns[column] = Cells::default();
+        }
+    }
+
     /// One entry a column of the file, repeated for each element of its lists.
     pub(super) fn expanded(&self, entries: &[String]) -> Vec<String> {
         let repeated = |(index, entry)| std::iter::repeat_n(entry, self.expansion.length(index).unwrap_or(1)).cloned();
@@ -307,7 +332,11 @@ impl TableBuilder {
 
     /// The table as it is to be interpreted.
     pub(super) fn finish(self) -> RawTable {
-        let Self { table, numbers, decimal_comma, .. } = self;
-        RawTable { table, numbers, units: Vec::new(), decimal_comma, notes: Vec::new() }
+        let Self { table, numbers, decimal_comma, left_out, .. } = self;
+        let names = table.header.iter().zip(left_out).filter(|(_, left_out)| *left_out).map(|(name, _)| name.as_str());
+        let names: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
+        let note = format!("too long for columns that nothing reads: {} left out", names.join(", "));
+        let notes = if names.is_empty() { Vec::new() } else { vec![note] };
+        RawTable { table, numbers, units: Vec::new(), decimal_comma, notes }
     }
 }

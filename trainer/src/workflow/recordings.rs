@@ -44,13 +44,13 @@ impl Source<'_> {
         }
     }
 
-    /// The same without the text of its rows, for what only learns from it.
+    /// The same without the text of its rows, for what only learns from it and from `inputs` among its channels.
     ///
     /// # Errors
     /// As [`recording::load`].
-    fn read_numbers(self, joint: &Joint) -> Result<Recording> {
+    fn read_numbers(self, joint: &Joint, inputs: &[String]) -> Result<Recording> {
         match self {
-            Self::File(path) => recording::load_numbers(path, joint),
+            Self::File(path) => recording::load_numbers(path, joint, inputs),
             Self::Bytes { .. } => self.read(joint),
         }
     }
@@ -101,12 +101,16 @@ pub(crate) fn load_all<'a, S: Into<Source<'a>>>(
     Ok((recordings, warnings.concat()))
 }
 
-/// A recording that may be fitted to, with what was put right.
+/// A recording that may be fitted to, with what was put right; `inputs` are channels that the law is to read.
 ///
 /// # Errors
 /// As [`Source::read`] and [`checks::review`], and the code of a fault that cannot be put right.
-pub(crate) fn load<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
-    let (recording, warnings) = load_with_faults(source, joint)?;
+pub(crate) fn load<'a>(
+    source: impl Into<Source<'a>>,
+    joint: &Joint,
+    inputs: &[String],
+) -> Result<(Recording, Vec<Warning>)> {
+    let (recording, warnings) = checks::review(source.into().read_numbers(joint, inputs)?, joint).map(with_warnings)?;
     match warnings.iter().find(|warning| warning.is_blocking()) {
         Some(warning) => {
             Err(Error::new(warning.note.note.fault.code(), warning.message.clone()).in_file(recording.file()))
@@ -120,7 +124,7 @@ pub(crate) fn load<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(
 /// # Errors
 /// As [`Source::read`] and [`checks::review`].
 pub(crate) fn load_with_faults<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
-    checks::review(source.into().read_numbers(joint)?, joint).map(with_warnings)
+    checks::review(source.into().read_numbers(joint, &[])?, joint).map(with_warnings)
 }
 
 /// A recording of which only the motion is used, or a simulation.
@@ -260,8 +264,8 @@ mod tests {
             path
         });
         let joint = Joint::default();
-        assert!(load(&good, &joint).unwrap().1.is_empty());
-        let error = load(&turned, &joint).unwrap_err();
+        assert!(load(&good, &joint, &[]).unwrap().1.is_empty());
+        let error = load(&turned, &joint, &[]).unwrap_err();
         assert_eq!((error.code().id, error.exit_status()), ("FRK-D024", 3));
         assert!(error.to_string().contains("turned.csv") && error.message().contains("wrong sign"), "{error}");
         let (_, warnings) = load_all(&[good, turned], |source| load_with_faults(source, &joint)).unwrap();
@@ -286,7 +290,7 @@ mod tests {
             path
         });
         let codes = |paths: &[std::path::PathBuf]| {
-            let (_, warnings) = load_all(paths, |source| load(source, &Joint::default())).unwrap();
+            let (_, warnings) = load_all(paths, |source| load(source, &Joint::default(), &[])).unwrap();
             warnings.iter().map(Warning::code).collect::<Vec<_>>()
         };
         assert_eq!(codes(std::slice::from_ref(&there)), ["FRK-W008"]);

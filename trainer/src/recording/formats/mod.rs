@@ -18,8 +18,9 @@ mod tests;
 use std::io::{Cursor, Read};
 use std::panic::catch_unwind;
 
+use super::in_use::Keep;
 use super::source::failed;
-use super::table::{Keep, RawTable};
+use super::table::RawTable;
 use super::text;
 use crate::error::{Error, Result, codes};
 
@@ -39,7 +40,7 @@ type Reader = fn(&[u8]) -> Result<RawTable>;
 ///
 /// # Errors
 /// `FRK-D043` for a format that is not read, with what to do instead; those of the format's reader.
-pub(super) fn read(mut source: impl Read, keep: Keep) -> Result<RawTable> {
+pub(super) fn read(mut source: impl Read, keep: Keep<'_>) -> Result<RawTable> {
     let mut start = Vec::new();
     source.by_ref().take(START_BYTES).read_to_end(&mut start).map_err(|error| failed(&error))?;
     let reader = reader_of(&start)?;

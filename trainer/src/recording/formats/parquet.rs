@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
     Ok(builder.finish())
 }
 
-fn begin(header: &[String], first: &[Vec<String>]) -> Result<TableBuilder> {
+fn begin(header: &[String], first: &[Vec<String>]) -> Result<TableBuilder<'static>> {
     let sample: Vec<Vec<&str>> = first.iter().map(|row| row.iter().map(String::as_str).collect()).collect();
     let mut builder = TableBuilder::new(header.to_vec(), 1, &sample)?;
     for (index, row) in sample.into_iter().enumerate() {

@@ -247,10 +247,10 @@ mod tests {
     use super::super::{Quantity, read};
     use super::{Proposal, propose};
     use crate::joint::Joint;
-    use crate::recording::table::Keep;
+    use crate::recording::in_use::{InUse, Keep};
 
     fn proposed(text: &str) -> Proposal {
-        propose(&read(text.as_bytes(), Keep::Numbers).unwrap().0, "arm")
+        propose(&read(text.as_bytes(), Keep::Numbers(InUse::all())).unwrap().0, "arm")
     }
 
     #[test]

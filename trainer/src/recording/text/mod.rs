@@ -5,8 +5,9 @@ mod records;
 
 use std::io::{BufRead, BufReader, Read};
 
+use super::in_use::Keep;
 use super::source::failed;
-use super::table::{Keep, RawTable, TableBuilder};
+use super::table::{RawTable, TableBuilder};
 use crate::error::{Error, Result, codes};
 use dialect::{Dialect, Header, dialect_of, leading_records};
 pub use records::RECORD_LIMIT_BYTES;
@@ -16,7 +17,7 @@ use records::Records;
 const PROBE_BYTES: usize = 1 << 16;
 
 /// Reads header and rows; every row has as many fields as the header.
-pub(super) fn read(mut source: impl Read, keep: Keep) -> Result<RawTable> {
+pub(super) fn read(mut source: impl Read, keep: Keep<'_>) -> Result<RawTable> {
     let mut probe = Vec::with_capacity(PROBE_BYTES);
     source.by_ref().take(PROBE_BYTES as u64).read_to_end(&mut probe).map_err(|error| failed(&error))?;
     let whole = probe.len() < PROBE_BYTES;
@@ -87,7 +88,7 @@ fn texts(records: &Records<impl BufRead>) -> Result<Vec<String>> {
     records.fields().enumerate().map(text).collect()
 }
 
-fn push_row(builder: &mut TableBuilder, records: &Records<impl BufRead>) -> Result<()> {
+fn push_row(builder: &mut TableBuilder<'_>, records: &Records<impl BufRead>) -> Result<()> {
     let header = builder.file_header();
     if records.len() != header.len() {
         let message = format!("this row has {} fields, the header has {}", records.len(), header.len());

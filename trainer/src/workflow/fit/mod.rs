@@ -71,8 +71,9 @@ pub fn fit(
         let message = "a table of integers is made from recorded torque, force or current; this joint reports none";
         return Err(Error::new(&codes::USAGE, message).with_value(options.budget.target.name));
     }
-    let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint))?;
-    let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint))?;
+    let inputs = options.inputs.as_deref().unwrap_or_default();
+    let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint, inputs))?;
+    let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint, inputs))?;
     warnings.extend(of_tests);
     let sources = recordings.iter().chain(&tests).map(Recording::source).collect();
     let forces = OtherForces::of(&recordings, joint)?;
