@@ -45,14 +45,20 @@ impl Family {
     }
 }
 
+/// Directions of each variant of a hypothesis, orthonormal and one value a row.
+pub(crate) type Directions = Vec<Vec<Vec<f64>>>;
+
+/// Draws whose statistics are worked out at a time: some 8 B a row each.
+const DRAWS_AT_A_TIME: usize = 32;
+
 /// What the null draws know of a hypothesis.
-pub(crate) struct NullGroup {
+pub(crate) struct NullGroup<'a> {
     /// Its family.
     pub family: Family,
     /// Whether its coefficients may only be positive.
     pub only_positive: bool,
-    /// Orthonormal directions of each of its variants, with the base projected out; that of a single column has its sign.
-    pub variants: Vec<Vec<Vec<f64>>>,
+    /// Makes the directions of its variants, with the base projected out; that of a single column has its sign.
+    pub directions: Box<dyn Fn() -> Directions + Sync + Send + 'a>,
 }
 
 /// -log of the upper tail of chi-square.
@@ -85,9 +91,9 @@ impl NullDraws {
         // One group after the other, so that only one group's directions and draws are held at a time.
         let surprises: Vec<Vec<f64>> = groups
             .par_iter()
-            .map(|NullGroup { family, only_positive, variants }| {
-                let variants: Vec<Vec<Vec<f64>>> =
-                    variants.iter().map(|variant| variant.iter().map(|d| gather(d)).collect()).collect();
+            .map(|NullGroup { family, only_positive, directions }| {
+                let mut variants = directions();
+                variants.iter_mut().flatten().for_each(|direction| *direction = gather(direction));
                 // What a named effect explains is its evidence and no measure of its chance (ter Braak 1992). A series of a dozen
                 // terms also holds the slow noise itself.
                 let own = match family {
@@ -99,8 +105,11 @@ impl NullDraws {
                     project_out(&mut pool, own, &packed_runs);
                 }
                 // The directions are free of the base, so that what a draw has of it does not count.
-                let values = draws.iter().flat_map(|blocks| resample(&pool, blocks)).collect();
-                largest_surprises(&variants, *only_positive, &DMatrix::from_vec(rows, count, values))
+                let largest = |draws: &[Vec<Block>]| {
+                    let values = draws.iter().flat_map(|blocks| resample(&pool, blocks)).collect();
+                    largest_surprises(&variants, *only_positive, &DMatrix::from_vec(rows, draws.len(), values))
+                };
+                draws.chunks(DRAWS_AT_A_TIME).flat_map(largest).collect()
             })
             .collect();
         let families: Vec<Family> = groups.iter().map(|group| group.family).collect();
@@ -200,14 +209,14 @@ mod tests {
     use super::*;
     use crate::numerics::random::normal;
 
-    fn named(direction: &[f64], only_positive: bool) -> NullGroup {
-        NullGroup { family: Family::Named, only_positive, variants: vec![vec![direction.to_vec()]] }
+    fn group(family: Family, only_positive: bool, variant: &[Vec<f64>]) -> NullGroup<'_> {
+        NullGroup { family, only_positive, directions: Box::new(|| vec![variant.to_vec()]) }
     }
 
     /// White noise, and a constant direction of as many rows.
-    fn noise_and_direction(rows: usize, seed: u64) -> (Vec<f64>, Vec<f64>) {
+    fn noise_and_direction(rows: usize, seed: u64) -> (Vec<f64>, Vec<Vec<f64>>) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        ((0..rows).map(|_| normal(&mut random)).collect(), vec![(rows as f64).powf(-0.5); rows])
+        ((0..rows).map(|_| normal(&mut random)).collect(), vec![vec![(rows as f64).powf(-0.5); rows]])
     }
 
     #[test]
@@ -216,7 +225,7 @@ mod tests {
         let (noise, direction) = noise_and_direction(rows, 8);
         let runs = std::iter::once(0..rows).collect::<Vec<_>>();
         let chance = |only_positive: bool| {
-            let null = NullDraws::draw(&[named(&direction, only_positive)], &noise, &runs, 400, 1);
+            let null = NullDraws::draw(&[group(Family::Named, only_positive, &direction)], &noise, &runs, 400, 1);
             null.family_wise(0, chi_square_surprise(12.0, 1))
         };
         let ratio = chance(true) / chance(false);
@@ -228,8 +237,8 @@ mod tests {
         let rows = 2_000;
         let (noise, direction) = noise_and_direction(rows, 3);
         let chance = |effect: f64| {
-            let residual: Vec<f64> = noise.iter().zip(&direction).map(|(e, d)| e + effect * d).collect();
-            let group = named(&direction, false);
+            let residual: Vec<f64> = noise.iter().zip(&direction[0]).map(|(e, d)| e + effect * d).collect();
+            let group = group(Family::Named, false, &direction);
             let runs = std::iter::once(0..rows).collect::<Vec<_>>();
             let null = NullDraws::draw(&[group], &residual, &runs, 200, 1);
             null.family_wise(0, chi_square_surprise(25.0, 1))
@@ -258,7 +267,7 @@ mod tests {
                 })
                 .collect();
             let energy: f64 = series.iter().map(|d| dot(d, &noise, &runs).powi(2)).sum();
-            let group = NullGroup { family: Family::Generic, only_positive: false, variants: vec![series.clone()] };
+            let group = group(Family::Generic, false, &series);
             let null = NullDraws::draw(&[group], &noise, &runs, 60, seed);
             tail_probability(chi_square_surprise(energy, series.len()), null.tails[0]) < 0.03
         };

@@ -15,6 +15,7 @@ use crate::diagnose::search::thresholds::Settings;
 use crate::numerics::least_squares::{least_squares, orthonormal, project_out, weighted};
 use crate::physics::EffectId;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Shapes that a refinement distinguishes between two points of the grid, for each free shape parameter: their
 /// logarithm is taken off the surprise, as the null draws stay on the grid. Chosen by judgement: steps down to a
@@ -35,7 +36,6 @@ pub(crate) struct Round<'s, 'a> {
     pub(crate) bench: Bench,
     alone: Option<VariantEvidence>,
     variants: Tested,
-    white: Vec<Vec<f64>>,
     /// What base and best candidates leave, whitened.
     left: Vec<f64>,
     /// Largest energy that each group explains before whitening.
@@ -50,7 +50,7 @@ impl<'s, 'a> Round<'s, 'a> {
         let mut explained = Vec::new();
         let mut left = Vec::new();
         for _ in 0..2 {
-            let (_, bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
+            let (bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
                     let tested =
@@ -68,23 +68,29 @@ impl<'s, 'a> Round<'s, 'a> {
             noise = search.workbench.noise_of(&left);
         }
         let left = search.workbench.whitened(&[left], &noise).swap_remove(0);
-        let (white, bench, variants) = weigh_all(search.workbench, base, &noise, true);
+        let (bench, variants) = weigh_all(search.workbench, base, &noise, true);
         let alone = bench.alone();
-        Self { search, noise, bench, alone, variants, white, left, explained }
+        Self { search, noise, bench, alone, variants, left, explained }
     }
 
     pub(crate) fn draw_null(&self) -> NullDraws {
         let best = best_two(self.search.workbench, &self.variants, self.bench.rows(), CLEAR_CANDIDATE_NATS);
         let runs = self.bench.runs();
-        let in_the_draws = |(group, evidence): (&Group, &Vec<Option<VariantEvidence>>)| {
+        let design = &self.search.workbench.design;
+        let in_the_draws = |(group, evidence): (&'_ Group, &'_ Vec<Option<VariantEvidence>>)| {
             let weighed =
                 group.variants.iter().zip(evidence).filter(|(variant, evidence)| {
                     evidence.is_some() && ridge_of(&group.label, &variant.shape).is_empty()
                 });
-            let directions = |variant: &Variant| {
-                let mut columns = self.white[variant.columns.clone()].to_vec();
-                columns.iter_mut().for_each(|column| self.bench.take_off_base(column));
-                orthonormal(&columns, &runs)
+            let weighed: Vec<Range<usize>> = weighed.map(|(variant, _)| variant.columns.clone()).collect();
+            let directions = move || {
+                let of_variant = |columns: &Range<usize>| {
+                    let white = |column: &Vec<f64>| self.noise.whitened(column, &self.bench.runs());
+                    let mut columns: Vec<Vec<f64>> = design.columns[columns.clone()].iter().map(white).collect();
+                    columns.iter_mut().for_each(|column| self.bench.take_off_base(column));
+                    orthonormal(&columns, &self.bench.runs())
+                };
+                weighed.iter().map(of_variant).collect()
             };
             NullGroup {
                 family: match group.label {
@@ -92,11 +98,10 @@ impl<'s, 'a> Round<'s, 'a> {
                     Label::Generic(_) => Family::Generic,
                 },
                 only_positive: self.search.workbench.only_positive(&group.label),
-                variants: weighed.map(|(variant, _)| directions(variant)).collect(),
+                directions: Box::new(directions),
             }
         };
-        let groups: Vec<NullGroup> =
-            self.search.workbench.design.groups.par_iter().zip(&self.variants).map(in_the_draws).collect();
+        let groups: Vec<NullGroup> = design.groups.iter().zip(&self.variants).map(in_the_draws).collect();
         let mut rest = self.bench.target_beside_base();
         let mut best = self.search.workbench.whitened(&best, &self.noise);
         best.iter_mut().for_each(|column| self.bench.take_off_base(column));
@@ -254,26 +259,23 @@ impl<'s, 'a> Round<'s, 'a> {
     }
 }
 
-/// Whitens the design and weighs every variant, held-out folds only where asked for.
-fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Vec<Vec<f64>>, Bench, Tested) {
+/// Whitens the design, group by group, and weighs every variant, held-out folds only where asked for.
+fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Bench, Tested) {
     let bench = workbench.bench(base, noise);
-    let white = workbench.whitened(&workbench.design.columns, noise);
-    let variants = workbench
-        .design
-        .groups
-        .par_iter()
-        .map(|group| {
-            group
-                .variants
-                .iter()
-                .map(|variant| {
-                    let ridge = ridge_of(&group.label, &variant.shape);
-                    bench.weigh(&white[variant.columns.clone()], &ridge, folds)
-                })
-                .collect()
-        })
-        .collect();
-    (white, bench, variants)
+    let (design, runs) = (&workbench.design, bench.runs());
+    let tested = |group: &Group| {
+        let first = group.variants.iter().map(|variant| variant.columns.start).min().unwrap_or(0);
+        let end = group.variants.iter().map(|variant| variant.columns.end).max().unwrap_or(first);
+        let white: Vec<Vec<f64>> =
+            design.columns[first..end].iter().map(|column| noise.whitened(column, &runs)).collect();
+        let weigh = |variant: &Variant| {
+            let columns = variant.columns.start - first..variant.columns.end - first;
+            bench.weigh(&white[columns], &ridge_of(&group.label, &variant.shape), folds)
+        };
+        group.variants.iter().map(weigh).collect()
+    };
+    let tested = design.groups.par_iter().map(tested).collect();
+    (bench, tested)
 }
 
 /// Criterion for each row above which a candidate is dominant, nats: 1/2 ln(1/(1 - 0.18)), so that it explains a fifth
