@@ -50,6 +50,8 @@ pub struct JointState {
     pub base_friction: Vec<(f64, f64)>,
     /// Stretches of uninterrupted time; memories restart at each.
     pub segments: Vec<Range<usize>>,
+    /// Whether they are stretches of a motion that went on between them.
+    pub is_excerpt: bool,
     /// Distance, time and dwell since the last reversal or stop.
     pub memory: MemoryAxes,
     /// What the actuator was told, where the torque is what it made of that.
@@ -191,9 +193,12 @@ impl JointState {
         high - low
     }
 
-    /// Recorded duration in s, gaps left out.
+    /// Recorded duration in s, gaps left out, but of an excerpt all that it is taken from.
     pub fn duration(&self) -> f64 {
-        self.len() as f64 * self.period
+        match (self.time.first(), self.time.last()) {
+            (Some(first), Some(last)) if self.is_excerpt => last - first,
+            _ => self.len() as f64 * self.period,
+        }
     }
 
     /// Friction of the base model at a velocity, held beyond the ends.

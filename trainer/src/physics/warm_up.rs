@@ -1,6 +1,7 @@
 //! B2, Simoni, Beschi, Legnani and Visioli 2015: warm-up by the joint's own dissipated power, without a sensor.
 
 use super::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
+use crate::numerics::statistics::mean;
 
 pub(super) struct WarmUp;
 
@@ -8,24 +9,25 @@ pub(super) struct WarmUp;
 /// is memory of the contact.
 const LEAST_TIME_CONSTANT_S: f64 = 5.0;
 
-/// Power that friction dissipates, smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start.
+/// Power that friction dissipates, smoothed over the thermal time constant, in W: h <- h + (1 - exp(-dt/tau)) (P - h), cold at the start. Over a
+/// gap the joint cools, or warms as usual where it went on between the stretches of an excerpt.
 pub(crate) fn smoothed_power(state: &JointState, time_constant: f64) -> Vec<f64> {
     let step = 1.0 - (-state.period / time_constant).exp();
+    let power: Vec<f64> =
+        state.velocity.iter().map(|velocity| (state.base_friction_at(*velocity) * velocity).abs()).collect();
+    let over_gaps = if state.is_excerpt { mean(&power) } else { 0.0 };
     let mut warmth = 0.0;
     let mut before = f64::NEG_INFINITY;
-    (0..state.len())
-        .map(|i| {
-            let gap = state.time[i] - before;
-            if gap.is_finite() && gap > 2.0 * state.period {
-                warmth *= (-gap / time_constant).exp();
-            }
-            before = state.time[i];
-            let velocity = state.velocity[i];
-            let power = (state.base_friction_at(velocity) * velocity).abs();
-            warmth += step * (power - warmth);
-            warmth
-        })
-        .collect()
+    let mut smooth = |(time, power): (&f64, &f64)| {
+        let gap = time - before;
+        if gap.is_finite() && gap > 2.0 * state.period {
+            warmth = over_gaps + (warmth - over_gaps) * (-gap / time_constant).exp();
+        }
+        before = *time;
+        warmth += step * (power - warmth);
+        warmth
+    };
+    state.time.iter().zip(&power).map(&mut smooth).collect()
 }
 
 impl Hypothesis for WarmUp {

@@ -46,6 +46,8 @@ pub struct Signals {
     pub position_resolution: f64,
     /// Whether samples lie between recorded rows, whose clock jitters.
     pub resampled: bool,
+    /// Whether the segments are stretches of a motion that went on between them.
+    pub is_excerpt: bool,
     /// What the actuator was told, where the torque is what it made of that.
     pub commanded: Option<Commanded>,
     /// Largest torque of the drive in N m, where it is stated and the torque is recorded in N m.
@@ -105,6 +107,7 @@ impl Signals {
             rotary,
             position_resolution: recording.health.position_resolution.unwrap_or(0.0),
             resampled: even.resampled,
+            is_excerpt: recording.is_excerpt,
             torque_limit: joint.drive.torque_limit_nm.filter(|_| recording.values(Quantity::Torque).is_some()),
             spikes: spikes.clone(),
             torque,

@@ -10,13 +10,22 @@ use crate::physics::JointState;
 /// before, so that the grid costs at most a quarter of the band; a first one beyond 50 Hz costs rows and computing
 /// time.
 const CUT_OFFS_HZ: [f64; 11] = [50.0, 40.0, 30.0, 22.0, 16.0, 12.0, 9.0, 6.5, 4.5, 3.0, 2.0];
+
+/// Largest cut-off over the rate of the samples.
+const LARGEST_RATE_SHARE: f64 = 0.11;
+
+/// The widest filter that is tried at a rate of so many samples a second: its cut-off, Hz.
+pub(crate) fn widest_cut_off_hz(rate_hz: f64) -> f64 {
+    CUT_OFFS_HZ.into_iter().find(|hz| *hz <= LARGEST_RATE_SHARE * rate_hz).unwrap_or(LARGEST_RATE_SHARE * rate_hz)
+}
+
 impl Prepared {
     /// Prepares states and rows. The cut-off is the widest at which the errors of the position, through the inertia, stay
     /// small against the residual.
     pub fn new(signals: &Signals, known: Known, lock: Lock) -> Self {
         let rate = 1.0 / signals.period;
         let mut chosen = None;
-        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= 0.11 * rate) {
+        for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= LARGEST_RATE_SHARE * rate) {
             let mut prepared = Self::at_cut_off(signals, cut_off, known, lock);
             prepared.quantisation_limited = chosen.is_some();
             let fits = encoder_noise_is_small(&prepared, signals);
@@ -28,7 +37,7 @@ impl Prepared {
                 _ => chosen = Some(prepared),
             }
         }
-        chosen.unwrap_or_else(|| Self::at_cut_off(signals, 0.11 * rate, known, lock))
+        chosen.unwrap_or_else(|| Self::at_cut_off(signals, LARGEST_RATE_SHARE * rate, known, lock))
     }
 }
 

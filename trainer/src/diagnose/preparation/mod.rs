@@ -5,5 +5,6 @@ pub(crate) mod gravity;
 pub(crate) mod position_error;
 pub(crate) mod rows;
 pub(crate) mod sampling_jitter;
+pub(crate) mod searched;
 pub(crate) mod states;
 pub(crate) mod two_encoders;

@@ -7,7 +7,7 @@ use crate::physics::JointState;
 use std::ops::Range;
 
 /// Working samples a period of the cut-off: fine enough for the transition of the filter.
-const ROWS_PER_CUT_OFF: f64 = 2.5;
+pub(crate) const ROWS_PER_CUT_OFF: f64 = 2.5;
 /// Least number of blocks for held-out evidence.
 const LEAST_BLOCKS: usize = 10;
 

@@ -117,6 +117,7 @@ impl Prepared {
             predicted: Vec::new(),
             base_friction: Vec::new(),
             segments: segments.clone(),
+            is_excerpt: signals.is_excerpt,
             memory: MemoryAxes::default(),
             commanded: signals.commanded.clone(),
             gear_ratio: signals.gear_ratio,

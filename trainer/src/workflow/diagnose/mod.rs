@@ -2,33 +2,30 @@
 
 mod commanded;
 mod compare;
+mod improvement;
 mod one_joint;
 mod request;
 mod sealed;
+mod searched;
 mod summary;
 mod trajectory;
 
 use std::time::Instant;
 
-use frikan_shared::image::Image;
-use frikan_shared::model::RigidBody;
-use frikan_shared::units::Unit;
 use serde_json::Value;
 
 use super::recordings::{Warning, load_all, load_with_faults, units};
-use crate::compile::cost::in_floats;
-use crate::compile::improved::{Origin, improve};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::Diagnosis;
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::preparation::searched::searched as stretches_to_search;
 use crate::diagnose::request::{Options, Refusal};
 use crate::diagnose::run;
 use crate::diagnose::search::thresholds::Settings;
 use crate::error::{Error, Result, codes};
 use crate::figures::digits;
-use crate::fit;
 use crate::fit::OtherForces;
 use crate::joint::Joint;
 use crate::parameter::Parameter;
@@ -42,8 +39,10 @@ use crate::report::{self, DiagnosisPage};
 use crate::servo::{Identified, Load};
 use commanded::{Commands, under_torque};
 use compare::{Compared, comparison};
+use improvement::improved_image;
+pub use improvement::{Improvement, Written};
 pub use request::{Against, BaseKind, Request};
-use sealed::sealed_score;
+pub use searched::Searched;
 use summary::{Told, summary};
 
 /// A diagnosis with what was made of it.
@@ -59,6 +58,8 @@ pub struct Diagnosed {
     pub sources: Vec<(String, u64)>,
     /// Samples that were read.
     pub samples: usize,
+    /// What of a long recording was searched; `None` where all was.
+    pub searched: Option<Searched>,
     /// Time that it took, s.
     pub seconds: f64,
     forces: OtherForces,
@@ -68,17 +69,6 @@ pub struct Diagnosed {
     seed: u64,
     /// What is known of the actuator of a joint that reports no torque.
     actuator: Option<Identified>,
-}
-
-/// The improved model of a diagnosis.
-#[derive(Clone, Debug)]
-pub enum Improvement {
-    /// It was made.
-    Written(Written),
-    /// It cannot be written as an image.
-    Refused(Error),
-    /// The measurement has to be put right first.
-    Blocked,
 }
 
 /// Diagnoses recordings of one joint; `stage` is told what is being done.
@@ -119,8 +109,16 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let forces = OtherForces::of(&recordings, joint)?;
     let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = &recordings[0];
+    let excerpt = stretches_to_search(&recordings);
+    let real_searched = excerpt.as_deref().unwrap_or(&recordings);
+    let simulation =
+        simulation.transpose()?.map(|simulation| match stretches_to_search(std::slice::from_ref(&simulation)) {
+            Some(mut excerpt) => excerpt.swap_remove(0),
+            None => simulation,
+        });
     let (comparison, compared) =
-        comparison(&request.against, (&recordings, &told), simulation.transpose()?, joint, request.by_likelihood)?;
+        comparison(&request.against, (real_searched, &told), simulation, joint, request.by_likelihood)?;
+    let told_searched = excerpt.is_some().then(|| Searched::new(comparison.signals.time.len(), &recordings));
     let units = units(real);
     let options = Options {
         base: match request.against {
@@ -146,11 +144,12 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
             Err(error) => Improvement::Refused(error),
         }
     };
-    let story = tell(&diagnosis, sealed_of(&improvement), units);
+    let story = tell(&diagnosis, improvement.sealed(), units);
     Ok(Diagnosed {
         label: real.label.clone(),
         sources: recordings.iter().map(Recording::source).chain(compared.source()).collect(),
-        samples: comparison.signals.time.len(),
+        samples: told_searched.map_or(comparison.signals.time.len(), |searched| searched.of),
+        searched: told_searched,
         seconds: begin.elapsed().as_secs_f64(),
         seed: request.seed,
         diagnosis,
@@ -179,7 +178,12 @@ impl Diagnosed {
         };
         let forces: String = self.forces.factors.iter().map(factor).collect();
         let untold: String = self.forces.remarks.iter().map(|remark| format!("{remark}\n")).collect();
-        text_of(&self.story, self.advice.as_ref()) + &actuator.unwrap_or_default() + &forces + &untold
+        let searched = self.searched.map(|searched| searched.sentence() + "\n");
+        text_of(&self.story, self.advice.as_ref())
+            + &actuator.unwrap_or_default()
+            + &forces
+            + &untold
+            + &searched.unwrap_or_default()
     }
 
     /// The result as JSON, schema `frikan.diagnose/1`.
@@ -196,6 +200,9 @@ impl Diagnosed {
         if let Some(actuator) = &self.actuator {
             summary["actuator"] = commanded::constants(actuator);
         }
+        if let Some(searched) = self.searched {
+            summary["searched"] = searched.to_json();
+        }
         summary
     }
 
@@ -204,7 +211,8 @@ impl Diagnosed {
     #[must_use]
     pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
         let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", commanded::sentence(actuator)));
-        let settings = format!("Seed {}.{}", self.seed, actuator.unwrap_or_default());
+        let searched = self.searched.map(|searched| format!(" {}", searched.sentence()));
+        let settings = format!("Seed {}.{}{}", self.seed, actuator.unwrap_or_default(), searched.unwrap_or_default());
         report::diagnosis(&DiagnosisPage {
             recording: &self.label,
             compared_with,
@@ -233,20 +241,13 @@ impl Diagnosed {
     /// How much better the improved image is on rows that decided nothing.
     #[must_use]
     pub fn sealed(&self) -> Option<&SealedScore> {
-        sealed_of(&self.improvement)
+        self.improvement.sealed()
     }
 
     /// The motion that would tell apart what cannot be told, as CSV.
     #[must_use]
     pub fn trajectory(&self) -> Option<String> {
         self.advice.as_ref().map(|plan| trajectory::to_csv(plan, self.units.rotary))
-    }
-}
-
-fn sealed_of(improvement: &Improvement) -> Option<&SealedScore> {
-    match improvement {
-        Improvement::Written(written) => written.sealed.as_ref(),
-        Improvement::Refused(_) | Improvement::Blocked => None,
     }
 }
 
@@ -273,55 +274,6 @@ fn advice(
     let recorded_body = real.channel(Quantity::RigidBodyTorque).is_some();
     let at = |state: &JointState| compared.at(state, recorded_body);
     plan(&Question { comparison, diagnosis, limits, reference: Some(&at) })
-}
-
-/// An improved image, what it holds in sentences, and how much better it is on rows that decided nothing.
-#[derive(Clone, Debug)]
-pub struct Written {
-    /// The image.
-    pub image: Vec<u8>,
-    /// What it holds, in sentences.
-    pub remarks: Vec<String>,
-    /// Rigid body of the model compared with, where that is a model.
-    pub compared_with: Option<RigidBody>,
-    /// How much better it is on rows that decided nothing, where there are such.
-    pub sealed: Option<SealedScore>,
-}
-
-fn improved_image(
-    request: &Request<'_>,
-    (recordings, joint): (&[Recording], &Joint),
-    diagnosis: &Diagnosis,
-    comparison: &Comparison,
-    compared: &Compared,
-) -> Result<Written> {
-    let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, request.seed);
-    let origin = match compared {
-        Compared::Itself(body) => Origin::Recording(**body),
-        Compared::Simulation(law, given, _) => Origin::Simulation(law, *given),
-        Compared::Model(image) => {
-            provenance.law_error = image.provenance.law_error;
-            provenance.rigid_body_error = image.provenance.rigid_body_error;
-            Origin::Model(&image.model)
-        }
-    };
-    let unit = match units(&recordings[0]).actuator {
-        "N" => Unit::Newton,
-        "A" => Unit::Ampere,
-        _ => Unit::NewtonMetre,
-    };
-    let mut improved = improve(diagnosis, comparison, origin, unit, request.target.unwrap_or_default())
-        .map_err(|why| Error::new(&codes::BAD_IMAGE, why.to_string()))?;
-    // Of a drive that nobody named there is nothing to say.
-    improved.remarks.extend(request.target.and_then(|target| in_floats(target, &improved.model)));
-    let image = fit::model::to_bytes(&Image { provenance, model: *improved.model })?;
-    // What is scored is what a drive would decode.
-    let after = fit::model::from_bytes(&image)?.model;
-    let compared_with = improved.compared_with.as_ref().map(|before| before.rigid_body);
-    let sealed = improved
-        .compared_with
-        .and_then(|before| sealed_score(&diagnosis.sealed_s, recordings, comparison.signals.period, [&before, &after]));
-    Ok(Written { image, remarks: improved.remarks, compared_with, sealed })
 }
 
 fn refused(refusal: &Refusal, recording: &Recording) -> Error {
