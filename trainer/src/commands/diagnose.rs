@@ -65,6 +65,9 @@ pub struct Diagnose {
     /// Seed of the null draws: one seed, one result
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Memory to stay within, MB: of recordings that need more, stretches spread over them are read [default: 1000]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u32).range(200..))]
+    pub memory: Option<u32>,
     /// Read and check the recordings, say what would be written, and stop there
     #[arg(long)]
     pub dry_run: bool,
@@ -114,6 +117,7 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         least_effect: arguments.least_effect,
         by_likelihood: arguments.by_likelihood,
         seed: arguments.seed,
+        memory_mb: arguments.memory,
     };
     let found = diagnose(&request, &joint, &|stage| reporter.say(stage))?;
     reporter.say("writing");

@@ -69,6 +69,9 @@ pub struct Fit {
     /// Threads to use; all when absent. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Memory to stay within, MB: of recordings that need more, stretches spread over them are read [default: 1000]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u32).range(200..))]
+    pub memory: Option<u32>,
     /// Write the image in spite of exit status 4: not identifiable, not physical or not converged
     #[arg(long)]
     pub force: bool,
@@ -174,6 +177,7 @@ pub fn run(arguments: &Fit) -> Result<u8> {
         },
         integers: arguments.target.is_some_and(|target| !target.has_floats),
         training: arguments.training.training()?,
+        memory_mb: arguments.memory,
     };
     let reporter = Reporter::new(arguments.quiet);
     let [recordings, tests] =

@@ -13,8 +13,8 @@ use crate::error::{Error, Result, codes};
 use crate::fit::HostModel;
 use crate::joint::{Drive, Joint};
 
+use crate::workflow::recordings::{Reading, load_all, load_with_faults};
 pub(super) use crate::workflow::recordings::{Source, motion};
-use crate::workflow::recordings::{load_all, load_with_faults};
 
 /// What is known of the joint, from its file where one is given; what nothing reads of that file is told on standard error.
 ///
@@ -34,7 +34,9 @@ pub(super) fn joint(path: Option<&Path>, quiet: bool) -> Result<Joint> {
 /// # Errors
 /// Whatever reading a recording reports.
 pub(super) fn rehearse(recordings: &[Source<'_>], joint: &Joint, written: &[&PathBuf]) -> Result<String> {
-    let (recordings, warnings) = load_all(recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+    let (recordings, warnings) = load_all(recordings.iter().copied(), |source| {
+        load_with_faults(source, joint, Reading::of(&[], None, recordings.len()))
+    })?;
     let mut lines: Vec<String> = recordings
         .iter()
         .map(|recording| format!("would read   {}, {} rows", recording.label, recording.len()))

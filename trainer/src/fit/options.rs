@@ -24,6 +24,8 @@ pub struct Options {
     pub integers: bool,
     /// How the network is trained.
     pub training: Training,
+    /// Memory to stay within, MB; 1000 when absent. Of recordings that need more, stretches spread over them are read.
+    pub memory_mb: Option<u32>,
 }
 
 /// How the network is trained; what is absent is as [`FitOptions::new`] has it.

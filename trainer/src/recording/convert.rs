@@ -101,9 +101,9 @@ pub(super) fn convert(raw: &mut RawTable, assigned: &Assigned, joint: &Joint) ->
 fn refused(raw: &RawTable, columns: &[Assignment], pass_over: impl Fn(&Assignment) -> bool) -> Result<Option<Error>> {
     let known = || columns.iter().filter(|column| column.known.is_some() && !pass_over(column));
     let numbers = |column: &Assignment| &raw.numbers[column.index];
-    let first = known().filter_map(|column| numbers(column).refused.as_ref().map(|(row, text)| (*row, column, text)));
-    let first = first.min_by_key(|(row, column, _)| (*row, column.index));
-    let error = first.map(|(row, column, text)| raw.refusal(text, row, &raw.table.header()[column.index]));
+    let first = known().filter_map(|column| numbers(column).refused.as_ref().map(|(line, text)| (*line, column, text)));
+    let first = first.min_by_key(|(line, column, _)| (*line, column.index));
+    let error = first.map(|(line, column, text)| raw.refusal(text, line, &raw.table.header()[column.index]));
     match error {
         Some(error) if known().any(|column| numbers(column).is_text) => Err(error),
         other => Ok(other),

@@ -3,6 +3,7 @@
 use super::clock;
 use super::names::{JointState, plain, read_name};
 use super::quantity::{ColumnName, Quantity};
+use super::thinning::Thinning;
 use crate::joint::Joint;
 
 /// Rows up to which every column is kept, so that a fit can say what else friction goes with: more than it looks at in any recording.
@@ -27,6 +28,8 @@ pub(super) struct InUse<'a> {
     joint: Option<&'a Joint>,
     /// Inputs that are asked for.
     asked: &'a [String],
+    /// Memory to stay within, B.
+    memory_bytes: f64,
     /// Rows from which on nothing else is kept.
     pub(super) from_rows: usize,
 }
@@ -34,12 +37,20 @@ pub(super) struct InUse<'a> {
 impl<'a> InUse<'a> {
     /// All columns.
     pub(super) fn all() -> Self {
-        Self { joint: None, asked: &[], from_rows: usize::MAX }
+        Self { joint: None, asked: &[], memory_bytes: f64::INFINITY, from_rows: usize::MAX }
     }
 
-    /// Those of a joint, beside inputs that are asked for.
-    pub(super) fn of(joint: &'a Joint, asked: &'a [String]) -> Self {
-        Self { joint: Some(joint), asked, from_rows: MOST_ROWS_OF_ALL }
+    /// Those of a joint, beside inputs that are asked for, as many rows as a memory holds.
+    pub(super) fn of(joint: &'a Joint, asked: &'a [String], memory_bytes: f64) -> Self {
+        Self { joint: Some(joint), asked, memory_bytes, from_rows: MOST_ROWS_OF_ALL }
+    }
+
+    /// Which rows of a file with such columns are kept.
+    pub(super) fn thinning(&self, header: &[String]) -> Thinning {
+        if self.memory_bytes.is_infinite() {
+            return Thinning::none();
+        }
+        Thinning::within(self.memory_bytes, header.iter().filter(|column| self.holds(column)).count())
     }
 
     /// The same from so many rows on.
@@ -78,7 +89,7 @@ mod tests {
             Joint::parse("forces = [\"pressure\"]\n[columns]\nvelocity = { name = \"speed\", unit = \"rad/s\" }")
                 .unwrap();
         let asked = ["humidity".to_owned()];
-        let in_use = InUse::of(&joint, &asked);
+        let in_use = InUse::of(&joint, &asked, 1e9);
         let columns = "time_s position_rad torque torque_kNm motor_temperature_C joint2_position_rad dq3 stamp.sec nanosec \
                        speed pressure humidity trajectory /joint_states/elbow/effort position";
         assert!(columns.split(' ').all(|column| in_use.holds(column)));

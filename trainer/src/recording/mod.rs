@@ -12,6 +12,7 @@ mod health;
 mod in_use;
 mod merged;
 mod names;
+mod numbers;
 mod of_joints;
 mod quantity;
 mod select;
@@ -20,6 +21,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod text;
+mod thinning;
 mod vectors;
 
 use std::path::Path;
@@ -95,13 +97,13 @@ pub fn load(path: &Path, joint: &Joint) -> Result<Recording> {
 }
 
 /// The same without the text of its rows, which a large file cannot afford: 8 B a number. Of a long one only those columns that are in use, as
-/// `inputs` are.
+/// `inputs` are, and of one that a memory (B) does not hold stretches spread over it.
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn load_numbers(path: &Path, joint: &Joint, inputs: &[String]) -> Result<Recording> {
+pub(crate) fn load_numbers(path: &Path, joint: &Joint, inputs: &[String], memory_bytes: f64) -> Result<Recording> {
     let (file, label) = names_of(path);
-    let keep = Keep::Numbers(InUse::of(joint, inputs));
+    let keep = Keep::Numbers(InUse::of(joint, inputs, memory_bytes));
     let (raw, fingerprint) = read(source::open(path)?, keep).map_err(|error| error.in_file(&file))?;
     let mut recording = interpret(&label, raw, fingerprint, joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
@@ -195,7 +197,7 @@ fn interpret(label: &str, mut raw: RawTable, fingerprint: u64, joint: &Joint) ->
         content_hash: fingerprint,
         health,
         table,
-        is_excerpt: false,
+        is_excerpt: raw.is_excerpt,
         nearly_named: assigned.nearly,
         unusable: assigned.unusable,
         file: label.to_owned(),

@@ -5,6 +5,8 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::in_use::{InUse, Keep};
+use super::numbers::{Numbers, number};
+use super::thinning::Thinning;
 use super::vectors::{self, Expansion};
 use crate::error::{Error, Result, codes};
 
@@ -139,33 +141,6 @@ impl TextTable {
     }
 }
 
-/// The numbers of a column as they stand in the file; not finite where a cell is empty, says so, or is text.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Numbers {
-    /// Empty where the column is not kept.
-    pub(super) values: Vec<f64>,
-    /// Cells that are empty or not finite.
-    pub(super) missing: usize,
-    /// Whether a cell is neither a number nor missing.
-    pub(super) is_text: bool,
-    /// Row and text of the first cell that is no finite number.
-    pub(super) refused: Option<(usize, String)>,
-}
-
-impl Numbers {
-    fn push(&mut self, cell: &str, decimal_comma: bool) {
-        let number = number(cell, decimal_comma).ok();
-        let finite = number.filter(|value| value.is_finite());
-        if finite.is_none() {
-            let missing = cell.is_empty() || number.is_some();
-            self.missing += usize::from(missing);
-            self.is_text |= !missing;
-            self.refused.get_or_insert_with(|| (self.values.len(), cell.to_owned()));
-        }
-        self.values.push(finite.unwrap_or(f64::NAN));
-    }
-}
-
 /// A table that has been read but not yet interpreted.
 #[derive(Debug)]
 pub(super) struct RawTable {
@@ -177,21 +152,14 @@ pub(super) struct RawTable {
     pub(super) decimal_comma: bool,
     /// What was noticed on the way, one sentence each.
     pub(super) notes: Vec<String>,
-}
-
-fn number(field: &str, decimal_comma: bool) -> std::result::Result<f64, std::num::ParseFloatError> {
-    match field.parse::<f64>() {
-        Err(_) if decimal_comma && !field.contains('.') => field.replacen(',', ".", 1).parse(),
-        other => other,
-    }
+    /// Whether the rows are stretches of those of the file.
+    pub(super) is_excerpt: bool,
 }
 
 impl RawTable {
     /// The error of a field that is no finite number.
-    pub(super) fn refusal(&self, field: &str, row: usize, column: &str) -> Error {
-        let here = |code, message: &str| {
-            Error::new(code, message).at_row(self.table.line(row)).in_column(column).with_value(field)
-        };
+    pub(super) fn refusal(&self, field: &str, line: u64, column: &str) -> Error {
+        let here = |code, message: &str| Error::new(code, message).at_row(line).in_column(column).with_value(field);
         match number(field, self.decimal_comma) {
             Ok(_) => here(&codes::NOT_FINITE, "this value is not finite"),
             Err(_) if field.is_empty() => here(&codes::NOT_A_NUMBER, "this field is empty"),
@@ -209,6 +177,7 @@ impl RawTable {
             units,
             decimal_comma: self.decimal_comma,
             notes: self.notes.clone(),
+            is_excerpt: self.is_excerpt,
         }
     }
 
@@ -229,6 +198,7 @@ pub(super) struct TableBuilder<'a> {
     keep: Keep<'a>,
     /// Whether columns were left out, by their places.
     left_out: Vec<bool>,
+    thinning: Thinning,
 }
 
 impl<'a> TableBuilder<'a> {
@@ -251,21 +221,34 @@ impl<'a> TableBuilder<'a> {
         }
         let (numbers, table) = (vec![Numbers::default(); names.len()], TextTable::new(names, header_line));
         let left_out = vec![false; numbers.len()];
-        Ok(Self { file_header: header, expansion, table, numbers, decimal_comma: false, keep: Keep::Text, left_out })
+        Ok(Self {
+            file_header: header,
+            expansion,
+            table,
+            numbers,
+            decimal_comma: false,
+            keep: Keep::Text,
+            left_out,
+            thinning: Thinning::none(),
+        })
     }
 
     /// The same for numbers with a comma for their point or without, of whose text only so much is kept.
     pub(super) fn reading(self, decimal_comma: bool, keep: Keep<'a>) -> Self {
-        Self { decimal_comma, keep, ..self }
+        let thinning = match keep {
+            Keep::Text => Thinning::none(),
+            Keep::Numbers(in_use) => in_use.thinning(&self.table.header),
+        };
+        Self { decimal_comma, keep, thinning, ..self }
     }
 
     /// Adds a cell to the row that was begun last.
-    fn push_field(&mut self, column: usize, cell: &str) {
+    fn push_field(&mut self, column: usize, cell: &str, line: u64) {
         if self.left_out[column] {
             return;
         }
         let (numbers, row) = (&mut self.numbers[column], self.table.len() - 1);
-        numbers.push(cell, self.decimal_comma);
+        numbers.push(cell, self.decimal_comma, line);
         // A double holds the billionths of numbers below that; NaN, where the first cell is no number, is not below anything.
         let is_exact = numbers.values[0].abs() < EXACT;
         if matches!(self.keep, Keep::Text) || row < FIRST_ROWS || !is_exact {
@@ -278,6 +261,13 @@ impl<'a> TableBuilder<'a> {
     /// # Errors
     /// `FRK-D007` where a list is shorter or longer than that of the first row.
     pub(super) fn push<'c>(&mut self, line: u64, cells: impl Iterator<Item = &'c str>) -> Result<()> {
+        if !self.thinning.takes_next() {
+            return Ok(());
+        }
+        if let Some(stretches) = self.thinning.make_room(self.table.len()) {
+            self.numbers.iter_mut().for_each(|numbers| numbers.keep(&stretches));
+            self.table = self.table.with_rows(&stretches.into_iter().flatten().collect::<Vec<usize>>());
+        }
         self.table.begin_row(line);
         if let Keep::Numbers(in_use) = self.keep
             && self.table.len() == in_use.from_rows
@@ -287,19 +277,19 @@ impl<'a> TableBuilder<'a> {
         let mut column = 0;
         for (index, cell) in cells.enumerate() {
             let Some(length) = self.expansion.length(index) else {
-                self.push_field(column, cell);
+                self.push_field(column, cell, line);
                 column += 1;
                 continue;
             };
             let mut count = 0;
             for element in vectors::elements(cell).into_iter().flatten() {
                 if count < length {
-                    self.push_field(column + count, element);
+                    self.push_field(column + count, element, line);
                 }
                 count += 1;
             }
             if cell.is_empty() {
-                (0..length).for_each(|element| self.push_field(column + element, ""));
+                (0..length).for_each(|element| self.push_field(column + element, "", line));
             } else if count != length {
                 let message = format!("this list has {count} elements, that of the first row has {length}");
                 let error = Error::new(&codes::RAGGED_ROW, message).at_row(line);
@@ -332,11 +322,13 @@ impl<'a> TableBuilder<'a> {
 
     /// The table as it is to be interpreted.
     pub(super) fn finish(self) -> RawTable {
-        let Self { table, numbers, decimal_comma, left_out, .. } = self;
+        let Self { table, numbers, decimal_comma, left_out, thinning, .. } = self;
         let names = table.header.iter().zip(left_out).filter(|(_, left_out)| *left_out).map(|(name, _)| name.as_str());
         let names: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
         let note = format!("too long for columns that nothing reads: {} left out", names.join(", "));
-        let notes = if names.is_empty() { Vec::new() } else { vec![note] };
-        RawTable { table, numbers, units: Vec::new(), decimal_comma, notes }
+        let left_out = (!names.is_empty()).then_some(note);
+        let notes: Vec<String> = left_out.into_iter().chain(thinning.note()).collect();
+        let is_excerpt = thinning.note().is_some();
+        RawTable { table, numbers, units: Vec::new(), decimal_comma, notes, is_excerpt }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::recordings::{Source, Warning, load_all, load_with_faults};
+use super::recordings::{Reading, Source, Warning, load_all, load_with_faults};
 use crate::checks::survey::{Fact, Motion, Seen, survey};
 use crate::error::{Error, Result, codes};
 use crate::figures::{digits, quantity};
@@ -47,7 +47,9 @@ impl Severity {
 /// # Errors
 /// Whatever reading a recording reports, and what keeps a recording from being looked at at all.
 pub fn check(recordings: &[Source<'_>], joint: &Joint) -> Result<Checked> {
-    let (recordings, warnings) = load_all(recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+    let (recordings, warnings) = load_all(recordings.iter().copied(), |source| {
+        load_with_faults(source, joint, Reading::of(&[], None, recordings.len()))
+    })?;
     let mut items: Vec<Item> = warnings.iter().map(of_warning).collect();
     for recording in &recordings {
         let name = if recordings.len() > 1 { format!("{}: ", recording.label) } else { String::new() };

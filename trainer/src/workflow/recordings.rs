@@ -44,13 +44,13 @@ impl Source<'_> {
         }
     }
 
-    /// The same without the text of its rows, for what only learns from it and from `inputs` among its channels.
+    /// The same without the text of its rows, for what only learns from it.
     ///
     /// # Errors
     /// As [`recording::load`].
-    fn read_numbers(self, joint: &Joint, inputs: &[String]) -> Result<Recording> {
+    pub(crate) fn read_numbers(self, joint: &Joint, reading: Reading<'_>) -> Result<Recording> {
         match self {
-            Self::File(path) => recording::load_numbers(path, joint, inputs),
+            Self::File(path) => recording::load_numbers(path, joint, reading.inputs, reading.memory_bytes),
             Self::Bytes { .. } => self.read(joint),
         }
     }
@@ -66,6 +66,43 @@ impl Source<'_> {
                 recording::parse_joints(label, bytes, joints).map_err(|error| error.in_file(label))
             }
         }
+    }
+}
+
+/// Memory that reading, fitting and diagnosing stay within unless another one is asked for, MB.
+pub(crate) const DEFAULT_MEMORY_MB: u32 = 1000;
+
+/// What is read of a recording.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reading<'a> {
+    /// Channels that a law is to read, however long the recording is.
+    inputs: &'a [String],
+    /// Memory to stay within, B.
+    memory_bytes: f64,
+    /// Memory of all over the default one.
+    of_default: f64,
+}
+
+impl<'a> Reading<'a> {
+    /// One of so many recordings that share a memory, MB.
+    pub(crate) fn of(inputs: &'a [String], memory_mb: Option<u32>, recordings: usize) -> Self {
+        let memory_mb = f64::from(memory_mb.unwrap_or(DEFAULT_MEMORY_MB));
+        Self {
+            inputs,
+            memory_bytes: 1e6 * memory_mb / recordings.max(1) as f64,
+            of_default: memory_mb / f64::from(DEFAULT_MEMORY_MB),
+        }
+    }
+
+    /// The memory of all recordings over the default one.
+    pub(crate) fn share_of_default(self) -> f64 {
+        self.of_default
+    }
+}
+
+impl Default for Reading<'_> {
+    fn default() -> Self {
+        Self::of(&[], None, 1)
     }
 }
 
@@ -101,16 +138,16 @@ pub(crate) fn load_all<'a, S: Into<Source<'a>>>(
     Ok((recordings, warnings.concat()))
 }
 
-/// A recording that may be fitted to, with what was put right; `inputs` are channels that the law is to read.
+/// A recording that may be fitted to, with what was put right.
 ///
 /// # Errors
 /// As [`Source::read`] and [`checks::review`], and the code of a fault that cannot be put right.
 pub(crate) fn load<'a>(
     source: impl Into<Source<'a>>,
     joint: &Joint,
-    inputs: &[String],
+    reading: Reading<'_>,
 ) -> Result<(Recording, Vec<Warning>)> {
-    let (recording, warnings) = checks::review(source.into().read_numbers(joint, inputs)?, joint).map(with_warnings)?;
+    let (recording, warnings) = load_with_faults(source, joint, reading)?;
     match warnings.iter().find(|warning| warning.is_blocking()) {
         Some(warning) => {
             Err(Error::new(warning.note.note.fault.code(), warning.message.clone()).in_file(recording.file()))
@@ -123,8 +160,12 @@ pub(crate) fn load<'a>(
 ///
 /// # Errors
 /// As [`Source::read`] and [`checks::review`].
-pub(crate) fn load_with_faults<'a>(source: impl Into<Source<'a>>, joint: &Joint) -> Result<(Recording, Vec<Warning>)> {
-    checks::review(source.into().read_numbers(joint, &[])?, joint).map(with_warnings)
+pub(crate) fn load_with_faults<'a>(
+    source: impl Into<Source<'a>>,
+    joint: &Joint,
+    reading: Reading<'_>,
+) -> Result<(Recording, Vec<Warning>)> {
+    checks::review(source.into().read_numbers(joint, reading)?, joint).map(with_warnings)
 }
 
 /// A recording of which only the motion is used, or a simulation.
@@ -264,11 +305,12 @@ mod tests {
             path
         });
         let joint = Joint::default();
-        assert!(load(&good, &joint, &[]).unwrap().1.is_empty());
-        let error = load(&turned, &joint, &[]).unwrap_err();
+        assert!(load(&good, &joint, Reading::default()).unwrap().1.is_empty());
+        let error = load(&turned, &joint, Reading::default()).unwrap_err();
         assert_eq!((error.code().id, error.exit_status()), ("FRK-D024", 3));
         assert!(error.to_string().contains("turned.csv") && error.message().contains("wrong sign"), "{error}");
-        let (_, warnings) = load_all(&[good, turned], |source| load_with_faults(source, &joint)).unwrap();
+        let (_, warnings) =
+            load_all(&[good, turned], |source| load_with_faults(source, &joint, Reading::default())).unwrap();
         let [warning] = &warnings[..] else { panic!("{warnings:?}") };
         assert!(warning.message.starts_with("in turned.csv the torque has the wrong sign"), "{}", warning.message);
         assert!(warning.is_finding() && warning.to_health().blocking);
@@ -290,7 +332,7 @@ mod tests {
             path
         });
         let codes = |paths: &[std::path::PathBuf]| {
-            let (_, warnings) = load_all(paths, |source| load(source, &Joint::default(), &[])).unwrap();
+            let (_, warnings) = load_all(paths, |source| load(source, &Joint::default(), Reading::default())).unwrap();
             warnings.iter().map(Warning::code).collect::<Vec<_>>()
         };
         assert_eq!(codes(std::slice::from_ref(&there)), ["FRK-W008"]);

@@ -22,12 +22,13 @@ const STRETCHES: f64 = 24.0;
 /// Fractional part of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// What is searched of recordings of one joint; `None` where it is all of them.
+/// What is searched of recordings of one joint; `None` where it is all of them. `room` is what there is of the memory (0 to 1) that the most rows
+/// and samples take.
 #[must_use]
-pub(crate) fn searched(recordings: &[Recording]) -> Option<Vec<Recording>> {
+pub(crate) fn searched(recordings: &[Recording], room: f64) -> Option<Vec<Recording>> {
     let rows: f64 = recordings.iter().map(working_rows).sum();
     let samples: f64 = recordings.iter().map(|recording| recording.len() as f64).sum();
-    let share = (MOST_ROWS / rows).min(MOST_SAMPLES / samples);
+    let share = room.min(1.0) * (MOST_ROWS / rows).min(MOST_SAMPLES / samples);
     if rows.is_nan() || share >= 1.0 {
         return None;
     }
@@ -76,11 +77,11 @@ mod tests {
 
     #[test]
     fn what_is_searched_is_bounded_and_spread_and_a_short_recording_stays_whole() {
-        assert!(searched(&[swing(60_000, 250.0)]).is_none());
+        assert!(searched(&[swing(60_000, 250.0)], 1.0).is_none());
         for rate_hz in [1000.0, 4000.0] {
             let sizes = [300_000, 600_000].map(|rows| {
                 let recording = swing(rows, rate_hz);
-                let found = searched(std::slice::from_ref(&recording)).unwrap().swap_remove(0);
+                let found = searched(std::slice::from_ref(&recording), 1.0).unwrap().swap_remove(0);
                 let time = |recording: &Recording| recording.values(Quantity::Time).unwrap().to_vec();
                 let (all, kept) = (time(&recording), time(&found));
                 assert_eq!((kept[0], kept[kept.len() - 1]), (all[0], all[all.len() - 1]));
@@ -95,7 +96,9 @@ mod tests {
                 assert!(rows > 0.99 * MOST_ROWS || samples > 0.99 * MOST_SAMPLES, "{rows} {samples}");
             }
         }
-        let several = searched(&[swing(200_000, 1000.0), swing(100_000, 1000.0)]).unwrap();
+        let half = searched(&[swing(300_000, 1000.0)], 0.5).unwrap();
+        assert!((0.49..=0.5).contains(&(working_rows(&half[0]) / MOST_ROWS)));
+        let several = searched(&[swing(200_000, 1000.0), swing(100_000, 1000.0)], 1.0).unwrap();
         assert!(several.iter().map(working_rows).sum::<f64>() <= MOST_ROWS);
         assert_eq!(several.iter().map(|recording| recording.health.gaps.len() + 1).collect::<Vec<_>>(), [16, 8]);
     }

@@ -1,4 +1,5 @@
 mod dialects;
+mod long;
 
 use proptest::prelude::*;
 
@@ -314,25 +315,4 @@ fn without_its_text_a_recording_holds_the_same_numbers() {
     let (raw, hash) = super::read(backwards.as_bytes(), Keep::Numbers(InUse::all())).unwrap();
     let error = interpret("", raw, hash, &Joint::default()).unwrap_err().to_string();
     assert!(error.contains("FRK-D011") && error.contains("0.02"), "{error}");
-}
-
-#[test]
-fn a_long_recording_is_read_without_columns_that_nothing_reads() {
-    let row = |i: u32| format!("{},{},{},{i},text,7\n", 0.001 * f64::from(i), f64::from(i % 50), i % 3);
-    let rows: String = (0..500).map(row).collect();
-    let text = format!("time_s,position_rad,torque_Nm,counter,state,asked\n{rows}");
-    let joint = Joint::default();
-    let asked = ["asked".to_owned()];
-    let read = |from_rows| {
-        let keep = Keep::Numbers(InUse::of(&joint, &asked).from(from_rows));
-        let (raw, hash) = super::read(text.as_bytes(), keep).unwrap();
-        interpret("long.csv", raw, hash, &joint).unwrap()
-    };
-    let names = |recording: &Recording| recording.channels.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
-    let (short, long) = (read(501), read(400));
-    assert_eq!(names(&short), ["time", "position", "torque", "counter", "asked"]);
-    assert_eq!(names(&long), ["time", "position", "torque", "asked"]);
-    assert!(long.channels.iter().all(|channel| *channel == *short.named(&channel.name).unwrap()));
-    assert!(short.health.notes.is_empty());
-    assert_eq!(long.health.notes, ["too long for columns that nothing reads: counter, state left out"]);
 }

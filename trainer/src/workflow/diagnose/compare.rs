@@ -14,7 +14,7 @@ use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{Quantity, Recording};
-use crate::workflow::recordings::{motion, units};
+use crate::workflow::recordings::{Reading, motion, units};
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
 
@@ -101,10 +101,10 @@ fn of_model(image: &Image<CELLS>, state: &JointState, given: Option<&[f64]>) -> 
 }
 
 /// The recording of the simulation that is compared with, where there is one.
-pub(super) fn simulation(against: &Against<'_>, joint: &Joint) -> Result<Option<Recording>> {
+pub(super) fn simulation(against: &Against<'_>, joint: &Joint, reading: Reading<'_>) -> Result<Option<Recording>> {
     let Against::Simulation(source) = against else { return Ok(None) };
     let joint = joint.of_simulation();
-    Ok(Some(motion(source.read(&joint)?, &joint)?.0))
+    Ok(Some(motion(source.read_numbers(&joint, reading)?, &joint)?.0))
 }
 
 /// The simulation in the units of the recording: joint torque beside a current becomes current by the constants of the drive.

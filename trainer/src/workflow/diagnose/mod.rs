@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-use super::recordings::{Warning, load_all, load_with_faults, units};
+use super::recordings::{Reading, Warning, load_all, load_with_faults, units};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::Diagnosis;
@@ -87,12 +87,13 @@ pub struct Diagnosed {
 /// Whatever reading a recording reports; `FRK-D016`, `FRK-D017` or `FRK-D023` where the motion determines nothing.
 pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> Result<Diagnosed> {
     let begin = Instant::now();
+    let reading = Reading::of(&[], request.memory_mb, request.recordings.len());
     let (recordings, warnings) =
-        load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint))?;
+        load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint, reading))?;
     if recordings.is_empty() {
         return Err(Error::new(&codes::USAGE, "there is no recording to diagnose"));
     }
-    let simulation = compare::simulation(&request.against, joint)?;
+    let simulation = compare::simulation(&request.against, joint, reading)?;
     let actuator = commanded::actuator(&recordings, simulation.as_ref(), joint)?;
     // A commanded joint is compared with the law of its simulation, whose rows stand in the model only where that is asked for.
     let by_likelihood = request.by_likelihood || actuator.is_some() && simulation.is_some();
@@ -109,13 +110,14 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let forces = OtherForces::of(&recordings, joint)?;
     let recordings = recordings.into_iter().map(|recording| forces.taken_off(recording)).collect::<Result<Vec<_>>>()?;
     let real = &recordings[0];
-    let excerpt = stretches_to_search(&recordings);
+    let excerpt = stretches_to_search(&recordings, reading.share_of_default());
     let real_searched = excerpt.as_deref().unwrap_or(&recordings);
-    let simulation =
-        simulation.transpose()?.map(|simulation| match stretches_to_search(std::slice::from_ref(&simulation)) {
+    let simulation = simulation.transpose()?.map(|simulation| {
+        match stretches_to_search(std::slice::from_ref(&simulation), reading.share_of_default()) {
             Some(mut excerpt) => excerpt.swap_remove(0),
             None => simulation,
-        });
+        }
+    });
     let (comparison, compared) =
         comparison(&request.against, (real_searched, &told), simulation, joint, request.by_likelihood)?;
     let told_searched = excerpt.is_some().then(|| Searched::new(comparison.signals.time.len(), &recordings));

@@ -25,6 +25,8 @@ pub struct Request<'a> {
     pub by_likelihood: bool,
     /// Seed of the null draws.
     pub seed: u64,
+    /// Memory to stay within, MB; 1000 where `None`. Of recordings that need more, stretches spread over them are read, and less is searched.
+    pub memory_mb: Option<u32>,
 }
 
 /// What a recording is compared with.
@@ -50,6 +52,7 @@ impl<'a> Request<'a> {
             least_effect: None,
             by_likelihood: false,
             seed: 0,
+            memory_mb: None,
         }
     }
 }

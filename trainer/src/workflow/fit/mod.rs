@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-use super::recordings::{Source, Warning, load, load_all};
+use super::recordings::{Reading, Source, Warning, load, load_all};
 use crate::actuator::Kind;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Soundness;
@@ -72,8 +72,9 @@ pub fn fit(
         return Err(Error::new(&codes::USAGE, message).with_value(options.budget.target.name));
     }
     let inputs = options.inputs.as_deref().unwrap_or_default();
-    let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint, inputs))?;
-    let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint, inputs))?;
+    let reading = Reading::of(inputs, options.memory_mb, recordings.len() + tests.len());
+    let (recordings, mut warnings) = load_all(recordings.iter().copied(), |source| load(source, joint, reading))?;
+    let (tests, of_tests) = load_all(tests.iter().copied(), |source| load(source, joint, reading))?;
     warnings.extend(of_tests);
     let sources = recordings.iter().chain(&tests).map(Recording::source).collect();
     let forces = OtherForces::of(&recordings, joint)?;
