@@ -26,6 +26,7 @@ pub use error::{MOST_SAMPLES, PlantError};
 pub use joint::{Base, Control, Drive, Friction, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
 pub use measurement::recording::{Column, SimulatedRecording, Truth};
 pub(crate) use measurement::sensors::encoder_step;
+pub(crate) use mechanics::servo::Servo;
 pub(crate) use mechanics::transmission::Load;
 pub(crate) use simulate::at_rest;
 pub use simulate::{conceal, refuse_length, simulate, simulate_again};
