@@ -1,23 +1,40 @@
-//! `trainer init`: a `joint.toml` that reads a recording, from the recording itself.
+//! `trainer init`: a `joint.toml` that reads a recording, from the recording itself, or one of a servo whose parameters BAM knows.
+
+mod bam;
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::output::{Outputs, refuse_unwritable, say};
-use crate::error::Result;
+use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::{self, Proposal, Recording};
 
 /// Propose a joint.toml for recordings: columns, units, joint and rate, each with the reason.
+///
+/// A parameter file of Rhoban's BAM (`m1.json` to `m6.json` of an actuator) in place of recordings becomes the joint.toml of that servo, and with
+/// `--image` its friction an image for `rollout`, `loop`, `predict` and `diagnose --model`.
 #[derive(Args, Clone, Debug)]
 pub struct Init {
-    /// Recordings of one joint, all with the same columns; `-` is standard input
+    /// Recordings of one joint, all with the same columns; `-` is standard input; or one parameter file of BAM
     #[arg(required = true, value_name = "RECORDING")]
     pub recordings: Vec<PathBuf>,
     /// File to write; `-` for standard output
     #[arg(short, long, value_name = "JOINT.toml")]
     pub output: PathBuf,
+    /// Of a parameter file of BAM: also write its friction, with the armature, as an image
+    #[arg(long, value_name = "MODEL.frk")]
+    pub image: Option<PathBuf>,
+    /// Of a parameter file of BAM: supply voltage of the servo, V
+    #[arg(long, value_name = "V")]
+    pub supply: Option<f64>,
+    /// Of a parameter file of BAM: mass that hangs at the joint, kg; its gravity is the torque from outside
+    #[arg(long, value_name = "KG", requires = "payload_m")]
+    pub payload_kg: Option<f64>,
+    /// How far from the axis, m
+    #[arg(long, value_name = "M", requires = "payload_kg")]
+    pub payload_m: Option<f64>,
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
@@ -26,11 +43,24 @@ pub struct Init {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; nothing is written then.
+/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; of parameters of BAM `FRK-D046` for
+/// what they cannot be and `FRK-D014` for what an image needs beside them. Nothing is written then.
 pub fn run(arguments: &Init) -> Result<()> {
     let read: Vec<_> = arguments.recordings.iter().map(PathBuf::as_path).collect();
-    refuse_unwritable([&arguments.output], &read)?;
+    refuse_unwritable([Some(&arguments.output), arguments.image.as_ref()].into_iter().flatten(), &read)?;
     let Some((first, others)) = arguments.recordings.split_first() else { return Ok(()) };
+    if let Some(text) = bam::text(first)? {
+        return if others.is_empty() {
+            bam::run(arguments, first, &text)
+        } else {
+            Err(of_bam("a parameter file of BAM"))
+        };
+    }
+    let of_servo =
+        [arguments.supply, arguments.payload_kg, arguments.payload_m].into_iter().any(|value| value.is_some());
+    if of_servo || arguments.image.is_some() {
+        return Err(of_bam("`--image`, `--supply` and `--payload-kg` go with a parameter file of BAM, which"));
+    }
     let (proposal, recording) = recording::propose(first)?;
     let joint = Joint::parse(&proposal.toml)?;
     others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
@@ -41,6 +71,10 @@ pub fn run(arguments: &Init) -> Result<()> {
         say(told(&recording, &proposal).trim_end());
     }
     Ok(())
+}
+
+fn of_bam(what: &str) -> Error {
+    Error::new(&codes::USAGE, format!("{what} stands by itself"))
 }
 
 /// What was taken for what, a line a column.
@@ -77,7 +111,15 @@ mod tests {
                 .unwrap();
         }
         std::fs::write(&path, text).unwrap();
-        let init = Init { recordings: vec![path.clone(), path.clone()], output: output.clone(), quiet: true };
+        let init = Init {
+            recordings: vec![path.clone(), path.clone()],
+            output: output.clone(),
+            image: None,
+            supply: None,
+            payload_kg: None,
+            payload_m: None,
+            quiet: true,
+        };
         run(&init).unwrap();
         let recording = recording::load(&path, &Joint::load(&output).unwrap()).unwrap();
         let velocity = recording.values(recording::Quantity::Velocity).unwrap();

@@ -1,0 +1,179 @@
+//! What BAM knows of a servo as joint.toml.
+
+use std::fmt::Write;
+
+use super::image::Surroundings;
+use super::parameters::Parameters;
+use crate::actuator::{Constant, Kind, Known, Preset};
+use crate::figures::{digits, quantity};
+
+/// BAM's actuators that are presets here, by the beginning of their name there.
+const PRESETS: [(&str, &str); 6] = [
+    ("xl330", "XL330"),
+    ("xl320", "XL320"),
+    ("mx64", "MX-64"),
+    ("mx106", "MX-106"),
+    ("sts3215", "STS3215"),
+    ("feetech_hls", "HLS2915"),
+];
+
+/// joint.toml of a servo: `[actuator]`, its armature, the payload, and for `trainer simulate` and `trainer loop` the friction that `[plant]` has.
+/// Constants that BAM does not know are left open, and stand there as comments. With it what was not taken, in sentences.
+#[must_use]
+pub fn joint_file(parameters: &Parameters, surroundings: &Surroundings, title: &str) -> (String, Vec<String>) {
+    let preset = PRESETS.iter().find(|(name, _)| parameters.actuator.starts_with(name));
+    let preset = preset.and_then(|(_, name)| Preset::named(name));
+    let kind = preset.map_or_else(|| kind_of(parameters), |preset| preset.kind);
+    let mut text = format!("# {title}\nname = {:?}\n\n[actuator]\n", parameters.actuator);
+    match preset {
+        Some(preset) => tell(&mut text, "preset", &format!("{:?}", preset.name)),
+        None => tell(&mut text, "kind", &format!("{:?}", kind.name())),
+    }
+    let mut taken = vec!["q_offset", "armature"];
+    for (constant, key, value) in constants(parameters, surroundings, preset) {
+        if kind.constants().contains(&constant) {
+            tell(&mut text, constant.key(), &value.to_string());
+            taken.push(key);
+        }
+    }
+    let needed = [Constant::Supply, Constant::FirmwareKp, Constant::FirmwareErrorGain];
+    for constant in needed.into_iter().filter(|constant| kind.constants().contains(constant)) {
+        let by_preset = preset.is_some_and(|preset| preset.constants.iter().any(|(known, _)| *known == constant));
+        if !by_preset && !text.contains(&format!("\n{} = ", constant.key())) {
+            let _ = writeln!(
+                text,
+                "# {} = ...    # BAM's file does not say it; `simulate` and `loop` need it",
+                constant.key()
+            );
+        }
+    }
+    let armature = parameters.get("armature");
+    if let Some(inertia) = armature {
+        let _ = write!(text, "\n[rigid_body]\ninertia_kgm2 = {inertia}\n");
+    }
+    if let Some(payload) = &surroundings.payload {
+        text += "\n[payload]\n";
+        let values =
+            [("mass_kg", payload.mass_kg), ("distance_m", payload.distance_m), ("phase_rad", payload.phase_rad)];
+        for (key, value) in values.into_iter().filter(|(key, value)| *key != "phase_rad" || *value != 0.0) {
+            tell(&mut text, key, &value.to_string());
+        }
+    }
+    text += &plant(parameters, surroundings, armature.unwrap_or(0.0));
+    let motor = ["kt", "R", "command_delay", "error_gain_ratio", "max_velocity", "current_limit"];
+    let unused: Vec<&str> =
+        motor.into_iter().filter(|key| parameters.get(key).is_some() && !taken.contains(key)).collect();
+    (text, remarks(parameters, surroundings, kind, &unused))
+}
+
+fn tell(text: &mut String, key: &str, value: &str) {
+    let _ = writeln!(text, "{key} = {value}");
+}
+
+/// What an actuator is that is no preset.
+fn kind_of(parameters: &Parameters) -> Kind {
+    match (parameters.get("kt"), parameters.get("R")) {
+        (Some(_), Some(_)) => Kind::PositionServo,
+        (Some(_), None) => Kind::Current,
+        _ => Kind::Torque,
+    }
+}
+
+/// The constants that BAM knows, each with the key that says it there.
+fn constants(
+    parameters: &Parameters,
+    surroundings: &Surroundings,
+    preset: Option<&Preset>,
+) -> Vec<(Constant, &'static str, f64)> {
+    let error_gain = preset.and_then(|preset| {
+        let mut constants = preset.constants.iter();
+        constants
+            .find(|(constant, _)| *constant == Constant::FirmwareErrorGain)
+            .and_then(|(_, known)| Known::given(*known))
+    });
+    let limit = parameters.get("kt").zip(parameters.get("current_limit")).map(|(constant, limit)| constant * limit);
+    let ratio = parameters.get("error_gain_ratio").zip(error_gain).map(|(ratio, gain)| ratio * gain);
+    let known = [
+        (Constant::TorqueConstant, "kt", parameters.get("kt")),
+        (Constant::Resistance, "R", parameters.get("R")),
+        (Constant::Supply, "", surroundings.supply),
+        (Constant::TorqueLimit, "current_limit", limit),
+        (Constant::FirmwareErrorGain, "error_gain_ratio", ratio),
+        (Constant::Delay, "command_delay", parameters.get("command_delay")),
+        (Constant::VelocityLimit, "max_velocity", parameters.get("max_velocity")),
+    ];
+    known.into_iter().filter_map(|(constant, key, value)| Some((constant, key, value?))).collect()
+}
+
+/// The joint that `trainer simulate` and `trainer loop` move.
+fn plant(parameters: &Parameters, surroundings: &Surroundings, armature: f64) -> String {
+    let body = surroundings.body();
+    let (gravity, phase) = surroundings.gravity().unwrap_or_default();
+    let mut text = String::from("\n[plant]\n");
+    let inertia = armature + body.inertia;
+    if inertia > 0.0 {
+        tell(&mut text, "inertia_kgm2", &inertia.to_string());
+    }
+    tell(&mut text, "gravity_torque_Nm", &format!("[{gravity:?}]"));
+    if phase != 0.0 {
+        tell(&mut text, "gravity_phase_rad", &phase.to_string());
+    }
+    text += "\n[plant.friction]\n";
+    let of_friction = [
+        ("coulomb_torque_Nm", "friction_base"),
+        ("viscous_Nm_s_rad", "friction_viscous"),
+        ("stribeck_torque_Nm", "friction_stribeck"),
+        ("stribeck_velocity_rad_s", "dtheta_stribeck"),
+        ("stribeck_exponent", "alpha"),
+    ];
+    for (key, of_bam) in of_friction {
+        if let Some(value) = parameters.get(of_bam) {
+            tell(&mut text, key, &format!("{value:?}"));
+        }
+    }
+    text
+}
+
+/// What is not taken from a file, and with what torque.
+fn remarks(parameters: &Parameters, surroundings: &Surroundings, kind: Kind, unused: &[&str]) -> Vec<String> {
+    let mut told = Vec::new();
+    if let Some(offset) = parameters.get("q_offset").filter(|offset| *offset != 0.0) {
+        told.push(format!("q_offset of {} is one of BAM's bench and not taken", quantity(offset, "rad")));
+    }
+    for key in unused {
+        told.push(format!("{key} is no constant of an actuator of kind `{}` and not taken", kind.name()));
+    }
+    for key in &parameters.left_out {
+        told.push(format!("{key} is no parameter of `{}` and not taken", parameters.variant.name()));
+    }
+    if parameters.variant.load().is_none() {
+        return told;
+    }
+    let outside =
+        ["load_friction_external", "load_friction_external_stribeck", "load_friction_base", "load_friction_stribeck"];
+    let shares: Vec<String> = outside
+        .into_iter()
+        .filter_map(|key| Some((key, parameters.get(key).filter(|share| *share > 0.0)?)))
+        .map(|(key, share)| format!("{key} {} N m", digits(share)))
+        .collect();
+    if surroundings.gravity().is_none() {
+        let by_square =
+            if parameters.get("load_friction_external_quad").is_some() { ", and no friction of squares" } else { "" };
+        told.push(format!(
+            "without a payload no torque acts from outside: the law lacks what a newton metre of it adds, {}{by_square}",
+            if shares.is_empty() { "nothing".to_owned() } else { shares.join(", ") },
+        ));
+    } else {
+        told.push("the torque from outside is that of this payload; another one needs another image".to_owned());
+    }
+    let hanging = surroundings.gravity().map_or(0.0, |(amplitude, _)| amplitude);
+    let most = surroundings.largest_torque(parameters).map(|motor| {
+        let without = parameters.torque(f64::MIN_POSITIVE, 0.0, 0.0);
+        parameters.torque(f64::MIN_POSITIVE, motor, -hanging) - without
+    });
+    let most = most.map_or_else(String::new, |most| format!(", up to {} at the largest torque", quantity(most, "N m")));
+    told.push(format!(
+        "[plant.friction] has no friction of the load{most}: the joint of `simulate` and `loop` lacks it"
+    ));
+    told
+}
