@@ -18,6 +18,7 @@ pub fn joints() -> [(&'static str, Joint); 3] {
         stribeck_velocity_rad_s: velocity,
         stribeck_exponent: 1.0,
         contact_stiffness_nm_rad: stiffness,
+        ..Friction::default()
     };
     let joint = |inertia_kgm2: f64, friction, (stiffness, damping): (f64, f64)| {
         let omega = (stiffness / inertia_kgm2).sqrt();

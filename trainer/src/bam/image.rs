@@ -28,6 +28,8 @@ const LIMIT_OVER_LARGEST: f64 = 1.5;
 pub struct Surroundings {
     /// Supply voltage, V.
     pub supply: Option<f64>,
+    /// Gain of the firmware, as it counts it.
+    pub firmware_kp: Option<f64>,
     /// What hangs at the joint: its gravity is the torque from outside.
     pub payload: Option<Payload>,
 }

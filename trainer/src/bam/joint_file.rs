@@ -97,6 +97,7 @@ fn constants(
         (Constant::TorqueConstant, "kt", parameters.get("kt")),
         (Constant::Resistance, "R", parameters.get("R")),
         (Constant::Supply, "", surroundings.supply),
+        (Constant::FirmwareKp, "", surroundings.firmware_kp),
         (Constant::TorqueLimit, "current_limit", limit),
         (Constant::FirmwareErrorGain, "error_gain_ratio", ratio),
         (Constant::Delay, "command_delay", parameters.get("command_delay")),
@@ -125,6 +126,15 @@ fn plant(parameters: &Parameters, surroundings: &Surroundings, armature: f64) ->
         ("stribeck_torque_Nm", "friction_stribeck"),
         ("stribeck_velocity_rad_s", "dtheta_stribeck"),
         ("stribeck_exponent", "alpha"),
+        ("load_friction_motor", "load_friction_motor"),
+        ("load_friction_external", "load_friction_external"),
+        ("load_friction_motor_stribeck", "load_friction_motor_stribeck"),
+        ("load_friction_external_stribeck", "load_friction_external_stribeck"),
+        // The same share of both torques.
+        ("load_friction_motor", "load_friction_base"),
+        ("load_friction_external", "load_friction_base"),
+        ("load_friction_motor_stribeck", "load_friction_stribeck"),
+        ("load_friction_external_stribeck", "load_friction_stribeck"),
     ];
     for (key, of_bam) in of_friction {
         if let Some(value) = parameters.get(of_bam) {
@@ -149,31 +159,32 @@ fn remarks(parameters: &Parameters, surroundings: &Surroundings, kind: Kind, unu
     if parameters.variant.load().is_none() {
         return told;
     }
-    let outside =
-        ["load_friction_external", "load_friction_external_stribeck", "load_friction_base", "load_friction_stribeck"];
-    let shares: Vec<String> = outside
-        .into_iter()
-        .filter_map(|key| Some((key, parameters.get(key).filter(|share| *share > 0.0)?)))
-        .map(|(key, share)| format!("{key} {} N m", digits(share)))
-        .collect();
+    let squares = ["load_friction_motor_quad", "load_friction_external_quad"];
+    let given = |keys: &[&'static str], unit: &str| -> Vec<String> {
+        let above_zero = |key: &&'static str| Some((*key, parameters.get(key).filter(|share| *share > 0.0)?));
+        keys.iter().filter_map(above_zero).map(|(key, share)| format!("{key} {} {unit}", digits(share))).collect()
+    };
     if surroundings.gravity().is_none() {
-        let by_square =
-            if parameters.get("load_friction_external_quad").is_some() { ", and no friction of squares" } else { "" };
-        told.push(format!(
-            "without a payload no torque acts from outside: the law lacks what a newton metre of it adds, {}{by_square}",
-            if shares.is_empty() { "nothing".to_owned() } else { shares.join(", ") },
-        ));
+        let shares = [
+            "load_friction_external",
+            "load_friction_external_stribeck",
+            "load_friction_base",
+            "load_friction_stribeck",
+        ];
+        let lacking = [given(&shares, "N m"), given(&squares, "N m of its square")].concat();
+        let lacking = if lacking.is_empty() { "nothing".to_owned() } else { lacking.join(", ") };
+        told.push(format!("without a payload the law lacks what each N m from outside adds: {lacking}"));
     } else {
         told.push("the torque from outside is that of this payload; another one needs another image".to_owned());
     }
-    let hanging = surroundings.gravity().map_or(0.0, |(amplitude, _)| amplitude);
-    let most = surroundings.largest_torque(parameters).map(|motor| {
-        let without = parameters.torque(f64::MIN_POSITIVE, 0.0, 0.0);
-        parameters.torque(f64::MIN_POSITIVE, motor, -hanging) - without
-    });
-    let most = most.map_or_else(String::new, |most| format!(", up to {} at the largest torque", quantity(most, "N m")));
-    told.push(format!(
-        "[plant.friction] has no friction of the load{most}: the joint of `simulate` and `loop` lacks it"
-    ));
+    if squares.into_iter().any(|key| parameters.friction(key) > 0.0) && surroundings.gravity().is_some() {
+        let hanging = surroundings.gravity().map_or(0.0, |(amplitude, _)| amplitude);
+        let most = squares.into_iter().map(|key| parameters.friction(key)).fold(0.0, f64::max) * hanging * hanging;
+        told.push(format!(
+            "[plant.friction] has no {}: the joint of `simulate` and `loop` lacks up to {}",
+            squares.join(" and "),
+            quantity(most, "N m")
+        ));
+    }
     told
 }

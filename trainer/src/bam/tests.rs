@@ -11,9 +11,12 @@ use crate::error::codes;
 use crate::fit::CELLS;
 use crate::joint::{Joint, Payload};
 
-const HANGING: Surroundings =
-    Surroundings { supply: Some(5.0), payload: Some(Payload { mass_kg: 0.4, distance_m: 0.1, phase_rad: 0.3 }) };
-const BARE: Surroundings = Surroundings { supply: Some(5.0), payload: None };
+const HANGING: Surroundings = Surroundings {
+    supply: Some(5.0),
+    firmware_kp: None,
+    payload: Some(Payload { mass_kg: 0.4, distance_m: 0.1, phase_rad: 0.3 }),
+};
+const BARE: Surroundings = Surroundings { supply: Some(5.0), firmware_kp: None, payload: None };
 
 /// A servo of about the size of an XL330, with every parameter of its friction model.
 fn servo(variant: Variant) -> Parameters {
@@ -110,6 +113,28 @@ fn a_law_of_bam_is_recognised_and_comes_back_to_the_last_bit() {
 }
 
 #[test]
+fn the_joint_of_a_simulation_has_the_friction_of_bam_but_for_the_squares() {
+    for variant in Variant::ALL {
+        let parameters = servo(variant);
+        let known = Surroundings { firmware_kp: Some(400.0), ..HANGING };
+        let (text, _) = joint_file(&parameters, &known, "a test");
+        let friction = crate::plant::Joint::described_by(&Joint::parse(&text).unwrap()).unwrap().friction;
+        for (velocity, motor, position) in grid() {
+            let [velocity, motor, position] = [velocity, motor, position].map(f64::from);
+            let external = -known.body().gravity(position);
+            let dry = friction.dry_level(velocity.abs()) + friction.load_level(velocity.abs(), motor, external);
+            let found = dry.copysign(velocity) + friction.viscous_nm_s_rad * velocity;
+            let squares = if variant == Variant::M6 { 0.0056 * motor.abs().min(external.abs()).powi(2) } else { 0.0 };
+            let expected = parameters.torque(velocity, motor, external);
+            assert!(
+                (found - expected).abs() <= squares + 1e-12,
+                "{variant:?} at {velocity} {motor}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn friction_of_a_torque_of_unknown_size_makes_no_image() {
     let error = image(&servo(Variant::M4), &Surroundings::default()).unwrap_err();
     assert_eq!((error.code(), error.column()), (&codes::MISSING_PARAMETER, Some("actuator.supply_V")));
@@ -128,14 +153,17 @@ fn joint_toml_says_what_bam_knows_and_what_it_does_not() {
     }
     assert_eq!(given(FirmwareKp), None);
     assert!(text.contains("# firmware_kp = ..."), "{text}");
-    let with_kp = text.replace("# firmware_kp = ...", "firmware_kp = 400");
+    let (with_kp, _) = joint_file(&servo(Variant::M6), &Surroundings { firmware_kp: Some(400.0), ..HANGING }, "a test");
     let plant = crate::plant::Joint::described_by(&Joint::parse(&with_kp).unwrap()).unwrap();
     assert!((plant.inertia_kgm2 - 0.0066).abs() < 1e-12);
     assert!((plant.gravity_torque_nm[0] - 0.392_266).abs() < 1e-9 && (plant.gravity_phase_rad - 0.3).abs() < 1e-9);
     assert_eq!(joint.payload, HANGING.payload);
     assert_eq!((plant.friction.coulomb_torque_nm, plant.friction.stribeck_exponent), (0.0023, 1.35));
     let told = remarks.join("; ");
-    assert!(told.contains("q_offset of 15.5 mrad") && told.contains("[plant.friction]"), "{told}");
+    assert!(
+        told.contains("q_offset of 15.5 mrad") && told.contains("[plant.friction] has no load_friction_motor_quad"),
+        "{told}"
+    );
     let (_, remarks) = joint_file(&servo(Variant::M5), &BARE, "a test");
     assert!(remarks.join("; ").contains("load_friction_external 0.26 N m"), "{remarks:?}");
 }

@@ -193,7 +193,10 @@ fn image_of(arguments: &Loop, joint: &plant::Joint) -> Result<(Vec<u8>, HostMode
         model::load(path)?
     } else {
         let nominal = nominal_model::<CELLS>(&joint.friction)
-            .ok_or_else(|| Error::new(&codes::BAD_JOINT_FILE, "an image cannot hold this friction"))?;
+            .ok_or_else(|| {
+            let message = "this friction follows from more than the velocity, or has numbers that no image holds: give an image, `--image`";
+            Error::new(&codes::BAD_JOINT_FILE, message)
+        })?;
         let image = Box::new(Image { model: nominal, provenance: model::provenance("", &[], arguments.seed) });
         (model::to_bytes(&image)?, image)
     };

@@ -29,6 +29,9 @@ pub struct Init {
     /// Of a parameter file of BAM: supply voltage of the servo, V
     #[arg(long, value_name = "V")]
     pub supply: Option<f64>,
+    /// Of a parameter file of BAM: gain of the firmware as it counts it
+    #[arg(long, value_name = "GAIN")]
+    pub firmware_kp: Option<f64>,
     /// Of a parameter file of BAM: mass that hangs at the joint, kg; its gravity is the torque from outside
     #[arg(long, value_name = "KG", requires = "payload_m")]
     pub payload_kg: Option<f64>,
@@ -57,7 +60,7 @@ pub fn run(arguments: &Init) -> Result<()> {
         };
     }
     let of_servo =
-        [arguments.supply, arguments.payload_kg, arguments.payload_m].into_iter().any(|value| value.is_some());
+        [arguments.supply, arguments.firmware_kp, arguments.payload_kg].into_iter().any(|value| value.is_some());
     if of_servo || arguments.image.is_some() {
         return Err(of_bam("`--image`, `--supply` and `--payload-kg` go with a parameter file of BAM, which"));
     }
@@ -116,6 +119,7 @@ mod tests {
             output: output.clone(),
             image: None,
             supply: None,
+            firmware_kp: None,
             payload_kg: None,
             payload_m: None,
             quiet: true,

@@ -12,6 +12,7 @@ mod concealed;
 mod description;
 pub mod effects;
 mod error;
+mod friction;
 mod integrator;
 mod joint;
 mod measurement;
@@ -23,7 +24,8 @@ mod trajectory;
 
 pub use effects::{CATALOGUE, Entry, OUTSIDE, find};
 pub use error::{MOST_SAMPLES, PlantError};
-pub use joint::{Base, Control, Drive, Friction, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
+pub use friction::Friction;
+pub use joint::{Base, Control, Drive, Hidden, Joint, LoadChannel, Noise, NoiseKind, OtherJoint, Thermal};
 pub use measurement::recording::{Column, SimulatedRecording, Truth};
 pub(crate) use measurement::sensors::encoder_step;
 pub(crate) use mechanics::servo::Servo;

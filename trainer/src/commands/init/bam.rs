@@ -51,8 +51,10 @@ fn surroundings(arguments: &Init) -> Result<Surroundings> {
         Err(Error::new(&codes::USAGE, format!("`{name}` has to be a finite number {rule}"))
             .with_value(value.to_string()))
     };
-    if let Some(supply) = arguments.supply.filter(|supply| !(supply.is_finite() && *supply > 0.0)) {
-        return refused("--supply", supply, "above zero");
+    for (name, value) in [("--supply", arguments.supply), ("--firmware-kp", arguments.firmware_kp)] {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+            return refused(name, value, "above zero");
+        }
     }
     for (name, value) in [("--payload-kg", arguments.payload_kg), ("--payload-m", arguments.payload_m)] {
         if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
@@ -61,5 +63,5 @@ fn surroundings(arguments: &Init) -> Result<Surroundings> {
     }
     let payload = arguments.payload_kg.zip(arguments.payload_m);
     let payload = payload.map(|(mass_kg, distance_m)| Payload { mass_kg, distance_m, phase_rad: 0.0 });
-    Ok(Surroundings { supply: arguments.supply, payload })
+    Ok(Surroundings { supply: arguments.supply, firmware_kp: arguments.firmware_kp, payload })
 }
