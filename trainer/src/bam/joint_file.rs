@@ -70,6 +70,11 @@ fn tell(text: &mut String, key: &str, value: &str) {
     let _ = writeln!(text, "{key} = {value}");
 }
 
+/// A number that was worked out, to ten digits.
+fn worked_out(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}
+
 /// What an actuator is that is no preset.
 fn kind_of(parameters: &Parameters) -> Kind {
     match (parameters.get("kt"), parameters.get("R")) {
@@ -91,8 +96,9 @@ fn constants(
             .find(|(constant, _)| *constant == Constant::FirmwareErrorGain)
             .and_then(|(_, known)| Known::given(*known))
     });
-    let limit = parameters.get("kt").zip(parameters.get("current_limit")).map(|(constant, limit)| constant * limit);
-    let ratio = parameters.get("error_gain_ratio").zip(error_gain).map(|(ratio, gain)| ratio * gain);
+    let limit =
+        parameters.get("kt").zip(parameters.get("current_limit")).map(|(constant, limit)| worked_out(constant * limit));
+    let ratio = parameters.get("error_gain_ratio").zip(error_gain).map(|(ratio, gain)| worked_out(ratio * gain));
     let known = [
         (Constant::TorqueConstant, "kt", parameters.get("kt")),
         (Constant::Resistance, "R", parameters.get("R")),
@@ -113,9 +119,9 @@ fn plant(parameters: &Parameters, surroundings: &Surroundings, armature: f64) ->
     let mut text = String::from("\n[plant]\n");
     let inertia = armature + body.inertia;
     if inertia > 0.0 {
-        tell(&mut text, "inertia_kgm2", &inertia.to_string());
+        tell(&mut text, "inertia_kgm2", &worked_out(inertia).to_string());
     }
-    tell(&mut text, "gravity_torque_Nm", &format!("[{gravity:?}]"));
+    tell(&mut text, "gravity_torque_Nm", &format!("[{:?}]", worked_out(gravity)));
     if phase != 0.0 {
         tell(&mut text, "gravity_phase_rad", &phase.to_string());
     }

@@ -162,7 +162,7 @@ impl Form {
             if (slot.make)(constant) != *operation {
                 return None;
             }
-            let found = f64::from(constant);
+            let found = decimal(constant);
             let (key, found) = match slot.holds {
                 Holds::Fixed(expected) if expected == constant => continue,
                 Holds::Fixed(_) => return None,
@@ -258,6 +258,11 @@ fn squares() -> Vec<Slot> {
         plain(|_| Operation::Add),
     ]);
     slots
+}
+
+/// A constant as the shortest number that is it in `f32`, so that a file has 0.26 and not what `f32` makes of it.
+fn decimal(constant: f32) -> f64 {
+    constant.to_string().parse().unwrap_or(f64::from(constant))
 }
 
 /// The constant that an operation carries; 0 of one that has none.

@@ -73,6 +73,11 @@ impl Friction {
         if at_rest == 0.0 { sliding } else { sliding + at_rest * self.decline(speed) }
     }
 
+    /// Dry level at a speed of a joint whose actuator holds a torque of gravity, N m.
+    pub(crate) fn holding_level(&self, speed: f64, gravity: f64) -> f64 {
+        self.dry_level(speed) + self.load_level(speed, gravity, -gravity)
+    }
+
     /// Whether it depends on the torques at the gear.
     pub(crate) fn reads_load(&self) -> bool {
         self.load_shares().into_iter().any(|(_, share)| share != 0.0)
