@@ -72,8 +72,8 @@ fn what_came_from_bam_goes_back_as_it_came() {
         assert!((found - value).abs() <= 1e-6 * value, "{key}: {found} for {value}");
     }
     done(at, &format!("init again.json -o again.toml --image again.frk {surroundings} --quiet"));
-    let law = |image: &str| done(at, &format!("export {image} --to text -o -"));
-    assert_eq!(law("servo.frk"), law("again.frk"));
+    let [first, second] = ["servo.frk", "again.frk"].map(|name| std::fs::read(at.join(name)).unwrap());
+    assert_eq!(first, second);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::output::{Outputs, refuse_unwritable, say};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::{self, Proposal, Recording};
+pub use bam::OfBam;
 
 /// Propose a joint.toml for recordings: columns, units, joint and rate, each with the reason.
 ///
@@ -23,21 +24,9 @@ pub struct Init {
     /// File to write; `-` for standard output
     #[arg(short, long, value_name = "JOINT.toml")]
     pub output: PathBuf,
-    /// Of a parameter file of BAM: also write its friction, with the armature, as an image
-    #[arg(long, value_name = "MODEL.frk")]
-    pub image: Option<PathBuf>,
-    /// Of a parameter file of BAM: supply voltage of the servo, V
-    #[arg(long, value_name = "V")]
-    pub supply: Option<f64>,
-    /// Of a parameter file of BAM: gain of the firmware as it counts it
-    #[arg(long, value_name = "GAIN")]
-    pub firmware_kp: Option<f64>,
-    /// Of a parameter file of BAM: mass that hangs at the joint, kg; its gravity is the torque from outside
-    #[arg(long, value_name = "KG", requires = "payload_m")]
-    pub payload_kg: Option<f64>,
-    /// How far from the axis, m
-    #[arg(long, value_name = "M", requires = "payload_kg")]
-    pub payload_m: Option<f64>,
+    /// What goes with a parameter file of BAM
+    #[command(flatten)]
+    pub bam: OfBam,
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
@@ -50,19 +39,17 @@ pub struct Init {
 /// what they cannot be and `FRK-D014` for what an image needs beside them. Nothing is written then.
 pub fn run(arguments: &Init) -> Result<()> {
     let read: Vec<_> = arguments.recordings.iter().map(PathBuf::as_path).collect();
-    refuse_unwritable([Some(&arguments.output), arguments.image.as_ref()].into_iter().flatten(), &read)?;
+    refuse_unwritable([Some(&arguments.output), arguments.bam.image.as_ref()].into_iter().flatten(), &read)?;
     let Some((first, others)) = arguments.recordings.split_first() else { return Ok(()) };
     if let Some(text) = bam::text(first)? {
-        return if others.is_empty() {
-            bam::run(arguments, first, &text)
-        } else {
-            Err(of_bam("a parameter file of BAM"))
-        };
+        if !others.is_empty() {
+            return Err(Error::new(&codes::USAGE, "a parameter file of BAM stands by itself"));
+        }
+        return bam::run(&arguments.bam, (first, &text), &arguments.output, arguments.quiet);
     }
-    let of_servo =
-        [arguments.supply, arguments.firmware_kp, arguments.payload_kg].into_iter().any(|value| value.is_some());
-    if of_servo || arguments.image.is_some() {
-        return Err(of_bam("`--image`, `--supply` and `--payload-kg` go with a parameter file of BAM, which"));
+    if arguments.bam != OfBam::default() {
+        let message = "`--image`, `--supply`, `--firmware-kp` and `--payload-kg` go with a parameter file of BAM";
+        return Err(Error::new(&codes::USAGE, message));
     }
     let (proposal, recording) = recording::propose(first)?;
     let joint = Joint::parse(&proposal.toml)?;
@@ -74,10 +61,6 @@ pub fn run(arguments: &Init) -> Result<()> {
         say(told(&recording, &proposal).trim_end());
     }
     Ok(())
-}
-
-fn of_bam(what: &str) -> Error {
-    Error::new(&codes::USAGE, format!("{what} stands by itself"))
 }
 
 /// What was taken for what, a line a column.
@@ -117,11 +100,7 @@ mod tests {
         let init = Init {
             recordings: vec![path.clone(), path.clone()],
             output: output.clone(),
-            image: None,
-            supply: None,
-            firmware_kp: None,
-            payload_kg: None,
-            payload_m: None,
+            bam: OfBam::default(),
             quiet: true,
         };
         run(&init).unwrap();

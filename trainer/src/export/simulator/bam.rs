@@ -48,7 +48,7 @@ pub(super) fn parameters(image: &Image<CELLS>, request: &Request) -> Result<Stri
         ("armature", inertia),
         ("command_delay", actuator.delay_s),
     ]);
-    Ok(parameters.to_json(&format!("{} BAM was not run with this file.", content.title)))
+    Ok(parameters.to_json(&format!("{}. BAM was not run with this file.", content.title)))
 }
 
 /// The friction model of a form, with `load` N m of friction for each N m of the motor.
