@@ -54,19 +54,21 @@ impl<const CELLS: usize> JointDrive<CELLS> {
         let [before, acting] = self.loop_torque;
         let loop_torque = sample.feedback + sample.feed_forward;
         self.loop_torque = [acting, loop_torque];
+        // What acted beside compensation and gravity, and what is put out beside compensation.
+        let (acted, own) =
+            input.actuator.map_or((before, loop_torque + input.gravity), |torque| (torque - input.gravity, 0.0));
         let measurement = Measurement {
             velocity: sample.velocity,
             position: sample.position,
             acceleration: input.target.map_or(0.0, |target| target.acceleration),
-            load: input.gravity,
+            load: input.load,
             temperature: input.temperature,
             ..Measurement::MISSING
         };
         let reference_velocity = input.target.map(|target| target.velocity);
-        let sample_of_joint = Sample { measurement, reference_velocity, loop_torque: before };
+        let sample_of_joint = Sample { measurement, reference_velocity, loop_torque: acted };
         let compensation = self.supervisor.step(&mut self.compensator, &sample_of_joint, dt);
-        let torque = loop_torque + input.gravity + compensation.torque;
-        let torque = limited(torque, self.controller.settings().torque_limit);
+        let torque = limited(own + compensation.torque, self.controller.settings().torque_limit);
         DriveOutput { torque, velocity: sample.velocity, compensation }
     }
 }

@@ -5,7 +5,7 @@ use frikan_runtime::supervised::VelocitySource;
 use frikan_trainer::plant::{Control, Drive, Friction, Joint};
 use frikan_trainer::rig::{
     Bench, Course, Motion, Row, Scores, adaptation_settings, drive_settings, host_drive, nominal_model, run,
-    with_contact,
+    usual_form, with_contact,
 };
 
 /// Joints of three sizes. The defaults of the supervision were chosen on the first.
@@ -18,6 +18,7 @@ pub fn joints() -> [(&'static str, Joint); 3] {
         stribeck_velocity_rad_s: velocity,
         stribeck_exponent: 1.0,
         contact_stiffness_nm_rad: stiffness,
+        ..Friction::default()
     };
     let joint = |inertia_kgm2: f64, friction, (stiffness, damping): (f64, f64)| {
         let omega = (stiffness / inertia_kgm2).sqrt();
@@ -92,7 +93,15 @@ pub fn rows<const CELLS: usize>(
     settings.supervision.monitored = source == VelocitySource::Blended;
     settings.supervision.adaptation = adapts.then(|| adaptation_settings(joint).expect("a friction"));
     let course = Course::Standard(motion);
-    let bench = Bench { joint: joint.clone(), seed, friction_scale, course, duration: motion.duration(), swap: None };
+    let bench = Bench {
+        joint: joint.clone(),
+        seed,
+        friction_scale,
+        course,
+        feed_forward: usual_form(joint),
+        duration: motion.duration(),
+        swap: None,
+    };
     run(&bench, &mut host_drive(model.clone(), &settings).expect("settings")).expect("a run")
 }
 

@@ -28,7 +28,7 @@ const FILES: [(&str, &str, &str); 16] = [
 ];
 
 /// Lines that make what the line of a page beginning so reads.
-const BEFORE: [(&str, &str); 4] = [
+const BEFORE: [(&str, &str); 6] = [
     (
         "trainer export elbow.frk --to mujoco",
         r#"echo '<mujoco><worldbody><body><inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/><joint name="elbow" axis="0 1 0"/></body></worldbody></mujoco>' > robot.xml"#,
@@ -38,8 +38,36 @@ const BEFORE: [(&str, &str); 4] = [
         "trainer show dump.bin",
         "trainer export elbow.frk --to bin --address 0x08060000 --slot 7 --key-file drive.key --release 3 -o dump.bin",
     ),
+    ("trainer loop servo.toml", SERVO),
+    ("trainer init m6.json", BAM),
     ("trainer gather", "for task in 0 1; do trainer run --tasks tasks.jsonl --index $task; done"),
 ];
+
+/// A servo of 1.8 N m/rad with a friction of 80 mN m.
+const SERVO: &str = r#"printf '[actuator]
+kind = "position_servo"
+torque_per_volt_Nm_V = 0.3
+back_emf_Nms_rad = 0.05
+supply_V = 12
+firmware_error_gain = 0.005
+firmware_kp = 100
+delay_s = 0.004
+dead_band_rad = 0.002
+[plant]
+inertia_kgm2 = 0.01
+gravity_torque_Nm = [0.2]
+[plant.friction]
+coulomb_torque_Nm = 0.08
+viscous_Nm_s_rad = 0.02
+[plant.drive]
+rate_Hz = 500
+' > servo.toml"#;
+
+/// Parameters of a servo as BAM writes them, about those of an XL330.
+const BAM: &str = r#"echo '{"kt": 0.286, "R": 2.0, "armature": 0.0026, "q_offset": 0.0155, "friction_base": 0.0023, "friction_stribeck": 0.0002,
+"load_friction_motor": 0.23, "load_friction_external": 0.26, "load_friction_motor_stribeck": 0.0, "load_friction_external_stribeck": 0.15,
+"load_friction_motor_quad": 0.0056, "load_friction_external_quad": 0.0038, "dtheta_stribeck": 0.115, "alpha": 1.0, "friction_viscous": 0.0185,
+"model": "m6", "actuator": "xl330"}' > m6.json"#;
 
 /// Lines that are not run here, by what they begin with, and why.
 const ELSEWHERE: [(&str, &str); 14] = [

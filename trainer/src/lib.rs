@@ -3,6 +3,7 @@
 
 pub mod actuator;
 pub mod arm;
+pub mod bam;
 pub mod checks;
 pub mod commands;
 pub mod compile;

@@ -9,7 +9,7 @@ use crate::supervised::adaptation_settings::AdaptationSettings;
 use crate::supervised::{Supervised, SupervisedCompensation, Supervision, VelocitySource};
 
 /// Words of a [`DriveInput`].
-pub const INPUT_WORDS: usize = 6;
+pub const INPUT_WORDS: usize = 8;
 /// Words of a [`DriveOutput`].
 pub const OUTPUT_WORDS: usize = 8;
 /// Words of [`DriveSettings`].
@@ -29,23 +29,25 @@ pub struct DriveSettings {
 }
 
 impl DriveInput {
-    /// Counts, target (position, velocity, acceleration; NaN for none), gravity, temperature.
+    /// Counts, target (position, velocity, acceleration; NaN for none), gravity, load, torque of the actuator (NaN for none), temperature.
     #[must_use]
     pub fn to_words(&self) -> [u32; INPUT_WORDS] {
         let none = Target { position: f32::NAN, velocity: f32::NAN, acceleration: f32::NAN };
         let Target { position, velocity, acceleration } = self.target.unwrap_or(none);
-        let [position, velocity, acceleration, gravity, temperature] =
-            [position, velocity, acceleration, self.gravity, self.temperature].map(f32::to_bits);
-        [self.counts.cast_unsigned(), position, velocity, acceleration, gravity, temperature]
+        let actuator = self.actuator.unwrap_or(f32::NAN);
+        let [position, velocity, acceleration, gravity, load, actuator, temperature] =
+            [position, velocity, acceleration, self.gravity, self.load, actuator, self.temperature].map(f32::to_bits);
+        [self.counts.cast_unsigned(), position, velocity, acceleration, gravity, load, actuator, temperature]
     }
 
-    /// The input of [`DriveInput::to_words`]; a target whose position is NaN is none.
+    /// The input of [`DriveInput::to_words`]; a target whose position is NaN is none, and so is a torque of the actuator that is NaN.
     #[must_use]
     pub fn from_words(words: &[u32; INPUT_WORDS]) -> Self {
         let [counts, numbers @ ..] = *words;
-        let [position, velocity, acceleration, gravity, temperature] = numbers.map(f32::from_bits);
+        let [position, velocity, acceleration, gravity, load, actuator, temperature] = numbers.map(f32::from_bits);
         let target = (!position.is_nan()).then_some(Target { position, velocity, acceleration });
-        Self { counts: counts.cast_signed(), target, gravity, temperature }
+        let actuator = (!actuator.is_nan()).then_some(actuator);
+        Self { counts: counts.cast_signed(), target, gravity, load, actuator, temperature }
     }
 }
 
@@ -204,8 +206,8 @@ mod tests {
             }
         }
         let target = Some(Target { position: 1.0, velocity: -2.0, acceleration: 3.0 });
-        for target in [target, None] {
-            let input = DriveInput { counts: -7, target, gravity: 2.0, temperature: 25.0 };
+        for (target, actuator) in [(target, None), (None, Some(0.5))] {
+            let input = DriveInput { counts: -7, target, gravity: 2.0, load: 3.0, actuator, temperature: 25.0 };
             assert_eq!(DriveInput::from_words(&input.to_words()), input);
         }
     }

@@ -142,7 +142,7 @@ impl Actuator {
     }
 
     /// The position error that is acted upon: none within the dead band, the rest beyond it.
-    fn error(&self, command: &Command, motion: Motion) -> f64 {
+    pub(super) fn error(&self, command: &Command, motion: Motion) -> f64 {
         let error = command.reference - motion.position;
         if error.abs() <= self.dead_band { 0.0 } else { error - self.dead_band.copysign(error) }
     }

@@ -14,21 +14,26 @@ use frikan_runtime::supervised::{DEFAULT_GAIN, SupervisionError, VelocitySource}
 use super::output::{Outputs, command_line, print, refuse_unwritable};
 use super::progress::Reporter;
 use super::simulate::{parse_effect, with_effects};
+use crate::actuator::FeedForward;
 use crate::emulator::Lockstep;
 use crate::error::{Error, Result, codes};
 use crate::fit::model::{self, CELLS, HostModel};
 use crate::plant::{self, Hidden};
 use crate::report;
 use crate::rig::{
-    Bench, Row, Scores, adaptation_settings, drive_settings, host_drive, nominal_model, run as run_bench, with_contact,
+    Bench, Row, Scores, adaptation_settings, drive_settings, host_drive, nominal_model, run as run_bench, usual_form,
+    with_contact,
 };
-use account::Account;
+use account::{Account, FedBy};
 
 /// Follow a motion in closed loop with a simulated joint, with and without friction compensation: what an image is worth before it meets a
 /// machine.
 ///
 /// The drive is the firmware's code: position loop, encoder filter and supervised compensator, on the host or on an emulated
-/// microcontroller, bit for bit the same. The joint is that of `trainer simulate`, effects included.
+/// microcontroller, bit for bit the same. The joint is that of `trainer simulate`, effects included. Where it reports no torque ([actuator]),
+/// the actuator is told in its own form: a `pd` or `position_servo` joint follows the reference by its own law and limits and is told of the
+/// compensation alone, as a torque to add or an offset of its position reference; `current` and `dc_motor` joints are told of all of the
+/// drive's torque, as current, duty or voltage.
 #[derive(Args, Clone, Debug)]
 pub struct Loop {
     /// Description of the joint; its `[plant]` section and every key in it are optional
@@ -49,6 +54,10 @@ pub struct Loop {
     /// Share of the friction that is compensated
     #[arg(long, default_value_t = DEFAULT_GAIN)]
     pub gain: f32,
+    /// How an actuator that reports no torque is told: torque or position_offset (pd), position_offset (position_servo), current, duty or
+    /// voltage (dc_motor); without it the first that its kind takes
+    #[arg(long, value_name = "FORM", value_parser = parse_form)]
+    pub feed_forward: Option<FeedForward>,
     /// Velocity at which friction is compensated
     #[arg(long, value_enum, default_value_t = Velocity::Blended)]
     pub velocity: Velocity,
@@ -112,7 +121,7 @@ impl From<Velocity> for VelocitySource {
 /// Runs the command.
 ///
 /// # Errors
-/// `FRK-D015` for a joint that cannot be simulated, `FRK-D019` and `FRK-D020` for what is no image, `FRK-U001` for numbers out of range, a
+/// `FRK-D015` for a joint that cannot be simulated, `FRK-D014` for an actuator of which a constant is open, `FRK-D019` and `FRK-D020` for what is no image, `FRK-U001` for numbers out of range, a
 /// motion that does not exist or a model that is not in N m, `FRK-U004` and `FRK-I004` to `FRK-I008` for targets that do not
 /// exist or cannot be emulated. Nothing is written unless both runs ended.
 pub fn run(arguments: &Loop) -> Result<()> {
@@ -150,18 +159,19 @@ pub fn run(arguments: &Loop) -> Result<()> {
         motion: bench.course.name(),
         friction_scale: arguments.friction_scale,
         gain: arguments.gain,
+        fed: bench.joint.actuator.map(|actuator| FedBy::of(&actuator, bench.feed_forward)),
         uncompensated: scores(&uncompensated),
         compensated: scores(&compensated),
         instructions,
         rows: &compensated,
     };
-    write(arguments, &account, &uncompensated)
+    write(arguments, &account, &uncompensated, bench.feed_forward)
 }
 
-fn write(arguments: &Loop, account: &Account<'_>, uncompensated: &[Row]) -> Result<()> {
+fn write(arguments: &Loop, account: &Account<'_>, uncompensated: &[Row], form: FeedForward) -> Result<()> {
     let mut outputs = Outputs::default();
     if let Some(path) = &arguments.output {
-        outputs.add(path, account::trace(account.rows));
+        outputs.add(path, account::trace(account.rows, form));
     }
     if let Some(path) = &arguments.json {
         outputs.add_json(path, account.to_json());
@@ -183,7 +193,10 @@ fn image_of(arguments: &Loop, joint: &plant::Joint) -> Result<(Vec<u8>, HostMode
         model::load(path)?
     } else {
         let nominal = nominal_model::<CELLS>(&joint.friction)
-            .ok_or_else(|| Error::new(&codes::BAD_JOINT_FILE, "an image cannot hold this friction"))?;
+            .ok_or_else(|| {
+            let message = "this friction follows from more than the velocity, or has numbers that no image holds: give an image, `--image`";
+            Error::new(&codes::BAD_JOINT_FILE, message)
+        })?;
         let image = Box::new(Image { model: nominal, provenance: model::provenance("", &[], arguments.seed) });
         (model::to_bytes(&image)?, image)
     };
@@ -212,8 +225,39 @@ fn settings_of(arguments: &Loop, joint: &plant::Joint, largest: f32) -> Result<D
     Ok(settings)
 }
 
+fn parse_form(text: &str) -> std::result::Result<FeedForward, String> {
+    let names = || FeedForward::ALL.map(FeedForward::name).join(", ");
+    FeedForward::ALL
+        .into_iter()
+        .find(|form| form.name() == text)
+        .ok_or_else(|| format!("one of {} is expected", names()))
+}
+
+/// In what form the actuator of `joint` is fed.
+fn form_of(arguments: &Loop, joint: &plant::Joint) -> Result<FeedForward> {
+    let form = arguments.feed_forward.unwrap_or_else(|| usual_form(joint));
+    let kind = joint.actuator.map(|actuator| actuator.kind).unwrap_or_default();
+    let taken = FeedForward::of(kind);
+    if !taken.contains(&form) {
+        let names: Vec<&str> = taken.iter().map(|form| form.name()).collect();
+        let message = format!("an actuator of kind `{}` is told of a torque as {}", kind.name(), names.join(" or "));
+        return Err(Error::new(&codes::USAGE, message).with_value(form.name()));
+    }
+    if joint.actuator.is_some_and(|actuator| !actuator.per_torque(form).is_finite()) {
+        let message = "an offset of the reference makes no torque where the gain of the position error is zero";
+        return Err(Error::new(&codes::USAGE, message).in_column("actuator.kp_Nm_rad"));
+    }
+    Ok(form)
+}
+
 fn bench_of(arguments: &Loop, joint: plant::Joint) -> Result<Bench> {
     let course = follow::course(&arguments.motion, joint.drive.rate_hz)?;
+    let feed_forward = form_of(arguments, &joint)?;
+    let holds = joint.actuator.filter(|actuator| actuator.kind.follows_position());
+    if let Some(actuator) = holds.filter(|_| course.target(0, joint.drive.rate_hz).is_none()) {
+        let message = format!("an actuator of kind `{}` holds its position and cannot be let go", actuator.kind.name());
+        return Err(Error::new(&codes::USAGE, message).with_value(course.name()));
+    }
     let duration = arguments.duration.unwrap_or_else(|| course.duration(joint.drive.rate_hz));
     let positive = [("--friction-scale", arguments.friction_scale), ("--duration", duration)];
     for (name, value) in positive {
@@ -230,5 +274,13 @@ fn bench_of(arguments: &Loop, joint: plant::Joint) -> Result<Bench> {
         (Some(path), Some(at)) => Some((at, model::load(path)?.0)),
         _ => None,
     };
-    Ok(Bench { joint, seed: arguments.seed, friction_scale: arguments.friction_scale, course, duration, swap })
+    Ok(Bench {
+        joint,
+        seed: arguments.seed,
+        friction_scale: arguments.friction_scale,
+        course,
+        feed_forward,
+        duration,
+        swap,
+    })
 }

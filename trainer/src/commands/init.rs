@@ -1,23 +1,32 @@
-//! `trainer init`: a `joint.toml` that reads a recording, from the recording itself.
+//! `trainer init`: a `joint.toml` that reads a recording, from the recording itself, or one of a servo whose parameters BAM knows.
+
+mod bam;
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::output::{Outputs, refuse_unwritable, say};
-use crate::error::Result;
+use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
 use crate::recording::{self, Proposal, Recording};
+pub use bam::OfBam;
 
 /// Propose a joint.toml for recordings: columns, units, joint and rate, each with the reason.
+///
+/// A parameter file of Rhoban's BAM (`m1.json` to `m6.json` of an actuator) in place of recordings becomes the joint.toml of that servo, and with
+/// `--image` its friction an image for `rollout`, `loop`, `predict` and `diagnose --model`.
 #[derive(Args, Clone, Debug)]
 pub struct Init {
-    /// Recordings of one joint, all with the same columns; `-` is standard input
+    /// Recordings of one joint, all with the same columns; `-` is standard input; or one parameter file of BAM
     #[arg(required = true, value_name = "RECORDING")]
     pub recordings: Vec<PathBuf>,
     /// File to write; `-` for standard output
     #[arg(short, long, value_name = "JOINT.toml")]
     pub output: PathBuf,
+    /// What goes with a parameter file of BAM
+    #[command(flatten)]
+    pub bam: OfBam,
     /// Say nothing on standard error
     #[arg(long)]
     pub quiet: bool,
@@ -26,11 +35,22 @@ pub struct Init {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; nothing is written then.
+/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; of parameters of BAM `FRK-D046` for
+/// what they cannot be and `FRK-D014` for what an image needs beside them. Nothing is written then.
 pub fn run(arguments: &Init) -> Result<()> {
     let read: Vec<_> = arguments.recordings.iter().map(PathBuf::as_path).collect();
-    refuse_unwritable([&arguments.output], &read)?;
+    refuse_unwritable([Some(&arguments.output), arguments.bam.image.as_ref()].into_iter().flatten(), &read)?;
     let Some((first, others)) = arguments.recordings.split_first() else { return Ok(()) };
+    if let Some(text) = bam::text(first)? {
+        if !others.is_empty() {
+            return Err(Error::new(&codes::USAGE, "a parameter file of BAM stands by itself"));
+        }
+        return bam::run(&arguments.bam, (first, &text), &arguments.output, arguments.quiet);
+    }
+    if arguments.bam != OfBam::default() {
+        let message = "`--image`, `--supply`, `--firmware-kp` and `--payload-kg` go with a parameter file of BAM";
+        return Err(Error::new(&codes::USAGE, message));
+    }
     let (proposal, recording) = recording::propose(first)?;
     let joint = Joint::parse(&proposal.toml)?;
     others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
@@ -77,7 +97,12 @@ mod tests {
                 .unwrap();
         }
         std::fs::write(&path, text).unwrap();
-        let init = Init { recordings: vec![path.clone(), path.clone()], output: output.clone(), quiet: true };
+        let init = Init {
+            recordings: vec![path.clone(), path.clone()],
+            output: output.clone(),
+            bam: OfBam::default(),
+            quiet: true,
+        };
         run(&init).unwrap();
         let recording = recording::load(&path, &Joint::load(&output).unwrap()).unwrap();
         let velocity = recording.values(recording::Quantity::Velocity).unwrap();

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::time::{Duration, Instant};
 
+use frikan_runtime::drive::INPUT_WORDS;
 use tempfile::TempDir;
 
 use super::firmware::Firmware;
@@ -24,8 +25,8 @@ const SAMPLE: u32 = 1;
 const NEW_IMAGE: u32 = 2;
 /// Command of a frame: words for a place of the flash.
 const WRITE: u32 = 3;
-/// Words that a frame writes.
-const WRITTEN_WORDS: usize = 5;
+/// Words that a frame writes, beside their place.
+const WRITTEN_WORDS: usize = INPUT_WORDS - 1;
 /// Status of settings that the firmware refuses.
 const BAD_SETTINGS: u32 = u32::MAX;
 
@@ -131,7 +132,9 @@ impl Lockstep {
             let place = start + (4 * WRITTEN_WORDS * index) as u32;
             self.command(WRITE, &[&[place], &padded.map(u32::from_le_bytes)[..]].concat())?;
         }
-        self.command(NEW_IMAGE, &[start, image.len() as u32, 0, 0, 0, 0])
+        let mut words = [0; INPUT_WORDS];
+        [words[0], words[1]] = [start, image.len() as u32];
+        self.command(NEW_IMAGE, &words)
     }
 
     fn command(&mut self, command: u32, words: &[u32]) -> Result<()> {

@@ -179,6 +179,10 @@ registry! {
         "The simulation reaches a torque or a speed that is a hundred times that of the recording: it computes nothing about this joint.",
         "A time step that is too long for the controller or the friction, or a column in another unit.",
         "Halve the time step, take a softer controller or an implicit integrator; compare the units of both files.";
+    BAD_BAM_FILE = "FRK-D046" Data "parameters of BAM cannot be used",
+        "The JSON is no parameter file of Rhoban's BAM, or it lacks a parameter of its friction model or has one that no servo can have.",
+        "Another JSON file, a file of another version of BAM, or one that was edited by hand.",
+        "Take a file as BAM writes it (`params/ACTUATOR/m1.json` to `m6.json`); the message names the parameter.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording, or the law is worth no more on rows that it has not seen than a constant torque, a spring or Coulomb friction alone. No image is written; `--force` writes it all the same.",
         "One speed, one acceleration, a small range of positions, a single frequency, or a joint that does not slide.",

@@ -1,6 +1,7 @@
 //! What a simulated joint is made of: the `[plant]` section of `joint.toml`. Every key is optional.
 
 use crate::actuator::Actuator;
+use crate::plant::friction::Friction;
 use crate::plant::trajectory::campaign::Campaign;
 use serde::{Deserialize, Serialize};
 
@@ -43,28 +44,6 @@ pub struct Joint {
     /// The actuator of a joint that reports no torque: what stands under `[actuator]` of joint.toml.
     #[serde(skip)]
     pub actuator: Option<Actuator>,
-}
-
-/// Coulomb, viscous and Stribeck friction of the nominal joint; torque has the sign of the velocity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Friction {
-    /// Coulomb torque, N m (>= 0).
-    #[serde(rename = "coulomb_torque_Nm")]
-    pub coulomb_torque_nm: f64,
-    /// Viscous coefficient, N m s/rad (>= 0).
-    #[serde(rename = "viscous_Nm_s_rad")]
-    pub viscous_nm_s_rad: f64,
-    /// Torque above Coulomb at rest, N m; 0 switches the Stribeck effect off.
-    #[serde(rename = "stribeck_torque_Nm")]
-    pub stribeck_torque_nm: f64,
-    /// Stribeck velocity, rad/s (> 0).
-    pub stribeck_velocity_rad_s: f64,
-    /// Exponent of the decline of that torque over speed (> 0): 1 exponential, 2 Gaussian.
-    pub stribeck_exponent: f64,
-    /// Stiffness of the contact before it slips, N m/rad; 0 for a contact that does not yield.
-    #[serde(rename = "contact_stiffness_Nm_rad")]
-    pub contact_stiffness_nm_rad: f64,
 }
 
 /// Proportional-derivative position control with feed-forward of the nominal law.
@@ -250,30 +229,6 @@ impl Default for Joint {
             effects: Vec::new(),
             actuator: None,
         }
-    }
-}
-
-impl Default for Friction {
-    fn default() -> Self {
-        Self {
-            coulomb_torque_nm: 2.0,
-            viscous_nm_s_rad: 1.2,
-            stribeck_torque_nm: 0.0,
-            stribeck_velocity_rad_s: 0.05,
-            stribeck_exponent: 1.0,
-            contact_stiffness_nm_rad: 0.0,
-        }
-    }
-}
-
-impl Friction {
-    /// Dry level at a speed, N m: Coulomb plus Stribeck (Tustin 1947; Bo & Pavelescu 1982 for the exponent).
-    pub(crate) fn dry_level(&self, speed: f64) -> f64 {
-        if self.stribeck_torque_nm == 0.0 {
-            return self.coulomb_torque_nm;
-        }
-        let decline = -(speed / self.stribeck_velocity_rad_s).powf(self.stribeck_exponent);
-        self.coulomb_torque_nm + self.stribeck_torque_nm * decline.exp()
     }
 }
 

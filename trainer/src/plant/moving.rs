@@ -104,7 +104,9 @@ impl<'a> MovingJoint<'a> {
         for step in 0..steps {
             let moment = self.moment(time, (step as f64 + 0.5) * step_s, 0.5 * step_s, load);
             let effect = self.hidden.resist(&moment, step_s);
-            let base = scale * friction.dry_level(moment.speed());
+            let speed = moment.speed();
+            let of_load = friction.load_level(speed, torque, -moment.load);
+            let base = scale * (friction.dry_level(speed) + of_load);
             let dry = DryLevels {
                 forward: (base + effect.dry.forward).max(0.0),
                 backward: (base + effect.dry.backward).max(0.0),

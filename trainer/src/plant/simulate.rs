@@ -91,7 +91,7 @@ fn validate(joint: &Joint) -> Result<(), PlantError> {
         ("noise.white_torque_Nm", joint.noise.white_torque_nm),
         ("noise.coloured_torque_Nm", joint.noise.coloured_torque_nm),
     ];
-    for (key, value) in not_negative {
+    for (key, value) in not_negative.into_iter().chain(joint.friction.load_shares()) {
         if !(value.is_finite() && value >= 0.0) {
             return Err(PlantError::OutOfRange { key, range: "zero or positive, and finite", value });
         }

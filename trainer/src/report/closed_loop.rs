@@ -39,7 +39,7 @@ pub fn closed_loop(
     page.plot(&position, "Position of the joint.");
     page.plot(&over_time(&runs, "velocity, rad/s", |row| row.velocity), "Velocity of the joint.");
     page.heading("Torque");
-    page.plot(&over_time(&runs, "torque, N m", |row| f64::from(row.answer.torque)), "Torque of the drive.");
+    page.plot(&over_time(&runs, "torque, N m", Row::torque), "Torque of the motor.");
     let compensation = [(compensated, Ink::One, "compensation")];
     let torque = over_time(&compensation, "compensation, N m", |row| f64::from(row.answer.compensation));
     page.plot(&torque, "What of it compensates friction.");

@@ -12,16 +12,20 @@ const SIGN_SLOPE: f32 = 192.0;
 /// Largest speed of the model, rad/s.
 const TOP_SPEED: f32 = 20.0;
 
-/// `(coulomb + stribeck exp(-|v| / stribeck velocity)) tanh(192 v) + viscous v`, N m at rad/s. `None` where the decline is no exponential,
-/// and where a parameter is not one that an image may hold.
+/// `(coulomb + stribeck exp(-(|v| / stribeck velocity)^exponent)) tanh(192 v) + viscous v`, N m at rad/s. `None` of friction that depends on
+/// the torques at the gear, and where a parameter is not one that an image may hold.
 #[must_use]
 pub fn nominal_model<const CELLS: usize>(friction: &Friction) -> Option<Model<CELLS>> {
-    if (friction.stribeck_exponent - 1.0).abs() > f64::EPSILON {
+    if friction.reads_load() {
         return None;
     }
     let viscous = friction.viscous_nm_s_rad as f32;
-    let operations = [
-        Operation::ScaledMagnitude(0, -1.0 / friction.stribeck_velocity_rad_s as f32),
+    let slope = 1.0 / friction.stribeck_velocity_rad_s as f32;
+    let exponent = friction.stribeck_exponent as f32;
+    let exponential = [Operation::ScaledMagnitude(0, -slope)];
+    let other = [Operation::ScaledMagnitude(0, slope), Operation::PowerOf(exponent), Operation::Negate];
+    let decline = if exponent == 1.0 { &exponential[..] } else { &other[..] };
+    let sliding = [
         Operation::Exp,
         Operation::Scale(friction.stribeck_torque_nm as f32),
         Operation::Offset(friction.coulomb_torque_nm as f32),
@@ -37,7 +41,7 @@ pub fn nominal_model<const CELLS: usize>(friction: &Friction) -> Option<Model<CE
         output_unit: Unit::NewtonMetre,
         output_limit: friction.dry_level(0.0) as f32 + viscous * TOP_SPEED,
         rigid_body: RigidBody::default(),
-        law: Law::Expression(Program { operations: operations.into_iter().collect() }),
+        law: Law::Expression(Program { operations: decline.iter().copied().chain(sliding).collect() }),
         effects: [].into_iter().collect(),
         cells: Pool::new(),
     };

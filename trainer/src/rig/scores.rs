@@ -20,6 +20,27 @@ pub struct Row {
     pub temperature: f64,
     /// What the drive answered.
     pub answer: Answer,
+    /// What became of it in an actuator that reports no torque; none of a drive that puts out the torque itself.
+    pub fed: Option<Fed>,
+}
+
+/// A sample of an actuator that reports no torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fed {
+    /// Torque over the sample, N m.
+    pub torque: f64,
+    /// What it is told at the start of the sample: torque to add, N m, current, A, duty, voltage, V, or position reference, rad.
+    pub told: f64,
+    /// What of that compensates friction, in the same unit.
+    pub feed_forward: f64,
+}
+
+impl Row {
+    /// Torque of the motor, N m: that of the drive's answer, or of the actuator over the sample.
+    #[must_use]
+    pub fn torque(&self) -> f64 {
+        self.fed.map_or(f64::from(self.answer.torque), |fed| fed.torque)
+    }
 }
 
 /// All numbers of a run as bytes, for its checksum.
@@ -31,7 +52,10 @@ pub fn trace_bytes(rows: &[Row]) -> Vec<u8> {
         let Correction { level, viscous, offset } = correction;
         let numbers = [torque, velocity, compensation, gain_share, level, viscous, offset];
         let drive = numbers.map(f32::to_le_bytes).concat();
-        [joint, drive, status.to_le_bytes().to_vec()].concat()
+        let fed = row
+            .fed
+            .map_or_else(Vec::new, |fed| [fed.torque, fed.told, fed.feed_forward].map(f64::to_le_bytes).concat());
+        [joint, drive, status.to_le_bytes().to_vec(), fed].concat()
     };
     rows.iter().flat_map(bytes).collect()
 }
@@ -67,7 +91,7 @@ impl Scores {
         let settled = rows.iter().filter(|row| row.time >= SETTLING_S);
         let errors = settled.map(|row| f64::from(row.reference[0]) - row.position);
         let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
-        let torques: Vec<f64> = rows.iter().map(|row| f64::from(row.answer.torque)).collect();
+        let torques: Vec<f64> = rows.iter().map(Row::torque).collect();
         let let_go: Vec<f64> = nudge_end
             .map(|end| rows.iter().filter(|row| row.time >= end).map(|row| row.velocity.abs()).collect())
             .unwrap_or_default();

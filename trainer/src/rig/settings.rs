@@ -32,9 +32,8 @@ const SLEW_TIME_S: f32 = 2e-3;
 #[must_use]
 pub fn with_contact(joint: &Joint) -> Joint {
     let mut joint = joint.clone();
-    let friction = &mut joint.friction;
-    if friction.contact_stiffness_nm_rad == 0.0 {
-        friction.contact_stiffness_nm_rad = friction.dry_level(0.0) / BREAKAWAY_RAD;
+    if joint.friction.contact_stiffness_nm_rad == 0.0 {
+        joint.friction.contact_stiffness_nm_rad = joint.friction.holding_level(0.0, gravity(&joint)) / BREAKAWAY_RAD;
     }
     joint
 }
@@ -71,6 +70,12 @@ pub fn adaptation_settings(joint: &Joint) -> Option<AdaptationSettings> {
     AdaptationSettings::new(ADAPTED_LEVEL, bounds, ADAPTATION_MEMORY_S, ADAPTATION_NOISE * coulomb).ok()
 }
 
+/// Dry friction of a joint that slides fast while it holds its payload, N m.
 fn coulomb_torque(joint: &Joint) -> f32 {
-    joint.friction.coulomb_torque_nm as f32
+    joint.friction.holding_level(f64::INFINITY, gravity(joint)) as f32
+}
+
+/// Largest torque of gravity in a run, N m.
+fn gravity(joint: &Joint) -> f64 {
+    joint.gravity_torque_nm.first().copied().unwrap_or(0.0)
 }

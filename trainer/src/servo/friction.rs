@@ -5,7 +5,7 @@ use crate::numerics::dry_friction::DryLevels;
 use crate::rollout::{Instant, Levels, Resistance};
 
 /// The smoothing of the sign in an image over the top speed: below it the law is no friction but the flank through rest.
-const FLANK_SHARE: f64 = 3e-4;
+pub const FLANK_SHARE: f64 = 3e-4;
 
 /// Friction = (coulomb + stribeck exp(-(v/v_s)²) + load |τ|) sign(v) + viscous v, with τ the torque of the actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

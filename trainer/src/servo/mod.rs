@@ -18,6 +18,7 @@ mod shooting;
 mod tests;
 mod torque_space;
 
+pub use friction::FLANK_SHARE;
 pub use identified::Identified;
 pub(crate) use known_torque::{Load, known_torque};
 pub use run::{ServoFit, Simulated, fit_servo};

@@ -6,6 +6,7 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use frikan_runtime::supervised::adaptation::Correction;
 use serde_json::{Value, json};
 
+use crate::actuator::{Actuator, FeedForward};
 use crate::figures::{digits, quantity};
 use crate::rig::{Row, Scores, trace_bytes};
 
@@ -15,11 +16,43 @@ pub(super) struct Account<'a> {
     pub(super) motion: &'a str,
     pub(super) friction_scale: f64,
     pub(super) gain: f32,
+    /// How the actuator is told, where it reports no torque.
+    pub(super) fed: Option<FedBy>,
     pub(super) uncompensated: Scores,
     pub(super) compensated: Scores,
     pub(super) instructions: Option<(u32, u32)>,
     /// The compensated run.
     pub(super) rows: &'a [Row],
+}
+
+/// In what form an actuator that reports no torque is told of one.
+#[derive(Clone, Copy)]
+pub(super) struct FedBy {
+    form: FeedForward,
+    /// How much of it one N m is.
+    per_torque: f64,
+    follows_position: bool,
+}
+
+impl FedBy {
+    pub(super) fn of(actuator: &Actuator, form: FeedForward) -> Self {
+        Self { form, per_torque: actuator.per_torque(form), follows_position: actuator.kind.follows_position() }
+    }
+
+    /// What it is told of, and as what.
+    fn line(&self, largest: f64) -> String {
+        let told =
+            if self.follows_position { "the compensation alone" } else { "the drive's torque, compensation included," };
+        let form = match self.form {
+            FeedForward::Torque => "a torque to add",
+            FeedForward::Current => "a current",
+            FeedForward::Duty => "a duty",
+            FeedForward::Voltage => "a voltage",
+            FeedForward::PositionOffset => "an offset of its position reference",
+        };
+        let [each, largest] = [self.per_torque, largest].map(|value| quantity(value, self.form.unit()));
+        format!("the actuator is told {told} as {form}: {each} for each N m, {largest} at most for friction")
+    }
 }
 
 /// Names of the drive's status by its number.
@@ -35,6 +68,12 @@ impl Account<'_> {
     /// What the drive has learnt at the end.
     fn last_correction(&self) -> Correction {
         self.rows.last().map_or(Correction::NONE, |row| row.answer.correction)
+    }
+
+    /// What the actuator was told of compensation at most, in its form; without an actuator, N m.
+    fn largest_feed_forward(&self) -> f64 {
+        let told = |row: &Row| row.fed.map_or(f64::from(row.answer.compensation), |fed| fed.feed_forward);
+        self.rows.iter().map(|row| told(row).abs()).fold(0.0, f64::max)
     }
 
     /// The smallest share of the gain that the monitor left.
@@ -59,6 +98,7 @@ impl Account<'_> {
             digits(self.friction_scale),
             digits(f64::from(self.gain)),
         )];
+        lines.extend(self.fed.map(|fed| fed.line(self.largest_feed_forward())));
         let mut compared = |what: &str, unit: &str, before: f64, after: f64| {
             lines.push(format!(
                 "{what}: {} without compensation, {} with it",
@@ -113,12 +153,17 @@ impl Account<'_> {
     /// The result as JSON.
     pub(super) fn to_json(&self) -> Value {
         let statuses = self.statuses().map(|(name, count)| (name.to_owned(), Value::from(count)));
+        let form = self.fed.map_or(FeedForward::Torque, |fed| fed.form);
         json!({
             "schema": "frikan.loop/1",
             "target": self.target,
             "motion": self.motion,
             "friction_scale": self.friction_scale,
             "gain": self.gain,
+            "feed_forward": form.name(),
+            "feed_forward_unit": form.unit(),
+            "feed_forward_per_Nm": self.fed.map_or(1.0, |fed| fed.per_torque),
+            "largest_feed_forward": self.largest_feed_forward(),
             "steps": self.rows.len(),
             "compensated": scores(&self.compensated),
             "uncompensated": scores(&self.uncompensated),
@@ -146,25 +191,37 @@ fn scores(scores: &Scores) -> Value {
     })
 }
 
-/// The run as a recording, with what the drive did beside it.
-pub(super) fn trace(rows: &[Row]) -> String {
+/// The run as a recording, with what the drive did and the actuator was told beside it.
+pub(super) fn trace(rows: &[Row], form: FeedForward) -> String {
     let mut text = String::from(
         "time_s,position_rad,velocity_rad_s,temperature_C,reference_position_rad,reference_velocity_rad_s,torque_Nm,\
          filtered_velocity_rad_s,compensation_torque_Nm,gain_share,friction_level,viscous_correction_Nms_rad,\
-         offset_correction_Nm,status\n",
+         offset_correction_Nm,status",
     );
+    if rows.iter().any(|row| row.fed.is_some()) {
+        text.push_str(match form {
+            FeedForward::Torque => ",told_torque_Nm",
+            FeedForward::Current => ",told_current_A",
+            FeedForward::Duty => ",told_duty",
+            FeedForward::Voltage => ",told_voltage_V",
+            FeedForward::PositionOffset => ",told_position_rad",
+        });
+    }
+    text.push('\n');
     for row in rows {
         let [position, velocity] =
             row.reference.map(|value| if value.is_nan() { String::new() } else { value.to_string() });
         let answer = &row.answer;
+        // As short as a number of the drive is, where the torque is the drive's.
+        let torque = row.fed.map_or_else(|| answer.torque.to_string(), |fed| fed.torque.to_string());
+        let told = row.fed.map_or_else(String::new, |fed| format!(",{}", fed.told));
         let _ = writeln!(
             text,
-            "{},{},{},{},{position},{velocity},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{position},{velocity},{torque},{},{},{},{},{},{},{}{told}",
             row.time,
             row.position,
             row.velocity,
             row.temperature,
-            answer.torque,
             answer.velocity,
             answer.compensation,
             answer.gain_share,

@@ -5,19 +5,20 @@ use frikan_shared::effect::Effect;
 use frikan_shared::image::Image;
 use frikan_shared::model::MAX_INPUTS;
 use frikan_shared::units::Quantity;
-use serde_json::{Map, Value, json};
 
 use super::content::Content;
+use super::form::Form;
 use super::request::Request;
+use crate::bam::{Parameters, Variant, recognised};
 use crate::error::{Error, Result, codes};
 use crate::fit::{CELLS, HostModel};
 
 /// Exponent of our Stribeck peak, exp(-(v / v_s)^2).
 const STRIBECK_EXPONENT: f64 = 2.0;
 
-/// Motor, inertia and friction of a servo. Its friction is `friction_base + friction_stribeck s + |motor torque| (load_friction_motor +
-/// load_friction_motor_stribeck s) + friction_viscous |v|`, s = exp(-|v / dtheta_stribeck|^alpha): the model `m1` of BAM, `m2` with a Stribeck
-/// peak, `m5` with friction of the load, which goes with the torque of the motor alone, as in an image.
+/// Motor, inertia and friction of a servo. Friction that came from BAM goes back as it came. Any other is `friction_base + friction_stribeck s +
+/// |motor torque| (load_friction_motor + load_friction_motor_stribeck s) + friction_viscous |v|`, s = exp(-|v / dtheta_stribeck|^alpha): the model
+/// `m1` of BAM, `m2` with a Stribeck peak, `m5` with friction of the load, which goes with the torque of the motor alone, as in an image.
 ///
 /// # Errors
 /// `FRK-U001` without a motor of known constants, whose name is one that BAM knows, or without an inertia.
@@ -35,44 +36,41 @@ pub(super) fn parameters(image: &Image<CELLS>, request: &Request) -> Result<Stri
     let inertia = content
         .inertia()
         .ok_or_else(|| refused("the image has no inertia of the joint, which BAM needs as `armature`"))?;
-    let form = content.with_stribeck().unwrap_or(content.coulomb_viscous);
-    let load = share_of_load(&image.model);
-    let mut told = Map::new();
-    let mut tell = |key: &str, value: f64| told.insert(key.to_owned(), value.into());
-    // torque = kt / R (u - kt v): gain and loss by velocity of the motor give both.
-    tell("kt", actuator.back_emf / actuator.gain);
-    tell("R", actuator.back_emf / actuator.gain.powi(2));
-    tell("armature", inertia);
-    tell("command_delay", actuator.delay_s);
-    tell("friction_base", form.coulomb);
-    tell("friction_viscous", form.damping[0]);
+    let friction = recognised(&image.model, name).filter(|_| image.model.effects.is_empty());
+    let friction = friction.unwrap_or_else(|| {
+        let form = content.with_stribeck().unwrap_or(content.coulomb_viscous);
+        fitted(form, share_of_load(&image.model), name)
+    });
+    let parameters = friction.with([
+        // torque = kt / R (u - kt v): gain and loss by velocity of the motor give both.
+        ("kt", actuator.back_emf / actuator.gain),
+        ("R", actuator.back_emf / actuator.gain.powi(2)),
+        ("armature", inertia),
+        ("command_delay", actuator.delay_s),
+    ]);
+    Ok(parameters.to_json(&format!("{}. BAM was not run with this file.", content.title)))
+}
+
+/// The friction model of a form, with `load` N m of friction for each N m of the motor.
+fn fitted(form: Form, load: f64, actuator: &str) -> Parameters {
     let has_peak = form.excess > 0.0 || load > 0.0;
-    if has_peak {
-        tell("friction_stribeck", form.excess);
-        // Without a peak the width has no meaning; it must not be zero.
-        tell("dtheta_stribeck", if form.excess > 0.0 { form.stribeck_velocity } else { 1.0 });
-        tell("alpha", STRIBECK_EXPONENT);
-    }
-    if load > 0.0 {
-        tell("load_friction_motor", load);
-        ["load_friction_external", "load_friction_motor_stribeck", "load_friction_external_stribeck"]
-            .into_iter()
-            .for_each(|key| {
-                tell(key, 0.0);
-            });
-    }
-    let model = if load > 0.0 {
-        "m5"
-    } else if has_peak {
-        "m2"
-    } else {
-        "m1"
+    let variant = match (load > 0.0, has_peak) {
+        (true, _) => Variant::M5,
+        (false, true) => Variant::M2,
+        (false, false) => Variant::M1,
     };
-    told.insert("model".to_owned(), json!(model));
-    told.insert("actuator".to_owned(), json!(name));
-    told.insert("made_by".to_owned(), Value::String(format!("{} BAM was not run with this file.", content.title)));
-    let text = serde_json::to_string_pretty(&Value::Object(told)).unwrap_or_default();
-    Ok(text + "\n")
+    let value = |key| match key {
+        "friction_base" => form.coulomb,
+        "friction_viscous" => form.damping[0],
+        "friction_stribeck" => form.excess,
+        // Without a peak the width has no meaning; it must not be zero.
+        "dtheta_stribeck" if form.excess > 0.0 => form.stribeck_velocity,
+        "dtheta_stribeck" => 1.0,
+        "alpha" => STRIBECK_EXPONENT,
+        "load_friction_motor" => load,
+        _ => 0.0,
+    };
+    Parameters::new(variant, actuator, variant.keys().into_iter().map(|key| (key, value(key))))
 }
 
 /// Friction for each N m of the actuator's torque: of load-dependent terms, and of a law that reads the load.
@@ -96,10 +94,12 @@ fn share_of_load(model: &HostModel) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bam::Surroundings;
     use crate::export::simulator::SimulatedActuator;
     use crate::export::simulator::tests::image_of;
     use crate::joint::Joint;
     use frikan_shared::units::Unit;
+    use serde_json::Value;
 
     #[test]
     fn a_servo_is_told_by_its_motor_and_the_friction_of_its_gear() {
@@ -130,5 +130,24 @@ mod tests {
         }
         assert_eq!((told["model"].as_str(), told["actuator"].as_str()), (Some("m5"), Some("xl330")));
         assert!(parameters(&image, &request(None)).unwrap_err().to_string().contains("joint-name"));
+    }
+
+    #[test]
+    fn what_goes_to_bam_comes_back() {
+        let joint = Joint::parse(
+            "[actuator]\nkind = \"position_servo\"\ntorque_constant_Nm_A = 0.35\nresistance_ohm = 3.5\nsupply_V = 5\nfirmware_error_gain = 0.003\nfirmware_kp = 400\n",
+        );
+        let actuator = SimulatedActuator::of(&joint.unwrap()).unwrap();
+        let request =
+            Request { title: "", into: None, torque_per_ampere: None, joint: Some("xl330"), release: None, actuator };
+        let image_of_joint = image_of(0.02, 0.01, Unit::NewtonMetre);
+        let back = Parameters::parse(&parameters(&image_of_joint, &request).unwrap()).unwrap();
+        let back = crate::bam::image(&back, &Surroundings::default()).unwrap();
+        assert!((back.model.rigid_body.inertia - 0.5).abs() < 1e-6);
+        for velocity in [-2.0_f32, -0.6, -0.1, 0.1, 0.6, 2.0] {
+            let [before, after] =
+                [&image_of_joint.model, &back.model].map(|model| evaluate(model, &[velocity; MAX_INPUTS]));
+            assert!((after - before).abs() < 2e-3 * before.abs(), "{velocity}: {after} for {before}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The drive's position loop: proportional-derivative control with feed-forward, once a sample.
 
 use super::servo::Servo;
-use crate::actuator::Motion;
+use crate::actuator::{FeedForward, Motion};
 use crate::plant::joint::Joint;
 use std::f64::consts::TAU;
 
@@ -71,7 +71,9 @@ impl Controller {
         let limited = if self.limit > 0.0 { torque.clamp(-self.limit, self.limit) } else { torque };
         if let Some(servo) = &mut self.servo {
             let reference = Motion { position: target.position, velocity: target.velocity };
-            return servo.drive(reference, limited, Motion { position: measured, velocity: self.velocity });
+            let form = FeedForward::of(servo.actuator().kind)[0];
+            let command = servo.command(reference, limited, form, self.velocity);
+            return (servo.drive(command, Motion { position: measured, velocity: self.velocity }), command.effort);
         }
         let torque = round_to(limited, self.resolution);
         (torque, torque)

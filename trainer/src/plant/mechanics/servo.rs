@@ -1,6 +1,6 @@
 //! A drive without torque sensor: its actuator makes a torque of a reference, a current or a duty, and it writes down these alone.
 
-use crate::actuator::{Actuator, Command, Kind, Motion, RateLimited};
+use crate::actuator::{Actuator, Command, FeedForward, Motion, RateLimited};
 use crate::plant::joint::Joint;
 use std::collections::VecDeque;
 
@@ -27,31 +27,32 @@ impl Servo {
         })
     }
 
-    /// Torque over the sample that begins now, N m, under a reference, rad and rad/s, and what is written down as commanded: current in A or duty
-    /// where these are, for which a controller of its own asks for the torque `wanted`.
-    pub(crate) fn drive(&mut self, reference: Motion, wanted: f64, motion: Motion) -> (f64, f64) {
-        let actuator = &self.actuator;
-        let effort = match actuator.kind {
-            Kind::Current => wanted / actuator.gain,
-            Kind::DcMotor => {
-                let duty = (wanted + actuator.back_emf * motion.velocity) / (actuator.gain * actuator.supply);
-                duty.clamp(-actuator.limits.duty, actuator.limits.duty)
-            }
-            Kind::Torque | Kind::Pd | Kind::PositionServo => wanted,
-        };
-        self.under_way.push_back(Command {
-            effort,
-            is_voltage: false,
-            reference: self.reference.follow(reference.position, self.sample_s),
+    /// The command of a reference, rad and rad/s, to an actuator that is switched on, with the current, A, duty or voltage, V, by which a
+    /// controller of its own gets the torque `wanted`, N m, at a velocity, rad/s.
+    pub(crate) fn command(&self, reference: Motion, wanted: f64, form: FeedForward, velocity: f64) -> Command {
+        Command {
+            effort: self.actuator.effort_for(form, wanted, velocity),
+            is_voltage: form == FeedForward::Voltage,
+            reference: reference.position,
             reference_velocity: reference.velocity,
             feed_forward: 0.0,
-            supply: actuator.supply,
-            kp: actuator.kp,
+            supply: self.actuator.supply,
+            kp: self.actuator.kp,
             enabled: true,
-        });
+        }
+    }
+
+    /// Torque over the sample that begins now, N m, at which this is commanded.
+    pub(crate) fn drive(&mut self, command: Command, motion: Motion) -> f64 {
+        let reference = self.reference.follow(command.reference, self.sample_s);
+        self.under_way.push_back(Command { reference, ..command });
         let arrived = if self.under_way.len() > self.delay { self.under_way.pop_front() } else { None };
         // Before the first command has arrived the actuator holds where it is told to begin.
         let acting = arrived.or_else(|| self.under_way.front().copied()).unwrap_or_default();
-        (actuator.apply(&acting, motion).at(motion.velocity), effort)
+        self.actuator.apply(&acting, motion).at(motion.velocity)
+    }
+
+    pub(crate) fn actuator(&self) -> &Actuator {
+        &self.actuator
     }
 }
