@@ -12,6 +12,8 @@ pub(crate) struct Variant {
     pub columns: Range<usize>,
     /// Columns that stand for what it is on all rows, whether or not it is missing; empty where there are no others.
     pub shared: Range<usize>,
+    /// Prior mean of each own coefficient; shared ones have none.
+    pub mean: Vec<f64>,
     /// Prior variance of each coefficient, of the shared ones too.
     pub variance: Vec<f64>,
     /// Logarithm of its prior weight among the shapes of its candidate: they sum to at most one.
@@ -92,7 +94,7 @@ impl Alone {
     pub fn gain(&self, moments: impl Fn(usize) -> f64) -> f64 {
         let of = |part: &Option<(Term, Cholesky<f64, Dyn>)>| {
             let Some((term, factor)) = part else { return 0.0 };
-            let right = DVector::from_fn(term.places.len(), |i, _| moments(term.places[i]));
+            let right = DVector::from_fn(term.places.len(), |i, _| moments(term.places[i]) + term.expected(i));
             let Some(weighed) = factor.l_dirty().solve_lower_triangular(&right) else { return 0.0 };
             term.gain(factor, weighed)
         };
@@ -103,6 +105,8 @@ impl Alone {
 /// Columns that come into a model together.
 struct Term {
     places: Vec<usize>,
+    /// Prior mean and variance of each coefficient.
+    mean: Vec<f64>,
     variance: Vec<f64>,
     /// Where its sign is known: the coefficients (places among its columns) whose sum may not be negative.
     positive: Vec<usize>,
@@ -114,10 +118,21 @@ impl Term {
         let places: Vec<usize> = variant.columns.clone().chain(variant.shared.clone()).collect();
         let first = if variant.shared.is_empty() { vec![0] } else { vec![0, width] };
         Self {
+            mean: variant.mean.iter().copied().chain(variant.shared.clone().map(|_| 0.0)).collect(),
             variance: variant.variance.iter().copied().cycle().take(places.len()).collect(),
             places,
             positive: if variant.only_positive { first } else { Vec::new() },
         }
+    }
+
+    /// What the prior mean of a coefficient adds to its product with the target.
+    fn expected(&self, index: usize) -> f64 {
+        self.mean[index] / self.variance[index]
+    }
+
+    /// Log evidence, nats, that the prior means take from a model in which nothing comes near them.
+    fn log_of_means(&self) -> f64 {
+        (0..self.mean.len()).map(|i| -0.5 * self.mean[i] * self.expected(i)).sum()
     }
 
     /// Posterior precision of its coefficients alone.
@@ -129,7 +144,7 @@ impl Term {
 
     /// Log evidence of its columns by their factored precision and `L^-1 h`.
     fn gain(&self, factor: &Cholesky<f64, Dyn>, weighed: DVector<f64>) -> f64 {
-        let gain = log_integral(factor, &weighed, &self.variance);
+        let gain = log_integral(factor, &weighed, &self.variance) + self.log_of_means();
         if self.positive.is_empty() {
             return gain;
         }
@@ -141,7 +156,12 @@ impl Term {
     fn shared(variant: &Variant) -> Self {
         let places: Vec<usize> = variant.shared.clone().collect();
         let positive = if variant.only_positive && !places.is_empty() { vec![0] } else { Vec::new() };
-        Self { variance: variant.variance.iter().copied().take(places.len()).collect(), places, positive }
+        Self {
+            mean: vec![0.0; places.len()],
+            variance: variant.variance.iter().copied().take(places.len()).collect(),
+            places,
+            positive,
+        }
     }
 }
 
@@ -164,10 +184,13 @@ impl<'r> Solved<'r> {
             reduced.gram[(places[i], places[j])] + if i == j { variance[i].recip() } else { 0.0 }
         });
         let factor = matrix.cholesky()?;
-        let moments = DVector::from_fn(size, |i, _| reduced.moments[places[i]]);
+        let expected: Vec<f64> =
+            terms.iter().flat_map(|term| (0..term.places.len()).map(|i| term.expected(i))).collect();
+        let moments = DVector::from_fn(size, |i, _| reduced.moments[places[i]] + expected[i]);
         let weighed = factor.l_dirty().solve_lower_triangular(&moments)?;
-        let mut solved =
-            Self { reduced, places, log_evidence: log_integral(&factor, &weighed, &variance), factor, weighed };
+        let of_means: f64 = terms.iter().map(Term::log_of_means).sum();
+        let log_evidence = log_integral(&factor, &weighed, &variance) + of_means;
+        let mut solved = Self { reduced, places, log_evidence, factor, weighed };
         if terms.iter().any(|term| !term.positive.is_empty()) {
             let mean = solved.mean()?;
             let mut begin = 0;
@@ -194,8 +217,8 @@ impl<'r> Solved<'r> {
             DMatrix::from_fn(self.places.len(), width, |i, j| self.reduced.gram[(self.places[i], term.places[j])]);
         self.factor.l_dirty().solve_lower_triangular_mut(&mut across);
         let matrix = term.precision(self.reduced) - across.tr_mul(&across);
-        let moments =
-            DVector::from_fn(width, |i, _| self.reduced.moments[term.places[i]]) - across.tr_mul(&self.weighed);
+        let moments = DVector::from_fn(width, |i, _| self.reduced.moments[term.places[i]] + term.expected(i))
+            - across.tr_mul(&self.weighed);
         let Some(factor) = matrix.cholesky() else { return 0.0 };
         let Some(weighed) = factor.l_dirty().solve_lower_triangular(&moments) else { return 0.0 };
         term.gain(&factor, weighed)
@@ -254,7 +277,8 @@ mod tests {
     }
 
     fn variant(columns: Range<usize>, only_positive: bool) -> Variant {
-        Variant { variance: vec![0.5; columns.len()], columns, shared: 0..0, log_weight: 0.0, only_positive }
+        let [mean, variance] = [0.0, 0.5].map(|value| vec![value; columns.len()]);
+        Variant { mean, variance, columns, shared: 0..0, log_weight: 0.0, only_positive }
     }
 
     #[test]
@@ -269,6 +293,23 @@ mod tests {
         let positive: f64 = (0..40_000).map(|k| 2.0 * step * integrand(step * (f64::from(k) + 0.5))).sum();
         let signed = Model::new(&reduced, &[&variant(0..1, true)]).unwrap();
         assert!((signed.log_evidence - positive.ln()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_coefficient_that_physics_knows_is_expected_there() {
+        let reduced = two_columns();
+        let known = Variant { mean: vec![0.7], variance: vec![0.04], ..variant(0..1, false) };
+        let model = Model::new(&reduced, &[&known]).unwrap();
+        let step = 1e-4;
+        let prior = |g: f64| (-0.5 * (g - 0.7).powi(2) / 0.04).exp() / (2.0 * std::f64::consts::PI * 0.04).sqrt();
+        let integrand = |g: f64| (30.0 * g - 50.0 * g * g).exp() * prior(g);
+        let expected: f64 = (-40_000..40_000).map(|k| step * integrand(step * f64::from(k))).sum();
+        assert!((model.log_evidence - expected.ln()).abs() < 1e-6, "{} {}", model.log_evidence, expected.ln());
+        let beside = Model::new(&reduced, &[&variant(1..2, false)]).unwrap();
+        let both = Model::new(&reduced, &[&variant(1..2, false), &known]).unwrap();
+        assert!((beside.log_evidence + beside.gain(&known) - both.log_evidence).abs() < 1e-9);
+        let alone = Alone::new(&reduced, &known).gain(|place| reduced.moments[place]);
+        assert!((alone - model.log_evidence).abs() < 1e-9);
     }
 
     #[test]

@@ -129,6 +129,7 @@ mod tests {
             variants: vec![Variant {
                 columns: column..column + 1,
                 shared: 0..0,
+                mean: vec![0.0],
                 variance: vec![0.1],
                 log_weight: 0.0,
                 only_positive: false,

@@ -259,6 +259,7 @@ mod tests {
         let variant = |&column: &usize| Variant {
             columns: column..column + 1,
             shared: 0..0,
+            mean: vec![0.0],
             variance: vec![1.0],
             log_weight: -(shapes.len() as f64).ln(),
             only_positive: false,

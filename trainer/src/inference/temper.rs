@@ -82,6 +82,7 @@ mod tests {
         let variant = |column: usize| Variant {
             columns: column..column + 1,
             shared: 0..0,
+            mean: vec![0.0],
             variance: vec![1.0],
             log_weight: 0.0,
             only_positive: false,

@@ -126,6 +126,11 @@ pub trait Hypothesis: Sync {
         false
     }
 
+    /// Value of its one coefficient where physics knows it: what is beyond a limit is withheld wholly.
+    fn known_coefficient(&self, _shape: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Whether coefficients are a joint's: friction of its own takes energy from every motion.
     fn is_passive(&self, _state: &JointState, _shape: &[f64], _coefficients: &[f64]) -> bool {
         true

@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Contribution of an effect to the torque over the friction (root mean squares) that its prior expects: effects that are worth a name
 /// are of some per cent to the size of friction itself.
 const EXPECTED_SHARE: f64 = 0.3;
+/// Standard deviation of a coefficient that physics knows, over its value: constants of actuators are good to a tenth, and what a joint does
+/// about a limit is not all in the column.
+const KNOWN_WITHIN_SHARE: f64 = 0.1;
 /// Length scales of an unnamed function over the range of its channel, and the strength that stands for each where it is refitted:
 /// from a broad function to a narrow feature (Matern 3/2; Solin and Sarkka 2020).
 const LENGTH_SCALES: [(f64, f64); 3] = [(0.5, 20.0), (0.2, 200.0), (0.08, 2000.0)];
@@ -25,6 +28,8 @@ pub(crate) struct Shaped {
     pub shape: Shape,
     pub columns: Range<usize>,
     pub relative_variance: Vec<f64>,
+    /// The coefficient of its scaled column where physics knows it.
+    pub known: Option<f64>,
     pub log_weight: f64,
 }
 
@@ -113,6 +118,7 @@ impl Candidates {
         log_weight: f64,
     ) {
         let label = self.entries[entry].label.clone();
+        let named = hypotheses.iter().find(|hypothesis| label == Label::Named(hypothesis.id()));
         let built: Vec<[Vec<Vec<f64>>; 2]> = shapes
             .par_iter()
             .map(|shape| {
@@ -121,10 +127,11 @@ impl Candidates {
             })
             .collect();
         for (shape, [of_real, of_simulated]) in shapes.into_iter().zip(built) {
-            let columns = self.add_columns(real, simulated, of_real, of_simulated);
+            let (columns, sizes) = self.add_columns(real, simulated, of_real, of_simulated);
             if !columns.is_empty() {
                 let relative_variance = vec![1.0; columns.len()];
-                self.entries[entry].shapes.push(Shaped { shape, columns, relative_variance, log_weight });
+                let known = named.and_then(|hypothesis| hypothesis.known_coefficient(&shape)).map(|c| c * sizes[0]);
+                self.entries[entry].shapes.push(Shaped { shape, columns, relative_variance, known, log_weight });
             }
         }
     }
@@ -142,7 +149,7 @@ impl Candidates {
         let Some(longest) = shapes.iter().map(|shape| shape[0]).max_by(f64::total_cmp) else { return };
         let label = Label::Generic(rival);
         let at = |side: &Side| side.filtered(hypotheses, (&label, &[longest, 0.0]), &real.prepared.state);
-        let columns = self.add_columns(real, simulated, at(real), simulated.map(at).unwrap_or_default());
+        let (columns, _) = self.add_columns(real, simulated, at(real), simulated.map(at).unwrap_or_default());
         let first = longest as usize + 1 - columns.len();
         let named = |strength: f64| !shapes.iter().any(|shape| shape[1] == strength);
         let scales: Vec<(f64, f64)> = LENGTH_SCALES.into_iter().filter(|(_, strength)| !named(*strength)).collect();
@@ -155,25 +162,28 @@ impl Candidates {
                 shape: vec![longest, *strength],
                 columns: columns.clone(),
                 relative_variance: (first..first + columns.len()).map(density).collect(),
+                known: None,
                 log_weight: -(scales.len() as f64).ln(),
             });
         }
     }
 
-    /// Adds columns at unit root mean square; what the recording does not show stays zero.
+    /// Adds columns at unit root mean square; what the recording does not show stays zero. Their places, and the root mean square of each.
     fn add_columns(
         &mut self,
         real: &Side,
         simulated: Option<&Side>,
         mut of_real: Vec<Vec<f64>>,
         mut of_simulated: Vec<Vec<f64>>,
-    ) -> Range<usize> {
+    ) -> (Range<usize>, Vec<f64>) {
         let begin = self.real.len();
+        let mut sizes = Vec::with_capacity(of_real.len());
         if let Some(side) = simulated {
             of_simulated.resize_with(of_real.len(), || vec![0.0; side.prepared.rows.len()]);
         }
         for (place, column) in of_real.iter_mut().enumerate() {
             let size = root_mean_square(&real.on_rows(column));
+            sizes.push(size);
             let scale = if size > 0.0 && size.is_finite() { size.recip() } else { 0.0 };
             let scaled = |value: &mut f64| *value = if scale == 0.0 { 0.0 } else { *value * scale };
             column.iter_mut().for_each(scaled);
@@ -186,7 +196,7 @@ impl Candidates {
         }
         self.real.extend(of_real);
         self.simulated.extend(of_simulated);
-        begin..self.real.len()
+        (begin..self.real.len(), sizes)
     }
 
     /// Prior variance of a coefficient with a relative variance among others: together they are expected to contribute their share of
@@ -214,9 +224,13 @@ impl Candidates {
             let variant = |shaped: &Shaped| Variant {
                 columns: shaped.columns.clone(),
                 shared: shared(shaped),
-                variance: Self::variance(friction, &shaped.relative_variance),
+                mean: vec![shaped.known.unwrap_or(0.0); shaped.columns.len()],
+                variance: match shaped.known {
+                    Some(known) if known > 0.0 => vec![(KNOWN_WITHIN_SHARE * known).powi(2)],
+                    _ => Self::variance(friction, &shaped.relative_variance),
+                },
                 log_weight: shaped.log_weight,
-                only_positive: entry.only_positive,
+                only_positive: entry.only_positive && shaped.known.is_none(),
             };
             let variants: Vec<Variant> = entry.shapes.iter().map(variant).collect();
             Candidate { log_prior: entry.log_prior, variants, repeats: entry.repeats }

@@ -52,6 +52,10 @@ impl Hypothesis for DeadBand {
         true
     }
 
+    fn known_coefficient(&self, _shape: &[f64]) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn bounds(&self, state: &JointState, _index: usize, _shape: &[f64]) -> Option<(f64, f64)> {
         let common = common_error(state);
         Some((SHARES.0 * common, SHARES.1 * common))

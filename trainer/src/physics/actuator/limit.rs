@@ -96,6 +96,11 @@ impl Hypothesis for SupplyOrDutyLimit {
         true
     }
 
+    fn known_coefficient(&self, shape: &[f64]) -> Option<f64> {
+        // The column of a lower voltage is the same at every share: there the coefficient is what is lacking.
+        (shape[1] != VOLTAGE).then_some(1.0)
+    }
+
     fn bounds(&self, state: &JointState, index: usize, shape: &[f64]) -> Option<(f64, f64)> {
         if index != 0 || shape[1] == VOLTAGE {
             return None;
