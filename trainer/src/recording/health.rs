@@ -4,7 +4,7 @@ use super::{Channel, Quantity};
 use crate::numerics::resolution::resolution_of_stretches;
 
 /// A step of the clock above this many periods is a gap.
-pub(super) const GAP_PERIODS: f64 = 3.5;
+pub(crate) const GAP_PERIODS: f64 = 3.5;
 
 /// A level that the actuator reaches in at least this share of the rows may be a limit.
 const CLIPPED_SHARE: f64 = 0.005;

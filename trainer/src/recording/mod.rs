@@ -27,6 +27,7 @@ mod vectors;
 use std::path::Path;
 
 pub use guess::{Proposal, Taken};
+pub(crate) use health::GAP_PERIODS;
 pub use health::Health;
 pub use quantity::{Axis, Quantity, Unit};
 pub use select::Omission;

@@ -10,12 +10,11 @@ use std::ops::Range;
 pub struct Series {
     /// Time of the rows, s.
     pub time: Vec<f64>,
-    /// What was commanded from each row on, the delay of the actuator not counted.
+    /// What was commanded at each row, the delay of the actuator not counted; between two rows it lies on a line. Where the drive holds a command
+    /// until the next one, half the time between them is a part of the delay.
     pub commands: Vec<Command>,
     /// Degrees Celsius, one a row; empty where nobody measured it.
     pub temperature: Vec<f64>,
-    /// Whether the effort was measured and lies on a line between rows, instead of being held from one to the next.
-    measured: bool,
 }
 
 impl Series {
@@ -82,7 +81,6 @@ impl Series {
         Ok(Self {
             commands: commands.collect(),
             temperature: column(Quantity::Temperature).map(<[f64]>::to_vec).unwrap_or_default(),
-            measured: matches!(kind, Kind::Torque | Kind::Current),
             time,
         })
     }
@@ -91,7 +89,7 @@ impl Series {
     #[cfg(test)]
     pub(super) fn held(command: Command, period_s: f64, rows: usize) -> Self {
         let time = (0..rows).map(|row| period_s * row as f64).collect();
-        Self { time, commands: vec![command; rows], temperature: Vec::new(), measured: false }
+        Self { time, commands: vec![command; rows], temperature: Vec::new() }
     }
 
     /// What acts at a time, s, that lies at or after that of `row` and before the next; `row` may be moved back by a delay.
@@ -101,12 +99,18 @@ impl Series {
         while row > 0 && self.time[row] > time {
             row -= 1;
         }
-        let mut command = self.commands[row];
-        if let Some((next, after)) = self.commands.get(row + 1).zip(self.time.get(row + 1)).filter(|_| self.measured) {
-            let share = ((time - self.time[row]) / (after - self.time[row])).clamp(0.0, 1.0);
-            command.effort += share * (next.effort - command.effort);
+        let command = self.commands[row];
+        let Some((next, after)) = self.commands.get(row + 1).zip(self.time.get(row + 1)) else { return command };
+        let share = ((time - self.time[row]) / (after - self.time[row])).clamp(0.0, 1.0);
+        let between = |of: fn(&Command) -> f64| of(&command) + share * (of(next) - of(&command));
+        Command {
+            effort: between(|command| command.effort),
+            reference: between(|command| command.reference),
+            reference_velocity: between(|command| command.reference_velocity),
+            feed_forward: between(|command| command.feed_forward),
+            supply: between(|command| command.supply),
+            ..command
         }
-        command
     }
 }
 

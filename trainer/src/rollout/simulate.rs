@@ -6,7 +6,7 @@ use super::series::Series;
 use crate::actuator::{Actuator, Kind, Motion};
 use crate::error::{Error, Result, codes};
 use crate::numerics::dry_friction::{Motion1D, advance};
-use crate::recording::{Quantity, Recording};
+use crate::recording::{GAP_PERIODS, Quantity, Recording};
 
 /// Longest step of the integration, s: well below the period of a position loop's oscillation. Dry friction, drag and back-EMF are solved
 /// exactly within a step, so that only stiffness limits it.
@@ -17,9 +17,6 @@ const RUNAWAY: f64 = 1e4;
 
 /// Half the time over which the velocity of a start is read off the position, s.
 const START_HALF_S: f64 = 0.01;
-
-/// A row after a pause of more than this many periods starts anew.
-const GAP_PERIODS: f64 = 3.5;
 
 /// Where a joint is, and how fast it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
