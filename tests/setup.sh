@@ -143,6 +143,8 @@ emulators
 c_compiler
 test_runner
 python_environment simulators tests/simulators/requirements.txt
+# The simulators that are built on MuJoCo 3.
+python_environment mujoco3 tests/simulators/mujoco3.txt
 pages
 # What builds and tests the Python package: `tests/setup.sh python`.
 if [ "${1:-}" = python ]; then

@@ -3,6 +3,7 @@
 //! `tests/setup.sh` installs these under `target/simulators`; without one its tests say so and do nothing.
 
 mod arm;
+mod family;
 mod foreign;
 mod mujoco;
 mod others;

