@@ -136,7 +136,7 @@ fn fit_once(
 
     let by_expression = verdict.form != Form::Network;
     let identified = Identified::by(&material);
-    let band = training.band(&refitted, correlation_length)?;
+    let band = training.band(&refitted, correlation_length, f64::from(model.rigid_body.offset))?;
     let mut parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
     let trial = trials[verdict.form.place()].as_ref();
     let mut sound = soundness(&material, &fit, &learnt, verdict.form, violation)

@@ -115,8 +115,11 @@ pub(crate) fn wrong_sign_or_unit(comparison: &Comparison) -> Option<HealthNote> 
     let share = |column: usize| coefficients[column].abs() * (energy(&columns[column]) / total).sqrt();
     let wrong =
         |observation: Observation| Some(HealthNote { effect: EffectId::UnitOrSign, blocking: true, observation });
-    // A reference holds friction of its own, and what it has too much of comes out negative.
-    let drives = reference.is_none() && coefficients[friction] < 0.0;
+    // A reference holds friction of its own, and what it has too much of comes out negative. Friction takes energy all in all: where the actuator
+    // puts some in, something else that goes with the velocity is what drives.
+    let speed = &columns[friction + 1];
+    let work: f64 = runs.iter().flat_map(Clone::clone).map(|i| torque[i] * speed[i]).sum();
+    let drives = reference.is_none() && coefficients[friction] < 0.0 && work < 0.0;
     if drives && share(friction) > 0.1 {
         return wrong(Observation::DrivingFriction);
     }
@@ -181,6 +184,20 @@ mod tests {
             assert!((ratio / factor - 1.0).abs() < 0.01, "{ratio} for {factor}");
         }
         assert_eq!(answer(0.0, 0), None);
+    }
+
+    #[test]
+    fn a_sign_is_wrong_where_the_actuator_takes_energy_up_and_not_where_it_puts_some_in() {
+        let joint = |coulomb: f64, viscous: f64| {
+            let mut signals = swing(|_| None);
+            let velocity = first_derivative(&signals.position, &signals.segments, signals.period);
+            signals.torque = velocity.iter().map(|v| coulomb * (v / 0.01).tanh() + viscous * v).collect();
+            wrong_sign_or_unit(&signals.into()).map(|note| note.observation)
+        };
+        assert_eq!(joint(0.3, 0.5), None);
+        assert_eq!(joint(-0.3, -0.5), Some(Observation::DrivingFriction));
+        // Drag that rises faster than the speed looks like viscous friction above a negative Coulomb level.
+        assert_eq!(joint(-0.3, 50.0), None);
     }
 
     #[test]

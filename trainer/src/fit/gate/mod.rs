@@ -75,6 +75,26 @@ pub(super) fn bends(material: &Material, trial: Option<&Trial>) -> Option<Bendin
     is_spring.then(|| bending(material)).flatten()
 }
 
+fn is_asymmetry(parameter: &Parameter) -> bool {
+    parameter.name.contains("asymmetry")
+}
+
+/// A constant of friction that is below zero with 95 % in one direction at least, with its value there. An asymmetry has the sign of the axis, which is
+/// anybody's choice: it counts only against what it takes from.
+fn negative(parameters: &[Parameter], of: Constant) -> Option<(&Parameter, f64)> {
+    let named = || parameters.iter().filter(|parameter| of.is_named(&parameter.name));
+    let taken = named().filter(|parameter| is_asymmetry(parameter));
+    let taken = taken.map(|asymmetry| {
+        let [low, high] = asymmetry.ci95;
+        let least = if low < 0.0 && high > 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+        (asymmetry.value.abs(), least)
+    });
+    let (taken, least_taken) = taken.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+    let mut symmetric = named().filter(|parameter| !is_asymmetry(parameter));
+    let found = symmetric.find(|parameter| parameter.ci95[1] - least_taken < 0.0)?;
+    Some((found, found.value - taken))
+}
+
 /// What keeps a law that converged from going into an image.
 pub(super) fn withheld(
     material: &Material,
@@ -84,8 +104,7 @@ pub(super) fn withheld(
     uncertain_share: f64,
 ) -> Soundness {
     let of_friction = [Constant::Coulomb, Constant::Viscous];
-    let is_negative = |p: &&Parameter| p.ci95[1] < 0.0 && of_friction.iter().any(|constant| constant.is_named(&p.name));
-    if let Some(Parameter { name, value, unit, .. }) = parameters.iter().find(is_negative) {
+    if let Some((Parameter { name, unit, .. }, value)) = of_friction.iter().find_map(|of| negative(parameters, *of)) {
         return Soundness::NotPhysical(format!(
             "the {name} is negative ({value:.3e} {unit}): the torque is late, a column is not what it is taken for, or something else acts on the \
              joint"
@@ -110,4 +129,32 @@ pub(super) fn withheld(
         return Soundness::NotIdentifiable(why.to_owned());
     }
     Soundness::Sound
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameter(name: &str, value: f64, half: f64) -> Parameter {
+        let [symbol, unit] = ["F", "N s/m"].map(str::to_owned);
+        Parameter { name: name.to_owned(), symbol, value, unit, ci95: [value - half, value + half] }
+    }
+
+    #[test]
+    fn an_asymmetry_may_have_either_sign_and_not_exceed_what_it_takes_from() {
+        for sign in [1.0, -1.0] {
+            let of = |viscous: f64, asymmetry: f64| {
+                [
+                    parameter("viscous_coefficient", viscous, 3.0),
+                    parameter("viscous_asymmetry_coefficient", sign * asymmetry, 2.0),
+                ]
+            };
+            assert_eq!(negative(&of(185.0, 37.0), Constant::Viscous), None);
+            assert_eq!(negative(&of(30.0, 34.0), Constant::Viscous), None);
+            let too_much = of(30.0, 40.0);
+            assert_eq!(negative(&too_much, Constant::Viscous), Some((&too_much[0], -10.0)));
+        }
+        let below = [parameter("viscous_coefficient", -5.0, 1.0)];
+        assert_eq!(negative(&below, Constant::Viscous), Some((&below[0], -5.0)));
+    }
 }

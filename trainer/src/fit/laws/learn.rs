@@ -138,8 +138,15 @@ impl TrainingData {
     }
 
     /// The 95 % band of a trained network along the velocity, `[velocity, low, high]`, residuals being correlated over
-    /// `correlation_length` samples.
-    pub(in crate::fit) fn band(&self, result: &FitResult, correlation_length: f64) -> Result<Vec<[f64; 3]>> {
+    /// `correlation_length` samples, of the friction beside a constant torque `offset`.
+    pub(in crate::fit) fn band(
+        &self,
+        result: &FitResult,
+        correlation_length: f64,
+        offset: f64,
+    ) -> Result<Vec<[f64; 3]>> {
+        // A network has a constant of its own beside the offset that was taken off its samples.
+        let apart = self.offset.unwrap_or(0.0) - offset;
         let blocks = Blocks::default();
         let points = self.along_velocity();
         let errors =
@@ -147,7 +154,7 @@ impl TrainingData {
                 .map_err(|error| refused(&error))?;
         let half = |error: f64| NORMAL_95 * error * correlation_length.sqrt();
         let curve = self.over_velocity(&result.network).into_iter().zip(errors);
-        Ok(curve.map(|([v, f], error)| [v, f - half(error), f + half(error)]).collect())
+        Ok(curve.map(|([v, f], error)| [v, f + apart - half(error), f + apart + half(error)]).collect())
     }
 }
 
