@@ -121,11 +121,6 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     };
     let found = diagnose(&request, &joint, &|stage| reporter.say(stage))?;
     reporter.say("writing");
-    let is_blocked = found.diagnosis.is_blocked();
-    // Without a file to write, what cannot be written costs no more than its figures.
-    if let (Some(_), Improvement::Refused(error)) = (&arguments.output, &found.improvement) {
-        return Err(error.clone());
-    }
     let mut outputs = Outputs::default();
     if let Some(path) = &arguments.json {
         outputs.add_json(path, found.json());
@@ -134,23 +129,21 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         outputs.add(Path::new("-"), found.text());
     }
     let mut remarks = Vec::new();
-    if is_blocked && arguments.output.is_some() {
-        remarks.push("no model is written: the measurement has to be put right first".to_string());
-    }
-    if let (Some(path), Improvement::Written(improved)) = (&arguments.output, &found.improvement) {
+    if let (Some(_), Improvement::Written(improved)) = (&arguments.output, &found.improvement) {
         remarks.clone_from(&improved.remarks);
-        match found.image() {
-            Some(image) => outputs.add(path, image),
-            None => remarks.push(
-                "no model is written: it would leave more of the torque than the model compared with".to_string(),
-            ),
-        }
+    }
+    let mut unwritten = None;
+    match (&arguments.output, found.image()) {
+        (Some(path), Some(image)) => outputs.add(path, image),
+        (Some(_), None) => unwritten = Some(why_unwritten(&found.improvement)),
+        (None, _) => {}
     }
     let is_worse = found.sealed().is_some_and(SealedScore::is_worse);
     if arguments.simulation.is_some() && found.diagnosis.verdict == Verdict::MissingPhysics && !is_worse {
         remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {
+        let remarks: Vec<String> = remarks.iter().chain(&unwritten).cloned().collect();
         outputs.add(path, found.report(&compared_with(arguments), &remarks, &command_line()));
     }
     match (&arguments.advise, found.trajectory()) {
@@ -168,6 +161,8 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     }
     outputs.write()?;
     drop(reporter);
+    // Who asks for a file and gets none is told so in any case.
+    unwritten.iter().for_each(|sentence| say(sentence));
     if !arguments.quiet {
         remarks.iter().for_each(|sentence| say(sentence));
         let memory = peak_memory_mb().map_or_else(String::new, |mb| format!(", {mb:.0} MB of memory"));
@@ -178,6 +173,15 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         ));
     }
     Ok(exit_status(found.diagnosis.verdict))
+}
+
+fn why_unwritten(improvement: &Improvement) -> String {
+    let why = match improvement {
+        Improvement::Blocked => "the measurement has to be put right first".to_owned(),
+        Improvement::Refused(error) => error.to_string(),
+        Improvement::Written(_) => "it would leave more of the torque than the model compared with".to_owned(),
+    };
+    format!("no model is written: {why}")
 }
 
 fn compared_with(arguments: &Diagnose) -> String {

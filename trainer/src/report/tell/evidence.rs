@@ -31,7 +31,7 @@ pub fn evidence(found: &Finding, units: Units) -> String {
     }
 }
 
-/// How much better the written model is on rows that decided nothing, in one sentence.
+/// How much better the improved model is on rows that decided nothing, in one sentence; one that is worse is not written.
 #[must_use]
 pub fn sealed_sentence(score: &SealedScore, units: Units) -> String {
     let interval = if score.ratio_ci95[1].is_finite() {
@@ -39,8 +39,9 @@ pub fn sealed_sentence(score: &SealedScore, units: Units) -> String {
     } else {
         String::new()
     };
+    let leaves = if score.is_worse() { "No model is written: it would leave" } else { "The improved model leaves" };
     format!(
-        "The written model leaves {} of the torque as recorded, on {} sealed rows that decided nothing (ratio {}{interval}).",
+        "{leaves} {} of the torque as recorded, on {} sealed rows that decided nothing (ratio {}{interval}).",
         pair(score.before_rmse, "->", score.after_rmse, units.actuator),
         score.n,
         digits(score.ratio),
