@@ -16,6 +16,7 @@ pub mod paper;
 pub mod published;
 pub mod sealed_coverage;
 pub mod second_opinion;
+pub mod servo_draws;
 pub mod table;
 pub mod training_cost;
 pub mod vectors;
