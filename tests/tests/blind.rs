@@ -34,15 +34,16 @@ fn in_set(outcome: &Outcome, effect: &str) -> bool {
     outcome.diagnosis.findings.first().is_some_and(|found| set_of(found).any(|name| name.name() == effect))
 }
 
-/// A gap of the clock splits a recording and has no name among the findings: it is a note on the measurement.
+/// A gap of the clock splits a recording and has no name among the findings: it is a note on the measurement. Each effect has a seed of its own,
+/// whichever others are looked at.
 #[test]
 fn every_effect_is_in_the_stated_set_and_nearly_all_come_first() {
     const SEED: u64 = 4_000_000;
     let effects: Vec<&'static str> = CATALOGUE.iter().map(|entry| entry.name).filter(|n| *n != "clock_gaps").collect();
-    let outcomes: Vec<(&'static str, Outcome)> = effects
-        .par_iter()
-        .enumerate()
-        .map(|(index, effect)| (*effect, hidden(effect, 300.0, SEED + index as u64)))
+    assert!(effects.len() >= 28, "{effects:?}");
+    let outcomes: Vec<(&'static str, Outcome)> = some_of(effects.into_iter().enumerate())
+        .into_par_iter()
+        .map(|(index, effect)| (effect, hidden(effect, 300.0, SEED + index as u64)))
         .collect();
     let mut first = 0;
     for (effect, outcome) in &outcomes {
@@ -50,7 +51,8 @@ fn every_effect_is_in_the_stated_set_and_nearly_all_come_first() {
         first += usize::from(outcome.named().first().is_some_and(|name| name.name() == *effect));
         assert!(in_set(outcome, effect), "{effect} is not in the set of {:?}", outcome.named());
     }
-    assert!(outcomes.len() >= 28 && first + 3 >= outcomes.len(), "{first} of {} come first", outcomes.len());
+    let most = if exhaustive() { 3 } else { 2 };
+    assert!(first + most >= outcomes.len(), "{first} of {} come first", outcomes.len());
 }
 
 /// The drive holds its torque over a sample: it is put back by half of one, and so has to be what it is measured against.
