@@ -11,8 +11,8 @@ use serde_json::Value;
 use crate::command::run;
 
 /// Rate at which the drives close their loops, Hz, the low-pass of their velocities, and how many of their samples one row of the log stands for.
-const DRIVE: &str = "[plant.drive]\nrate_Hz = 8000\n[plant.control]\nvelocity_corner_Hz = 1000\n";
-const SAMPLES_PER_ROW: usize = 16;
+const DRIVE: &str = "[plant.drive]\nrate_Hz = 20000\n[plant.control]\nvelocity_corner_Hz = 2500\n";
+const SAMPLES_PER_ROW: usize = 40;
 /// Length of a recording, s.
 const SECONDS: &str = "40";
 /// Distance of a payload from the axis, m, and the acceleration of its weight, m/s2.
@@ -86,7 +86,8 @@ impl Hidden {
     /// Whether such an actuator can have it.
     #[must_use]
     pub fn is_of(self, kind: Kind) -> bool {
-        !matches!(self, Self::DeadBand(_)) || matches!(kind, Kind::Pd | Kind::PositionServo)
+        // A drive with a position loop of its own does not stay stable with a late motor.
+        !matches!(self, Self::DeadBand(_) | Self::Delay(_)) || matches!(kind, Kind::Pd | Kind::PositionServo)
     }
 }
 
@@ -255,12 +256,13 @@ impl Joint {
             Kind::Current => vec![("torque_constant", self.torque_constant)],
             Kind::PositionServo | Kind::DcMotor => vec![("torque_per_volt", self.torque_constant / self.resistance)],
         };
-        // A motor of which the torque per volt alone is known loses by its back-EMF what looks like viscous friction.
+        // A loss by back-EMF that is not told apart counts as viscous friction.
         let is_motor = matches!(self.kind, Kind::PositionServo | Kind::DcMotor);
         let lost = if is_motor { self.torque_constant * self.torque_constant / self.resistance } else { 0.0 };
-        let of_joint =
-            [("coulomb_torque", self.coulomb), ("viscous_coefficient", self.viscous + lost), ("inertia", self.inertia)];
-        let truths = of_joint.into_iter().chain(constants);
+        let apart = found(&json, "back_emf", lost).map(|_| ("back_emf", lost));
+        let viscous = if apart.is_some() { self.viscous } else { self.viscous + lost };
+        let of_joint = [("coulomb_torque", self.coulomb), ("viscous_coefficient", viscous), ("inertia", self.inertia)];
+        let truths = of_joint.into_iter().chain(constants).chain(apart);
         Ok(truths.map(|(name, truth)| Found { name, value: found(&json, name, truth) }).collect())
     }
 

@@ -1,5 +1,6 @@
 //! Draws joints that report no torque, fits and diagnoses them, and writes `docs/servo-draws.md`.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -28,7 +29,7 @@ const HEAD: &str = "\
 
 Written by `cargo run --release -p frikan-tests --bin servo-draws`; nothing below the line is typed by hand.
 
-Joints with drawn inertia, friction, gains and torque constants are simulated ([Simulating a joint](simulate.md)) for 40 s under drives of 8 kHz that log
+Joints with drawn inertia, friction, gains and torque constants are simulated ([Simulating a joint](simulate.md)) for 40 s under drives of 20 kHz that log
 positions and commands at 500 Hz, and no torque. `trainer fit` gets two recordings with a weighed payload each and has to find the
 constants of the actuator too; `trainer diagnose` gets one recording beside its simulation and knows the constants.
 
@@ -74,10 +75,10 @@ fn append_fits(page: &mut String, arguments: &Arguments) {
             }
             eprintln!("{} {seed}: {:?} {:?}", kind.name(), of_draws.last(), refused.last());
         }
-        let constants = of_draws.first().map_or(0, Vec::len);
-        for place in 0..constants {
-            let name = of_draws[0][place].name;
-            let mut shares: Vec<(f64, bool)> = of_draws.iter().filter_map(|found| found[place].value).collect();
+        let names: BTreeSet<&str> = of_draws.iter().flatten().map(|found| found.name).collect();
+        for name in names {
+            let named = of_draws.iter().flatten().filter(|found| found.name == name);
+            let mut shares: Vec<(f64, bool)> = named.filter_map(|found| found.value).collect();
             shares.sort_by(|a, b| a.0.total_cmp(&b.0));
             let median = shares.get(shares.len() / 2).map_or(f64::NAN, |(share, _)| *share);
             let near = shares.iter().filter(|(share, _)| (share - 1.0).abs() <= 0.02).count();
