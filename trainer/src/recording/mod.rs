@@ -9,7 +9,7 @@ mod convert;
 mod formats;
 mod guess;
 mod health;
-mod in_use;
+mod keep;
 mod merged;
 mod names;
 mod numbers;
@@ -21,7 +21,6 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod text;
-mod thinning;
 mod vectors;
 
 use std::path::Path;
@@ -36,7 +35,7 @@ pub use text::RECORD_LIMIT_BYTES;
 
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
-use in_use::{InUse, Keep};
+use keep::{InUse, Keep};
 use source::Fingerprinted;
 use table::RawTable;
 

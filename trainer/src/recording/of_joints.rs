@@ -176,7 +176,7 @@ fn no_position(header: &[String], joint: &Joint) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::in_use::{InUse, Keep};
+    use crate::recording::keep::{InUse, Keep};
 
     fn joints(names: [&str; 2]) -> Vec<Joint> {
         names.map(|name| Joint { name: Some(name.to_owned()), ..Joint::default() }).to_vec()

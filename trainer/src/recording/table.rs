@@ -4,9 +4,8 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use super::in_use::{InUse, Keep};
+use super::keep::{InUse, Keep, Thinning};
 use super::numbers::{Numbers, number};
-use super::thinning::Thinning;
 use super::vectors::{self, Expansion};
 use crate::error::{Error, Result, codes};
 

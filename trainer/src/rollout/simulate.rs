@@ -42,6 +42,8 @@ pub(super) struct Recorded<'r> {
     time: &'r [f64],
     position: &'r [f64],
     velocity: Option<&'r [f64]>,
+    /// Of an excerpt the longest step within a stretch, s: what lies beyond is of another one.
+    longest_step_s: f64,
 }
 
 impl<'r> Recorded<'r> {
@@ -52,13 +54,34 @@ impl<'r> Recorded<'r> {
             time: &recording.require(&[Quantity::Time], "a forward simulation")?.values,
             position: &recording.require(&[Quantity::Position], "a forward simulation")?.values,
             velocity: recording.values(Quantity::Velocity),
+            longest_step_s: if recording.is_excerpt { longest_step_s(recording) } else { f64::INFINITY },
         })
     }
 
     /// The state at a row.
     pub(super) fn at(&self, row: usize) -> State {
-        let velocity = self.velocity.map_or_else(|| slope(self.time, self.position, row), |velocity| velocity[row]);
+        let velocity = self.velocity.map_or_else(|| self.slope(row), |velocity| velocity[row]);
         State { position: self.position[row], velocity }
+    }
+
+    /// Slope of the line through the positions around a row.
+    fn slope(&self, row: usize) -> f64 {
+        let Self { time, position, longest_step_s, .. } = *self;
+        let near = |other: &usize| {
+            let apart_s = (time[*other] - time[row]).abs();
+            apart_s <= START_HALF_S || other.abs_diff(row) <= 1 && apart_s <= longest_step_s
+        };
+        let first = (0..row).rev().take_while(near).last().unwrap_or(row);
+        let last = (row + 1..time.len()).take_while(near).last().unwrap_or(row);
+        let count = (last - first + 1) as f64;
+        let mean = |values: &[f64]| values[first..=last].iter().sum::<f64>() / count;
+        let (middle, level) = (mean(time), mean(position));
+        let (mut product, mut square) = (0.0, 0.0);
+        for other in first..=last {
+            product += (time[other] - middle) * (position[other] - level);
+            square += (time[other] - middle).powi(2);
+        }
+        if square > 0.0 { product / square } else { 0.0 }
     }
 }
 
@@ -70,7 +93,7 @@ impl<'r> Recorded<'r> {
 pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize, State)>> {
     let recorded = Recorded::of(recording)?;
     let time = recorded.time;
-    let gap = recording.health.period_s.map_or(f64::INFINITY, |period| GAP_PERIODS * period);
+    let gap = longest_step_s(recording);
     let interruptions = &recording.health.interruptions;
     let mut rows: Vec<usize> = Vec::new();
     for row in 0..time.len() {
@@ -83,6 +106,11 @@ pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize
     Ok(rows.into_iter().map(|row| (row, recorded.at(row))).collect())
 }
 
+/// Longest step of the clock that is no gap, s.
+fn longest_step_s(recording: &Recording) -> f64 {
+    recording.health.period_s.map_or(f64::INFINITY, |period| GAP_PERIODS * period)
+}
+
 /// The recorded state at every row.
 ///
 /// # Errors
@@ -90,22 +118,6 @@ pub fn starts(recording: &Recording, window_s: Option<f64>) -> Result<Vec<(usize
 pub fn recorded(recording: &Recording) -> Result<Vec<State>> {
     let recorded = Recorded::of(recording)?;
     Ok((0..recording.len()).map(|row| recorded.at(row)).collect())
-}
-
-/// Slope of the line through the positions around a row.
-fn slope(time: &[f64], position: &[f64], row: usize) -> f64 {
-    let near = |other: &usize| (time[*other] - time[row]).abs() <= START_HALF_S || other.abs_diff(row) <= 1;
-    let first = (0..row).rev().take_while(near).last().unwrap_or(row);
-    let last = (row + 1..time.len()).take_while(near).last().unwrap_or(row);
-    let count = (last - first + 1) as f64;
-    let mean = |values: &[f64]| values[first..=last].iter().sum::<f64>() / count;
-    let (middle, level) = (mean(time), mean(position));
-    let (mut product, mut square) = (0.0, 0.0);
-    for other in first..=last {
-        product += (time[other] - middle) * (position[other] - level);
-        square += (time[other] - middle).powi(2);
-    }
-    if square > 0.0 { product / square } else { 0.0 }
 }
 
 /// The motion at every row from the first of `starts` on, begun anew at each of them (row and state in order).

@@ -7,7 +7,6 @@ mod bending;
 pub mod blocks;
 pub(crate) mod delay;
 mod even;
-mod every_row;
 mod grid;
 pub mod hold_out;
 pub mod plan;
@@ -24,11 +23,10 @@ use std::ops::Range;
 
 pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
-pub use every_row::prepare_every_row;
-pub(crate) use every_row::{EveryRow, prepare_every_row_of};
 pub(crate) use grid::interpolate;
 pub use plan::{Preparation, Request, VelocitySource};
-pub use prepare::prepare;
+pub(crate) use prepare::{EveryRow, prepare_every_row_of};
+pub use prepare::{prepare, prepare_every_row};
 pub(crate) use width::{smooth_friction_columns, thinned};
 
 use crate::did_you_mean::hint;

@@ -79,7 +79,7 @@ mod tests {
     fn what_is_searched_is_bounded_and_spread_and_a_short_recording_stays_whole() {
         assert!(searched(&[swing(60_000, 250.0)], 1.0).is_none());
         for rate_hz in [1000.0, 4000.0] {
-            let sizes = [300_000, 600_000].map(|rows| {
+            let sizes = [600_000, 900_000].map(|rows| {
                 let recording = swing(rows, rate_hz);
                 let found = searched(std::slice::from_ref(&recording), 1.0).unwrap().swap_remove(0);
                 let time = |recording: &Recording| recording.values(Quantity::Time).unwrap().to_vec();

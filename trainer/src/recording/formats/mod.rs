@@ -18,7 +18,7 @@ mod tests;
 use std::io::{Cursor, Read};
 use std::panic::catch_unwind;
 
-use super::in_use::Keep;
+use super::keep::Keep;
 use super::source::failed;
 use super::table::RawTable;
 use super::text;

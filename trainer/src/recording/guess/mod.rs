@@ -247,7 +247,7 @@ mod tests {
     use super::super::{Quantity, read};
     use super::{Proposal, propose};
     use crate::joint::Joint;
-    use crate::recording::in_use::{InUse, Keep};
+    use crate::recording::keep::{InUse, Keep};
 
     fn proposed(text: &str) -> Proposal {
         propose(&read(text.as_bytes(), Keep::Numbers(InUse::all())).unwrap().0, "arm")

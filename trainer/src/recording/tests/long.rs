@@ -1,6 +1,6 @@
 //! Recordings that are longer than what is kept of them.
 
-use super::super::in_use::{InUse, Keep};
+use super::super::keep::{InUse, Keep};
 use super::super::{Recording, interpret};
 use crate::joint::Joint;
 

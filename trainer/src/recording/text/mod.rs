@@ -5,7 +5,7 @@ mod records;
 
 use std::io::{BufRead, BufReader, Read};
 
-use super::in_use::Keep;
+use super::keep::Keep;
 use super::source::failed;
 use super::table::{RawTable, TableBuilder};
 use crate::error::{Error, Result, codes};

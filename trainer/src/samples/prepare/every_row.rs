@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use super::Samples;
-use super::grid::{Grid, Segment, interpolate_part};
-use super::plan::Preparation;
-use super::prepare::{empty, extend, target, temperature_filter, unfiltered};
+use super::super::Samples;
+use super::super::grid::{Grid, Segment, interpolate_part};
+use super::super::plan::Preparation;
+use super::{empty, extend, target, temperature_filter, unfiltered};
 use crate::error::Result;
 use crate::numerics::filter::Part;
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};

@@ -1,5 +1,7 @@
 //! Applies the planned filter to a recording: samples for a fit.
 
+mod every_row;
+
 use std::ops::Range;
 
 use super::Samples;
@@ -8,6 +10,9 @@ use super::plan::{Preparation, VelocitySource};
 use crate::error::{Error, Result, codes};
 use crate::numerics::filter::gaussian::{GaussianFilter, Order};
 use crate::recording::{Quantity, Recording};
+
+pub use every_row::prepare_every_row;
+pub(crate) use every_row::{EveryRow, prepare_every_row_of};
 
 /// Temperatures are smoothed over this standard deviation, s: their sensor's noise would otherwise hand what
 /// temperature explains to its rivals (rule P5).
@@ -56,7 +61,7 @@ pub fn prepare(recording: &Recording, preparation: &Preparation) -> Result<Sampl
 ///
 /// # Errors
 /// `FRK-D009` without a clock.
-pub(super) fn prepare_actuator(recording: &Recording, preparation: &Preparation) -> Result<Vec<f64>> {
+pub(in crate::samples) fn prepare_actuator(recording: &Recording, preparation: &Preparation) -> Result<Vec<f64>> {
     let Some(channel) = recording.actuator() else { return Ok(Vec::new()) };
     let Some(sigma_s) = preparation.sigma_s else { return Ok(channel.values.clone()) };
     let time = &recording.require(&[Quantity::Time], "a recording with a motion")?.values;
@@ -68,17 +73,17 @@ pub(super) fn prepare_actuator(recording: &Recording, preparation: &Preparation)
 }
 
 /// Segments that are as long as the filter.
-pub(super) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Segment> {
+pub(in crate::samples) fn usable<'a>(grid: &'a Grid, filter: &GaussianFilter) -> Vec<&'a Segment> {
     grid.segments.iter().filter(|segment| segment.points > 2 * filter.half_width()).collect()
 }
 
 /// What a prediction is scored on.
-pub(super) fn target(recording: &Recording) -> Option<&[f64]> {
+fn target(recording: &Recording) -> Option<&[f64]> {
     recording.separated_friction().or_else(|| recording.actuator()).map(|channel| channel.values.as_slice())
 }
 
 /// Appends one segment of every channel, filtered by `apply`, that of the actuator by `apply_to_actuator`.
-pub(super) fn extend(
+fn extend(
     samples: &mut Samples,
     recording: &Recording,
     preparation: &Preparation,
@@ -140,7 +145,7 @@ fn named_channels(recording: &Recording) -> impl Iterator<Item = (&str, &[f64])>
 }
 
 /// What smooths temperatures of so many samples a second once more.
-pub(super) fn temperature_filter(rate_hz: f64) -> GaussianFilter {
+fn temperature_filter(rate_hz: f64) -> GaussianFilter {
     GaussianFilter::new(TEMPERATURE_SIGMA_S, 1.0 / rate_hz)
 }
 
@@ -157,7 +162,7 @@ fn smooth_temperatures(samples: &mut Samples) {
 }
 
 /// Rows of a separated recording as they are: nothing to differentiate, so nothing to filter.
-pub(super) fn unfiltered(recording: &Recording, rows: &Range<usize>) -> Samples {
+fn unfiltered(recording: &Recording, rows: &Range<usize>) -> Samples {
     let of = |values: &[f64]| values[rows.clone()].to_vec();
     let own = |quantity| recording.values(quantity).map(of);
     let named = named_channels(recording).map(|(name, values)| (name.to_owned(), of(values)));
@@ -180,7 +185,7 @@ pub(super) fn unfiltered(recording: &Recording, rows: &Range<usize>) -> Samples 
     }
 }
 
-pub(super) fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>) -> Samples {
+fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>) -> Samples {
     Samples {
         axis: recording.axis,
         time: Vec::new(),

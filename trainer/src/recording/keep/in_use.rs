@@ -1,8 +1,7 @@
 //! Which columns of a long recording are kept: those that something may read.
 
-use super::clock;
-use super::names::{JointState, plain, read_name};
-use super::quantity::{ColumnName, Quantity};
+use super::super::names::{JointState, plain, read_name};
+use super::super::quantity::{ColumnName, Quantity};
 use super::thinning::Thinning;
 use crate::joint::Joint;
 
@@ -12,18 +11,9 @@ const MOST_ROWS_OF_ALL: usize = 1 << 21;
 /// Columns that have no name of a quantity and are read all the same.
 const NAMED: [&str; 1] = ["trajectory"];
 
-/// What is kept of a recording.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Keep<'a> {
-    /// All of its text beside its numbers, so that it can be written again.
-    Text,
-    /// Its numbers, of a long one those in use, and the text of the first rows, and of columns whose numbers a double does not hold to the last digit.
-    Numbers(InUse<'a>),
-}
-
 /// The columns that are in use.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InUse<'a> {
+pub(in crate::recording) struct InUse<'a> {
     /// Tells what columns are; without one all are in use.
     joint: Option<&'a Joint>,
     /// Inputs that are asked for.
@@ -31,22 +21,22 @@ pub(super) struct InUse<'a> {
     /// Memory to stay within, B.
     memory_bytes: f64,
     /// Rows from which on nothing else is kept.
-    pub(super) from_rows: usize,
+    pub(in crate::recording) from_rows: usize,
 }
 
 impl<'a> InUse<'a> {
     /// All columns.
-    pub(super) fn all() -> Self {
+    pub(in crate::recording) fn all() -> Self {
         Self { joint: None, asked: &[], memory_bytes: f64::INFINITY, from_rows: usize::MAX }
     }
 
     /// Those of a joint, beside inputs that are asked for, as many rows as a memory holds.
-    pub(super) fn of(joint: &'a Joint, asked: &'a [String], memory_bytes: f64) -> Self {
+    pub(in crate::recording) fn of(joint: &'a Joint, asked: &'a [String], memory_bytes: f64) -> Self {
         Self { joint: Some(joint), asked, memory_bytes, from_rows: MOST_ROWS_OF_ALL }
     }
 
     /// Which rows of a file with such columns are kept.
-    pub(super) fn thinning(&self, header: &[String]) -> Thinning {
+    pub(in crate::recording) fn thinning(&self, header: &[String]) -> Thinning {
         if self.memory_bytes.is_infinite() {
             return Thinning::none();
         }
@@ -55,19 +45,25 @@ impl<'a> InUse<'a> {
 
     /// The same from so many rows on.
     #[cfg(test)]
-    pub(super) fn from(self, from_rows: usize) -> Self {
+    pub(in crate::recording) fn from(self, from_rows: usize) -> Self {
         Self { from_rows, ..self }
     }
 
     /// Whether a column is one of them: it is or nearly is a quantity of this joint or of another one, a clock, or named by somebody.
-    pub(super) fn holds(&self, column: &str) -> bool {
+    pub(in crate::recording) fn holds(&self, column: &str) -> bool {
         let Some(joint) = self.joint else { return true };
         let mapped = || joint.columns.iter().any(|(_, mapping)| mapping.name == column);
         let is_named =
             || NAMED.contains(&column) || self.asked.iter().chain(&joint.forces).any(|name| name == column) || mapped();
-        let is_clock = || clock::is_named(column) || column.contains("sec") || column.contains("time");
-        is_named() || is_clock() || JointState::of(column).is_some() || is_quantity(column)
+        is_named() || is_clock(column) || JointState::of(column).is_some() || is_quantity(column)
     }
+}
+
+/// Whether a name may be that of a clock, or of a part of one.
+fn is_clock(column: &str) -> bool {
+    let name = column.to_ascii_lowercase();
+    let last = name.rsplit('/').next().unwrap_or(&name);
+    last == "t" || ["time", "stamp", "date", "sec"].iter().any(|word| last.contains(word))
 }
 
 /// Whether a name is that of a quantity, whatever stands before it, or `q`, `dq` and `ddq` with a number.

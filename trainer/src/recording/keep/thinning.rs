@@ -12,7 +12,7 @@ const BYTES_BESIDE_COLUMNS: f64 = 40.0;
 
 /// Which rows of a file are kept.
 #[derive(Clone, Debug)]
-pub(super) struct Thinning {
+pub(in crate::recording) struct Thinning {
     stretch_rows: usize,
     /// Rows that there is room for: an even number of stretches.
     room: usize,
@@ -24,12 +24,12 @@ pub(super) struct Thinning {
 
 impl Thinning {
     /// Keeps all rows.
-    pub(super) fn none() -> Self {
+    pub(in crate::recording) fn none() -> Self {
         Self { stretch_rows: STRETCH_ROWS, room: usize::MAX, every: 1, offered: 0 }
     }
 
     /// Keeps within a memory, B, for a table of so many columns; two stretches at least.
-    pub(super) fn within(memory_bytes: f64, columns: usize) -> Self {
+    pub(in crate::recording) fn within(memory_bytes: f64, columns: usize) -> Self {
         let rows = (memory_bytes - AT_LEAST_BYTES) / (8.0 * columns as f64 + BYTES_BESIDE_COLUMNS);
         Self::of(STRETCH_ROWS, rows.max(0.0) as usize)
     }
@@ -40,14 +40,14 @@ impl Thinning {
     }
 
     /// Whether the next row of the file is kept.
-    pub(super) fn takes_next(&mut self) -> bool {
+    pub(in crate::recording) fn takes_next(&mut self) -> bool {
         let stretch = self.offered / self.stretch_rows;
         self.offered += 1;
         stretch.is_multiple_of(self.every)
     }
 
     /// The stretches of so many rows that stay where another one has no room; `None` where it has.
-    pub(super) fn make_room(&mut self, rows: usize) -> Option<Vec<Range<usize>>> {
+    pub(in crate::recording) fn make_room(&mut self, rows: usize) -> Option<Vec<Range<usize>>> {
         if rows < self.room {
             return None;
         }
@@ -56,7 +56,7 @@ impl Thinning {
     }
 
     /// What was left out, in a sentence.
-    pub(super) fn note(&self) -> Option<String> {
+    pub(in crate::recording) fn note(&self) -> Option<String> {
         (self.every > 1).then(|| {
             format!(
                 "longer than the memory allows: one in {} stretches of {} rows is read; `--memory` allows for more",
