@@ -1,6 +1,6 @@
-//! The constants of a known joint come out with their form, in short; all of it by `law-coverage`.
+//! The constants of a known joint come out with their form, in short; all of it by `interval-coverage law`.
 
-use frikan_tests::law_coverage::{Setting, Truth, printed};
+use frikan_tests::coverage::law::{Setting, Truth, printed};
 
 /// In one of fifteen recordings the formula of one of the held-out turns leaves all bounds, and Coulomb and viscous friction is taken.
 #[test]

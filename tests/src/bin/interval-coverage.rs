@@ -1,10 +1,16 @@
-//! How often the 95 % intervals of `fit` hold the constants of simulated joints, and how often the law is the right one:
-//! `law-coverage [SEEDS [FIRST_SEED]]` prints a table; `law-coverage SEEDS FIRST_SEED elbow` that of the elbow at 250 Hz alone.
+//! How often 95 % intervals hold what they are of.
+//!
+//! `interval-coverage law [SEEDS [FIRST_SEED [elbow]]]`: those of `fit` and the constants of simulated joints, and how often its law is the right one; of
+//! all settings, or of the elbow at 250 Hz alone.
+//! `interval-coverage sealed [RUNS [FIRST_SEED]]`: that of the sealed ratio and the ratio that a long fresh recording gives.
 
-use frikan_tests::law_coverage::{Constant, Printed, Setting, Truth, printed};
+use frikan_tests::coverage::law::{Constant, Printed, Setting, Truth, printed};
+use frikan_tests::coverage::sealed::{Case, EFFECTS, case, prepare};
+use rayon::prelude::*;
 
-/// First seed, where none is given.
-const SEEDS: u64 = 80_000;
+/// First seeds, where none is given.
+const SEED_OF_LAWS: u64 = 80_000;
+const SEED_OF_SEALED: u64 = 70_000;
 /// Samples a second, Hz.
 const RATES: [f64; 2] = [250.0, 1000.0];
 /// Bits of one turn of the encoder; the elbow of the fixtures has the last.
@@ -13,8 +19,17 @@ const BITS: [u32; 4] = [13, 16, 20, 21];
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |at: usize| arguments.get(at).and_then(|text| text.parse().ok());
-    let (seeds, first) = (number(0).unwrap_or(20), number(1).unwrap_or(SEEDS));
-    let is_short = arguments.get(2).is_some_and(|word| word == "elbow");
+    match arguments.first().map(String::as_str) {
+        Some("law") => {
+            let is_short = arguments.get(3).is_some_and(|word| word == "elbow");
+            laws(number(1).unwrap_or(20), number(2).unwrap_or(SEED_OF_LAWS), is_short);
+        }
+        Some("sealed") => sealed(number(1).unwrap_or(40), number(2).unwrap_or(SEED_OF_SEALED)),
+        _ => eprintln!("interval-coverage law|sealed [COUNT [FIRST_SEED]]"),
+    }
+}
+
+fn laws(seeds: u64, first: u64, is_short: bool) {
     let mut all = Vec::new();
     for truth in Truth::ALL {
         for rate_hz in RATES {
@@ -63,4 +78,26 @@ fn tell(runs: &[Printed]) {
             every[0].truth,
         );
     }
+}
+
+fn sealed(runs: u64, first: u64) {
+    let folder = tempfile::tempdir().expect("there is room for recordings");
+    prepare(folder.path());
+    println!("effect seed | sealed low high | fresh stretches");
+    let cases: Vec<Case> = (first..first + runs)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let effect = EFFECTS[(seed % EFFECTS.len() as u64) as usize];
+            let own = folder.path().join(seed.to_string());
+            std::fs::create_dir(&own).expect("it is new");
+            let case = case(&own, effect, seed);
+            std::fs::remove_dir_all(&own).expect("it is our own");
+            if let Some(Case { ratio, ci95: [low, high], fresh, stretches }) = &case {
+                println!("{effect} {seed} | {ratio:.4} {low:.4} {high:.4} | {fresh:.4} {stretches}");
+            }
+            case
+        })
+        .collect();
+    let held = cases.iter().filter(|case| case.is_held()).count();
+    println!("held {held} of {} ({:.1} %)", cases.len(), 100.0 * held as f64 / cases.len().max(1) as f64);
 }
