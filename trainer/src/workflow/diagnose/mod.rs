@@ -15,6 +15,7 @@ use frikan_shared::model::RigidBody;
 use frikan_shared::units::Unit;
 use serde_json::Value;
 
+use super::actuator;
 use super::recordings::{Warning, load_all, load_with_faults, units};
 use crate::compile::cost::in_floats;
 use crate::compile::improved::{Origin, improve};
@@ -167,7 +168,7 @@ impl Diagnosed {
     /// The result for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
-        let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", commanded::sentence(actuator)));
+        let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", actuator::sentence(actuator)));
         let factor = |factor: &Parameter| {
             format!(
                 "Taken off: {} {} ({} to {}).\n",
@@ -194,7 +195,7 @@ impl Diagnosed {
         };
         let mut summary = summary(&told, self.seconds, self.seed);
         if let Some(actuator) = &self.actuator {
-            summary["actuator"] = commanded::constants(actuator);
+            summary["actuator"] = actuator::constants(actuator);
         }
         summary
     }
@@ -203,7 +204,7 @@ impl Diagnosed {
     /// `command` is what made it, for its foot.
     #[must_use]
     pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
-        let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", commanded::sentence(actuator)));
+        let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", actuator::sentence(actuator)));
         let settings = format!("Seed {}.{}", self.seed, actuator.unwrap_or_default());
         report::diagnosis(&DiagnosisPage {
             recording: &self.label,
