@@ -104,11 +104,12 @@ fn told(path: &Path, recording: &Result<Recording>, proposal: &Proposal) -> Stri
         text += &format!("  other joints: {}\n", proposal.other_joints.join(" "));
     }
     proposal.missing.iter().for_each(|sentence| text += &format!("  {sentence}\n"));
-    if let Err(error) = recording {
-        text += &format!(
-            "written with all columns to be said what they are; as it stands it reads nothing: {}\n",
-            error.message()
-        );
+    match recording {
+        Ok(_) => {}
+        Err(error) if error.code() == &codes::NO_KNOWN_COLUMN => {
+            text += "  nothing is read by it yet: every column stands in it, say there what each is\n";
+        }
+        Err(error) => text += &format!("  nothing is read by it yet: {} {}\n", error.code().id, error.message()),
     }
     text
 }

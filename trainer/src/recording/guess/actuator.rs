@@ -62,7 +62,7 @@ pub(super) fn sections(kind: Kind) -> String {
     );
     // Writing to a string cannot fail.
     let mut line = |entry: String, why: &str| {
-        let _ = writeln!(text, "# {entry:<34} # {why}");
+        let _ = if why.is_empty() { writeln!(text, "# {entry}") } else { writeln!(text, "# {entry:<34} # {why}") };
     };
     line(format!("kind = \"{}\"", kind.name()), what);
     let example = PRESETS.iter().find(|preset| preset.kind == kind).unwrap_or(&PRESETS[0]);
@@ -77,12 +77,13 @@ pub(super) fn sections(kind: Kind) -> String {
     line("mass_kg = ...".to_owned(), "");
     line("distance_m = ...".to_owned(), "of its centre from the axis");
     line("[recordings.\"*-kp100.csv\"]".to_owned(), "what differs from file to file; * stands for any letters");
-    let of_file = if kind == Kind::Pd { "kp_Nm_rad = ..." } else { "supply_V = ..." };
-    let own = if kind == Kind::PositionServo { "firmware_kp = ..." } else { of_file };
+    let own = match kind {
+        Kind::Pd => "kp_Nm_rad = ...",
+        Kind::PositionServo => "firmware_kp = ...",
+        Kind::Torque | Kind::Current | Kind::DcMotor => "supply_V = ...",
+    };
     line(own.to_owned(), "also payload_kg, payload_m, supply_V, kp_Nm_rad, kd_Nms_rad");
-    text.lines()
-        .map(str::trim_end)
-        .fold(String::new(), |text, line| text + line.strip_suffix(" #").unwrap_or(line).trim_end() + "\n")
+    text
 }
 
 /// The names of the presets, by kind.
@@ -98,4 +99,26 @@ fn presets() -> String {
         format!("{} ({})", of_kind.collect::<Vec<_>>().join(", "), kind.name())
     };
     kinds.iter().map(names).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::joint::Joint;
+
+    #[test]
+    fn the_sections_are_read_once_they_are_filled_in() {
+        for kind in [Kind::Pd, Kind::PositionServo, Kind::DcMotor] {
+            let sections = sections(kind);
+            assert!(sections.lines().all(|line| line.starts_with("# ")), "{sections}");
+            assert_eq!(Joint::parse(&sections).unwrap(), Joint::default());
+            let filled = sections.lines().skip(1).map(|line| line.trim_start_matches("# ").replace("...", "0.5"));
+            let filled: Vec<String> = filled.filter(|line| !line.starts_with("preset")).collect();
+            let joint = Joint::parse(&filled.join("\n")).unwrap();
+            assert_eq!(joint.actuator.kind, kind);
+            assert_eq!(joint.actuator.constants.len(), kind.constants().len());
+            assert!(joint.payload.is_some() && joint.recordings.len() == 1);
+            assert!(PRESETS.iter().all(|preset| sections.contains(preset.name)));
+        }
+    }
 }

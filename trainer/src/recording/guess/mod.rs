@@ -214,4 +214,47 @@ mod tests {
         assert_eq!(proposal.channels, ["joint1_position_rad", "joint3_position_rad"]);
         assert!(Joint::parse(&proposal.toml).unwrap().columns.is_empty());
     }
+
+    /// A joint that swings by two sines, its columns by these names.
+    fn swing(header: &str, columns: impl Fn(f64) -> Vec<f64>) -> String {
+        let row = |row: i32| {
+            let values = columns(f64::from(row) * 0.004);
+            values.iter().map(f64::to_string).collect::<Vec<_>>().join(";")
+        };
+        let rows: Vec<String> = (0..500).map(row).collect();
+        format!("{header}\n{}\n", rows.join("\n"))
+    }
+
+    #[test]
+    fn what_no_name_tells_is_told_by_what_the_columns_hold() {
+        let columns = |t: f64| {
+            let (position, velocity) = (t.sin() + 0.3 * (3.1 * t).sin(), t.cos() + 0.93 * (3.1 * t).cos());
+            let acceleration = -t.sin() - 0.3 * 3.1 * 3.1 * (3.1 * t).sin();
+            vec![velocity.signum() + 0.4 * velocity + acceleration, velocity, position, acceleration, t, 5.0]
+        };
+        let proposal = proposed(&swing("a;b;c;d;e;f", columns));
+        let named =
+            |quantity| proposal.taken.iter().find(|taken| taken.quantity == quantity).map(|taken| &taken.column[..]);
+        assert_eq!(named(Quantity::Time), Some("e"), "{}", proposal.toml);
+        assert_eq!((named(Quantity::Position), named(Quantity::Velocity)), (Some("c"), Some("b")));
+        assert_eq!(proposal.channels, ["a", "d", "f"]);
+        assert_eq!(proposal.missing.len(), 1, "{:?}", proposal.missing);
+        assert!(proposal.toml.contains("# torque = { name = \"a\", unit = \"Nm\" }"), "{}", proposal.toml);
+        assert!(proposal.toml.contains("5 in every row"), "{}", proposal.toml);
+        assert_eq!(Joint::parse(&proposal.toml).unwrap().name, None);
+    }
+
+    #[test]
+    fn a_position_is_found_by_its_velocity_and_a_counter_is_no_clock_beside_one() {
+        let columns = |t: f64| vec![t / 0.004, t + 1e-5 * (1e4 * t).sin(), t.sin(), t.cos(), t.cos()];
+        let proposal = proposed(&swing("n;ticks;foo;velocity_rad_s;torque_Nm", columns));
+        let joint = Joint::parse(&proposal.toml).unwrap();
+        assert_eq!(joint.columns["position"].name, "foo");
+        assert_eq!(joint.columns["time"].name, "ticks");
+        assert!(proposal.missing.is_empty(), "{:?}", proposal.missing);
+        // A torque that friction makes goes with the velocity, and is none.
+        let columns = |t: f64| vec![t, t.sin(), 0.3 * t.cos() + t.cos().signum(), -t.sin()];
+        let proposal = proposed(&swing("time_s;foo;bar;torque_Nm", columns));
+        assert!(proposal.missing[0].contains("position or the velocity"), "{:?}", proposal.missing);
+    }
 }
