@@ -53,19 +53,18 @@ pub(super) fn increases(values: &[f64]) -> bool {
     values.len() > 1 && values.windows(2).all(|pair| pair[1] > pair[0])
 }
 
-/// The column that a clock is likely to be: the most even of those that increase and advance as clocks do. A counter of rows is one only where there is
-/// no other.
+/// The column that a clock is likely to be: the most even of those that increase and advance as clocks do. One that counts by ones may be a clock of 1 kHz
+/// in milliseconds, or number the rows: somebody has to say it.
 fn clock(raw: &RawTable, free: &[usize]) -> Option<usize> {
     let unevenness = |index: usize| {
         let values = numbers(raw, index);
         units::of_time(&values).filter(|_| increases(&values))?;
         let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let [shortest, longest] = range(&steps)?;
-        let counts_rows = shortest == 1.0 && longest == 1.0;
-        Some((counts_rows, longest / shortest, index))
+        (shortest != 1.0 || longest != 1.0).then_some((longest / shortest, index))
     };
     let clocks = free.iter().filter_map(|index| unevenness(*index));
-    clocks.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(.., index)| index)
+    clocks.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, index)| index)
 }
 
 /// The position and the velocity that are so by each other: of a velocity and its own derivative the position is the one before both.
