@@ -123,13 +123,17 @@ fn commanded(recordings: &[Recording], joint: &Joint) -> Result<Commanded> {
     Ok(Commanded { known, bare: way.bare, constants, told })
 }
 
-/// Whether something is of the torque and not of the motion, which was looked at as it was recorded.
+/// Whether something is of the torque and not of the motion, which was looked at as it was recorded. A torque that is computed has no resolution of its own.
 fn is_of_torque(seen: &Seen) -> bool {
     match seen {
-        Seen::Resolution { channel, .. } | Seen::Constant { channel, .. } | Seen::AtLimit { channel, .. } => {
+        Seen::Constant { channel, .. } | Seen::AtLimit { channel, .. } => {
             [Quantity::Torque, Quantity::Force].iter().any(|quantity| channel == quantity.name())
         }
-        Seen::Clock { .. } | Seen::Gaps { .. } | Seen::Motion(_) | Seen::Temperature { .. } => false,
+        Seen::Clock { .. }
+        | Seen::Gaps { .. }
+        | Seen::Resolution { .. }
+        | Seen::Motion(_)
+        | Seen::Temperature { .. } => false,
     }
 }
 

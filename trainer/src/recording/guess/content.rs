@@ -6,7 +6,7 @@ use crate::recording::quantity::Quantity;
 use crate::recording::table::RawTable;
 
 /// Least correlation of a column with the derivative of another that makes them velocity and position. Friction alone goes with the velocity too: over
-/// a sine that of a Coulomb torque is 0.9, and beside a viscous one of the same size 0.98.
+/// a sine that of a Coulomb torque is 0.90, and beside a viscous one of the same size 0.97.
 const DERIVATIVE: f64 = 0.985;
 
 /// Columns among which pairs are looked for: beyond them the file is no log of one joint.

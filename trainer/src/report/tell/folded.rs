@@ -9,7 +9,7 @@ pub struct Noted {
     pub sentence: String,
 }
 
-/// Sentences, each with the recordings that it is noted of: those that differ in nothing or in their figures only are one, with the range of each figure.
+/// Sentences, each with the recordings that it is noted of: those that differ in nothing or in their figures only are one, with the range of each figure, as `9.4–19`.
 #[must_use]
 pub fn folded(notes: &[Noted]) -> Vec<String> {
     let mut groups: Vec<Vec<&Noted>> = Vec::new();
@@ -56,7 +56,7 @@ fn merged(sentences: &[&str]) -> String {
         match least.zip(most) {
             Some((least, most)) if least.0 != most.0 => {
                 let mark = first[place].strip_prefix(figure(first[place]).map_or("", |(_, text)| text)).unwrap_or("");
-                format!("{} to {}{mark}", least.1, most.1)
+                format!("{}–{}{mark}", least.1, most.1)
             }
             _ => first[place].to_owned(),
         }
@@ -102,7 +102,7 @@ mod tests {
         ];
         let told = folded(&notes);
         assert_eq!(told.len(), 3, "{told:?}");
-        assert_eq!(told[0], "in a.csv, b.csv and c.csv FRK the velocity comes 9.4 to 19 ms after, 2 times");
+        assert_eq!(told[0], "in a.csv, b.csv and c.csv FRK the velocity comes 9.4–19 ms after, 2 times");
         assert_eq!(told[1], "in b.csv FRK q2 stands still");
     }
 
