@@ -163,3 +163,34 @@ fn the_form_of_the_law_may_be_fixed() {
     assert_eq!(both.status, 2);
     assert!(both.messages.contains("cannot be a table"), "{}", both.messages);
 }
+
+#[test]
+fn the_only_joint_of_a_simulators_file_needs_no_name() {
+    let folder = bench();
+    let at = folder.path();
+    assert_eq!(run(at, &["fit", "train.csv", "-o", "m.frk", "--quiet"]).status, 0);
+    let joint = |name: &str, kind: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 1\"/></joint>"
+        )
+    };
+    let robot = |joints: &str| format!("<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/>{joints}</robot>");
+    write(at, "one.urdf", &robot(&(joint("base", "fixed") + &joint("elbow", "continuous"))));
+    write(at, "two.urdf", &robot(&(joint("wrist", "revolute") + &joint("elbow", "continuous"))));
+    let export =
+        |words: &str| run(at, &format!("export m.frk --to urdf {words} -o out.urdf").split(' ').collect::<Vec<_>>());
+    let only = export("--into one.urdf");
+    assert_eq!(only.status, 0, "{}", only.messages);
+    let without = std::fs::read(at.join("out.urdf")).unwrap();
+    assert_eq!(export("--into one.urdf --joint-name elbow").status, 0);
+    assert!(std::fs::read(at.join("out.urdf")).unwrap() == without);
+    for words in ["--into two.urdf", "--into two.urdf --joint-name real", "--into one.urdf --joint-name real"] {
+        let refused = export(words);
+        assert!(refused.status == 3 && refused.messages.contains("FRK-D030"), "{words}: {}", refused.messages);
+        assert!(
+            refused.messages.contains("elbow") && refused.messages.contains("--joint-name"),
+            "{}",
+            refused.messages
+        );
+    }
+}

@@ -21,6 +21,23 @@ fn json(at: &Path, name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(at.join(name)).unwrap()).unwrap()
 }
 
+/// Root mean square of the residual over that of the torque of the actuator.
+fn residual_share(table: &str) -> f64 {
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let [torque, predicted, residual] = ["actuator_torque_Nm", "predicted_torque_Nm", "residual_Nm"]
+        .map(|name| header.iter().position(|column| *column == name).unwrap());
+    let (mut left, mut all) = (0.0, 0.0);
+    for row in rows {
+        let [torque, predicted, residual] =
+            [torque, predicted, residual].map(|column| row[column].parse::<f64>().unwrap());
+        assert!((torque - predicted - residual).abs() < 1e-6);
+        left += residual * residual;
+        all += torque * torque;
+    }
+    f64::sqrt(left / all)
+}
+
 #[test]
 fn a_published_servo_is_simulated_rolled_out_looped_and_diagnosed() {
     let folder = tempfile::tempdir().unwrap();
@@ -37,6 +54,11 @@ fn a_published_servo_is_simulated_rolled_out_looped_and_diagnosed() {
     let error = json(at, "rolled.json")["position"]["mae"].as_f64().unwrap();
     println!("rollout of the joint that BAM's friction moves: {error} rad");
     assert!(error < 0.01, "{rolled}");
+    // The law reads the torque of the motor: what the actuator makes of its commands.
+    done(at, "predict servo.frk recorded.csv --joint servo.toml -o predicted.csv --quiet");
+    let share = residual_share(&std::fs::read_to_string(at.join("predicted.csv")).unwrap());
+    println!("predict leaves {share} of the torque");
+    assert!(share < 0.25, "{share}");
     // Without its friction of the load it is another joint.
     let text = std::fs::read_to_string(at.join("servo.toml")).unwrap();
     let without: Vec<&str> = text.lines().filter(|line| !line.starts_with("load_friction")).collect();

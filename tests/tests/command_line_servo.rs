@@ -144,9 +144,70 @@ fn a_servo_is_rehearsed_before_there_is_one() {
             .find(|parameter| parameter["name"] == name)
             .map_or(f64::NAN, |parameter| parameter["value"].as_f64().unwrap())
     };
+    // What `predict` leaves is what the fit was scored by, and what `check` looks at is what was fitted.
+    let predicted = run(at, &["predict", "model.frk", "real.csv", "--joint", "joint.toml", "-o", "out.csv", "--quiet"]);
+    assert_eq!(predicted.status, 0, "{}", predicted.messages);
+    let table = std::fs::read_to_string(at.join("out.csv")).unwrap();
+    assert!(table.lines().next().unwrap().ends_with("actuator_torque_Nm,predicted_torque_Nm,residual_Nm"));
+    let residuals: Vec<f64> =
+        table.lines().skip(1).map(|line| line.rsplit(',').next().unwrap().parse().unwrap()).collect();
+    let left = f64::sqrt(residuals.iter().map(|residual| residual * residual).sum::<f64>() / residuals.len() as f64);
+    let scored = json["train"]["rmse"].as_f64().unwrap();
+    println!("predict leaves {left} N m, the fit was scored with {scored} N m");
+    assert!((left / scored - 1.0).abs() < 0.02, "{left} {scored}");
+    let checked = run(at, &["check", "real.csv", "--joint", "joint.toml", "--json", "-"]);
+    let told: Value = serde_json::from_str(&checked.output).unwrap();
+    assert_eq!((checked.status, &told["actuator"]["kp_Nm_rad"]), (0, &Value::from(150.0)), "{told}");
+    let known = told["identifiable"].as_array().unwrap().iter();
+    assert!(known.clone().any(|one| one["name"] == "Coulomb friction"), "{told}");
+    // Without joint.toml the load, or the torque, is missing, and it is said what would tell it.
+    let bare = run(at, &["check", "real.csv"]);
+    assert!(bare.status == 3 && bare.output.contains("`[actuator]`"), "{}", bare.output);
     for (name, value, within) in
         [("coulomb_torque", 2.0, 0.02), ("viscous_coefficient", 1.2, 0.1), ("inertia", 0.5, 0.05)]
     {
         assert!((of(name) / value - 1.0).abs() < within, "{name}: {} for {value}", of(name));
     }
+}
+
+const PENDULUM: &str = r#"
+[columns]
+reference_position = "goal_position_rad"
+[actuator]
+preset = "XL330"
+[payload]
+mass_kg = 0.49
+distance_m = 0.1
+[recordings."*-kp100.csv"]
+firmware_kp = 100
+"#;
+
+#[test]
+fn a_servo_is_checked_by_the_torque_of_its_actuator() {
+    let Some(recordings) = frikan_tests::recordings() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let names = ["lift_and_drop", "sin_sin", "sin_time_square", "up_and_down"];
+    let paths = names.map(|name| format!("{}/xl330_pendulum/{name}-kp100.csv", recordings.display()));
+    let check = |joint: &str, rest: &[&str]| {
+        std::fs::write(at.join("servo.toml"), joint).unwrap();
+        let paths = paths.iter().map(String::as_str);
+        run(at, &[&["check"][..], &paths.collect::<Vec<_>>(), &["--joint", "servo.toml"], rest].concat())
+    };
+    let checked = check(PENDULUM, &["--json", "-"]);
+    assert_eq!(checked.status, 0, "{}", checked.messages);
+    let told: Value = serde_json::from_str(&checked.output).unwrap();
+    assert_eq!(told["verdict"], "usable");
+    assert!(told["actuator"]["torque_per_volt_Nm_V"].as_f64().unwrap() > 0.0);
+    let shares = [&told["identifiable"], &told["not_identifiable"]].map(|list| list.as_array().unwrap().len());
+    assert!(shares[0] > 0, "{told}");
+    // The same of all four recordings is one line, with each of them in it.
+    let text = check(PENDULUM, &[]).output;
+    let lines: Vec<&str> = text.lines().filter(|line| line.contains("FRK-W007")).collect();
+    assert!(lines.len() == 1 && names.iter().all(|name| lines[0].contains(name)), "{text}");
+    assert!(text.contains("FRK-W018") && !text.contains("FRK-D009"), "{text}");
+    // With nothing that says how large the torque is, it is judged by the figures of the data sheet, and that is said.
+    let open = PENDULUM.replace("[payload]\nmass_kg = 0.49\ndistance_m = 0.1\n", "");
+    let text = check(&open, &[]).output;
+    assert!(text.starts_with("usable") && text.contains("FRK-N005") && text.contains("0.1040"), "{text}");
 }

@@ -70,10 +70,12 @@ const BAM: &str = r#"echo '{"kt": 0.286, "R": 2.0, "armature": 0.0026, "q_offset
 "model": "m6", "actuator": "xl330"}' > m6.json"#;
 
 /// Lines that are not run here, by what they begin with, and why.
-const ELSEWHERE: [(&str, &str); 14] = [
+const ELSEWHERE: [(&str, &str); 16] = [
     ("trainer arm", "tests/arm.rs and the tests of the Python package identify arms"),
     ("trainer fit a-kp100.csv", "trainer/src/servo and tests/rollout.rs fit servos, which takes minutes"),
     ("trainer rollout servo.frk", "tests/rollout.rs"),
+    ("trainer check a-kp100.csv", "tests/command_line_servo.rs; the recordings are a servo's"),
+    ("trainer predict servo.frk", "tests/command_line_servo.rs"),
     (
         "trainer diagnose real.csv --simulation simulated.csv --joint servo.toml",
         "tests/command_line_servo.rs; the recordings are a servo's",

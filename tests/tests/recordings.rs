@@ -111,6 +111,7 @@ fn every_recording_is_read_as_proposed() {
     assert!(paths.len() > 60, "{}", paths.len());
     for path in paths {
         let (proposal, recording) = recording::propose(&path).unwrap_or_else(|error| panic!("{error}"));
+        let recording = recording.unwrap_or_else(|error| panic!("{error}"));
         let joint = Joint::parse(&proposal.toml).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let again = recording::load(&path, &joint).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(again.channels, recording.channels);
@@ -127,7 +128,8 @@ fn units_that_no_name_says_are_found() {
     let given = Joint::load(&folder.join("dfki_sp.toml")).unwrap_or_else(|error| panic!("{error}"));
     for run in ["ddp", "ddp_desired", "energy_shaping", "pd_system_identification"] {
         let path = folder.join(format!("dfki_sp_{run}.csv"));
-        let (_, proposed) = recording::propose(&path).unwrap_or_else(|error| panic!("{error}"));
+        let proposed = recording::propose(&path).and_then(|(_, recording)| recording);
+        let proposed = proposed.unwrap_or_else(|error| panic!("{error}"));
         let known = recording::load(&path, &given).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(proposed.channels, known.channels, "{run}");
     }

@@ -84,6 +84,28 @@ impl Constant {
         }
     }
 
+    /// What it is, in a few words; its unit is in its key.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::TorqueConstant => "torque per current, behind the gear",
+            Self::Resistance => "of winding and leads",
+            Self::TorquePerVolt => "torque constant over resistance, where only their quotient is known",
+            Self::BackEmf => "torque lost per velocity",
+            Self::Supply => "supply voltage, where no column has it",
+            Self::SupplyResistance => "between the supply and where its voltage is known",
+            Self::DutyLimit => "largest duty, 0 to 1",
+            Self::Kp => "torque per position error",
+            Self::Kd => "torque per velocity error",
+            Self::FirmwareKp => "gain as the firmware counts it, where no column kp has it",
+            Self::FirmwareErrorGain => "duty per rad of position error and unit of the firmware's gain",
+            Self::TorqueLimit => "largest torque",
+            Self::DeadBand => "position error up to which nothing happens",
+            Self::Delay => "from the command to its effect",
+            Self::VelocityLimit => "speed at which the reference moves at most",
+        }
+    }
+
     /// The rule that a value has to keep, for messages.
     #[must_use]
     pub fn rule(self) -> &'static str {

@@ -28,6 +28,19 @@ impl Open {
     }
 }
 
+impl Open {
+    /// Where identification starts, by what is known of the constants: a value, or the middle of bounds. `None` where nothing is.
+    #[must_use]
+    pub fn start(self, kind: Kind, constants: &Constants) -> Option<f64> {
+        let start = |constant| constants.get(&constant).copied().map(Known::start);
+        let of_both = || Some(start(Constant::TorqueConstant)? / start(Constant::Resistance)?);
+        match self {
+            Self::Gain if kind.is_motor() => start(Constant::TorquePerVolt).or_else(of_both),
+            Self::Gain | Self::Kp | Self::Kd => start(self.constant(kind)),
+        }
+    }
+}
+
 /// An actuator of which some constants may be open; those are at the middle of their bounds, or at 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Partial {
@@ -171,6 +184,14 @@ mod tests {
         assert!(partial(Kind::DcMotor, &[(TorquePerVolt, 0.1), (BackEmf, 0.02)]).open.is_empty());
         assert_eq!(partial(Kind::Pd, &[(Kp, 20.0)]).open, [Open::Kd]);
         assert_eq!(partial(Kind::Torque, &[]).open, []);
+    }
+
+    #[test]
+    fn an_open_gain_starts_in_the_middle_of_what_is_known() {
+        let preset = &super::super::PRESETS[0];
+        let start = Open::Gain.start(preset.kind, &preset.constants.iter().copied().collect()).unwrap();
+        assert!((start - 0.52 / 5.0).abs() < 1e-12, "{start}");
+        assert_eq!(Open::Gain.start(Kind::Current, &Constants::new()), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 mod bam;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -13,6 +13,9 @@ use crate::recording::{self, Proposal, Recording};
 pub use bam::OfBam;
 
 /// Propose a joint.toml for recordings: columns, units, joint and rate, each with the reason.
+///
+/// Columns that nothing is taken for are listed in it with what they could be; what was not found is said. A joint that reports no torque but what it was
+/// told gets `[actuator]` and `[payload]` to fill in.
 ///
 /// A parameter file of Rhoban's BAM (`m1.json` to `m6.json` of an actuator) in place of recordings becomes the joint.toml of that servo, and with
 /// `--image` its friction an image for `rollout`, `loop`, `predict` and `diagnose --model`.
@@ -35,7 +38,7 @@ pub struct Init {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal for the others; of parameters of BAM `FRK-D046` for
+/// As [`recording::propose`] for the first recording and [`recording::load`] with the proposal, where it reads the first, for the others; of parameters of BAM `FRK-D046` for
 /// what they cannot be and `FRK-D014` for what an image needs beside them. Nothing is written then.
 pub fn run(arguments: &Init) -> Result<()> {
     let read: Vec<_> = arguments.recordings.iter().map(PathBuf::as_path).collect();
@@ -52,21 +55,26 @@ pub fn run(arguments: &Init) -> Result<()> {
         return Err(Error::new(&codes::USAGE, message));
     }
     let (proposal, recording) = recording::propose(first)?;
-    let joint = Joint::parse(&proposal.toml)?;
-    others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
+    if recording.is_ok() {
+        let joint = Joint::parse(&proposal.toml)?;
+        others.iter().try_for_each(|path| recording::load(path, &joint).map(drop))?;
+    }
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, proposal.toml.as_bytes());
     outputs.write()?;
     if !arguments.quiet {
-        say(told(&recording, &proposal).trim_end());
+        say(told(first, &recording, &proposal).trim_end());
     }
     Ok(())
 }
 
 /// What was taken for what, a line a column.
-fn told(recording: &Recording, proposal: &Proposal) -> String {
+fn told(path: &Path, recording: &Result<Recording>, proposal: &Proposal) -> String {
     let rate = proposal.rate_hz.map_or_else(String::new, |rate| format!(", {rate:.1} Hz"));
-    let mut text = format!("{}: {} rows{rate}\n", recording.file(), recording.len());
+    let mut text = match recording {
+        Ok(recording) => format!("{}: {} rows{rate}\n", recording.file(), recording.len()),
+        Err(_) => format!("{}{rate}\n", path.display()),
+    };
     let width = proposal.taken.iter().map(|taken| taken.column.chars().count()).max().unwrap_or(0);
     for taken in &proposal.taken {
         let (quantity, unit) = (taken.quantity.name(), &taken.unit);
@@ -77,6 +85,14 @@ fn told(recording: &Recording, proposal: &Proposal) -> String {
     }
     if !proposal.other_joints.is_empty() {
         text += &format!("  other joints: {}\n", proposal.other_joints.join(" "));
+    }
+    proposal.missing.iter().for_each(|sentence| text += &format!("  {sentence}\n"));
+    match recording {
+        Ok(_) => {}
+        Err(error) if error.code() == &codes::NO_KNOWN_COLUMN => {
+            text += "  nothing is read by it yet: every column stands in it, say there what each is\n";
+        }
+        Err(error) => text += &format!("  nothing is read by it yet: {} {}\n", error.code().id, error.message()),
     }
     text
 }
@@ -109,7 +125,7 @@ mod tests {
         assert!((velocity[0] - 1.0).abs() < 1e-12 && recording.actuator().is_some());
         assert!((recording.health.period_s.unwrap() - 0.004).abs() < 1e-12);
         let (proposal, recording) = recording::propose(&path).unwrap();
-        let lines = told(&recording, &proposal);
+        let lines = told(&path, &recording, &proposal);
         assert!(
             lines.contains("the derivative of the position in deg_s")
                 && lines.contains("channels by their names: mode"),

@@ -13,7 +13,7 @@ use crate::error::{Error, Result, codes};
 use crate::fit::HostModel;
 use crate::joint::{Drive, Joint};
 
-use crate::workflow::recordings::{Reading, load_all, load_with_faults};
+use crate::workflow::recordings::{Reading, folded_warnings, load_all, load_with_faults};
 pub(super) use crate::workflow::recordings::{Source, motion};
 
 /// What is known of the joint, from its file where one is given; what nothing reads of that file is told on standard error.
@@ -41,7 +41,7 @@ pub(super) fn rehearse(recordings: &[Source<'_>], joint: &Joint, written: &[&Pat
         .iter()
         .map(|recording| format!("would read   {}, {} rows", recording.label, recording.len()))
         .collect();
-    lines.extend(warnings.iter().map(|warning| format!("             {warning}")));
+    lines.extend(folded_warnings(&warnings).iter().map(|warning| format!("             {warning}")));
     lines.extend(written.iter().map(|path| format!("would write  {}", path.display())));
     Ok(lines.join("\n") + "\n")
 }

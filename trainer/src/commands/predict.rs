@@ -11,6 +11,9 @@ use crate::fit::model;
 use crate::workflow::predict::predict;
 
 /// Copy a recording and add what the model predicts, `predicted_<quantity>_<unit>` and `residual_<unit>`.
+///
+/// Of a joint that reports no torque, with `[actuator]` in joint.toml and what `fit` identified of it beside the image, the torque is what the actuator
+/// makes of its commands, `actuator_torque_Nm`; `trainer rollout` simulates the motion under them.
 #[derive(Args, Clone, Debug)]
 pub struct Predict {
     /// Image that predicts
@@ -38,6 +41,7 @@ pub fn run(arguments: &Predict) -> Result<()> {
     refuse_unwritable([&arguments.output], &[arguments.model.as_path(), arguments.recording.as_path()])?;
     let (_, image) = model::load(&arguments.model)?;
     let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
+    let joint = measurement::with_identified(joint, &arguments.model)?;
     let predicted = predict(&image.model, Source::from(&arguments.recording), &joint)?;
     let mut outputs = Outputs::default();
     outputs.add(&arguments.output, predicted.csv);

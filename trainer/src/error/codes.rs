@@ -77,8 +77,8 @@ registry! {
         "Remove one, or choose with `[columns]` in joint.toml.";
     MISSING_COLUMN = "FRK-D009" Data "missing column",
         "A quantity that the task needs is neither recorded nor derivable from what is recorded.",
-        "The column has another name, or lacks its unit: `velocity` instead of `velocity_rad_s`.",
-        "Rename the column to `<quantity>_<unit>`, or map it in joint.toml: `[columns] velocity = { name = \"dq\", unit = \"deg/s\" }`.";
+        "The column has another name, or lacks its unit: `velocity` instead of `velocity_rad_s`. Or the joint, a servo or one under a PD command, reports no torque.",
+        "Rename the column to `<quantity>_<unit>`, or map it in joint.toml: `[columns] velocity = { name = \"dq\", unit = \"deg/s\" }`. A joint that reports no torque but was told a reference position, a duty or a voltage has `[actuator]` there, of which the torque follows: docs/servos.md; `trainer init` proposes both.";
     UNKNOWN_UNIT = "FRK-D010" Data "unknown or unfitting unit",
         "A column is named as a known quantity but its unit suffix is not one of that quantity.",
         "A unit outside the list, a slash or power written differently, or a linear unit on a rotary quantity.",
@@ -323,6 +323,10 @@ registry! {
         "By the Fisher information of the recording, what this constant or effect adds to the torque may be off by as much as all the friction there is: others make up for it, or the noise hides it.",
         "One speed, one direction, a joint that does not slide, a channel that hardly changes.",
         "Record what the message asks for.";
+    ACTUATOR_TORQUE = "FRK-W018" Warning "torque of the actuator",
+        "The joint reports no torque: what its actuator makes of its commands by `[actuator]` of joint.toml stands for it, with the constants that are told.",
+        "A servo, or a joint under a PD command, a current, a duty or a voltage.",
+        "Nothing has to be done. A wrong constant shows as a wrong torque: docs/servos.md.";
     NEARLY_NAMED = "FRK-W020" Warning "column that nearly has a known name",
         "A column has almost the name of a quantity that no other column gives. It is kept as a channel by its name.",
         "A slip of the pen, capitals, or a missing `_`.",

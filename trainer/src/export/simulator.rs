@@ -25,7 +25,7 @@ use frikan_shared::image::Image;
 pub use self::actuator::SimulatedActuator;
 use self::content::Content;
 use self::mjcf::Reads;
-pub use self::model_file::ModelFile;
+pub use self::model_file::{ModelFile, only_joint};
 pub use self::request::{Release, Request};
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;

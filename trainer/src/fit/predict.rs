@@ -123,7 +123,10 @@ fn channels<'a>(model: &HostModel, samples: &'a Samples) -> Result<Vec<&'a [f64]
         other => samples.input(other.name()),
     };
     let missing = |quantity: &Quantity| {
-        let message = format!("the model reads `{}`, which is not recorded", quantity.name());
+        let mut message = format!("the model reads `{}`, which is not recorded", quantity.name());
+        if *quantity == Quantity::Load {
+            message += "; of a joint that reports no torque `[actuator]` of joint.toml tells it (docs/servos.md), and `trainer rollout` simulates the joint";
+        }
         Error::new(&codes::MISSING_COLUMN, message).in_column(quantity.name())
     };
     model.inputs.iter().map(|input| column(&input.quantity).ok_or_else(|| missing(&input.quantity))).collect()

@@ -167,7 +167,7 @@ fn no_known_column(header: &[String], line: u64) -> Error {
         let example = header.iter().find(|name| !name.is_empty()).map_or("q", String::as_str);
         format!(
             "no column is named <quantity>_<unit>, as in time_s, position_rad, torque_Nm: say what they are under [columns] of \
-             joint.toml, as in position = {{ name = \"{example}\", unit = \"rad\" }}; `trainer init` proposes one"
+             joint.toml, as in position = {{ name = \"{example}\", unit = \"rad\" }}; `trainer init` writes one that lists them all"
         )
     };
     Error::new(&codes::NO_KNOWN_COLUMN, message).at_row(line).with_value(header.join(","))

@@ -152,20 +152,23 @@ pub fn parse(label: &str, source: impl std::io::Read, joint: &Joint) -> Result<R
     interpret(label, raw, fingerprint, joint)
 }
 
-/// Proposes a `joint.toml` for a file, or for standard input where it is named `-`, and reads the recording by it.
+/// Proposes a `joint.toml` for a file, or for standard input where it is named `-`, and reads the recording by it. Where the proposal cannot say what
+/// the columns are, the second is the error that reading gives until somebody says it.
 ///
 /// # Errors
-/// As [`load`], where the file cannot be read even so.
-pub fn propose(path: &Path) -> Result<(Proposal, Recording)> {
+/// As [`load`], where the file is no table, or what its columns hold cannot be used.
+pub fn propose(path: &Path) -> Result<(Proposal, Result<Recording>)> {
     let (file, label) = names_of(path);
     let (raw, fingerprint) =
         read(source::open(path)?, Keep::Numbers(InUse::all())).map_err(|error| error.in_file(&file))?;
-    let stem = Path::new(&label).file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
-    let proposal = guess::propose(&raw, &stem);
-    let recording = Joint::parse(&proposal.toml).and_then(|joint| interpret(&label, raw, fingerprint, &joint));
-    let mut recording = recording.map_err(|error| error.in_file(&file))?;
+    let proposal = guess::propose(&raw);
+    let joint = Joint::parse(&proposal.toml).map_err(|error| error.in_file(&file))?;
+    if let Err(error) = columns::assign(&raw, &joint) {
+        return Ok((proposal, Err(error.in_file(&file))));
+    }
+    let mut recording = interpret(&label, raw, fingerprint, &joint).map_err(|error| error.in_file(&file))?;
     recording.file = file;
-    Ok((proposal, recording))
+    Ok((proposal, Ok(recording)))
 }
 
 /// The table in a stream of bytes, long enough, and the fingerprint of the stream.
@@ -283,6 +286,16 @@ impl Recording {
         [Quantity::FrictionTorque, Quantity::FrictionForce].into_iter().find_map(|quantity| self.channel(quantity))
     }
 
+    /// Where a torque that is not recorded may come from, to go on with a message; `None` where no column speaks of an actuator.
+    fn actuator_hint(&self) -> Option<String> {
+        let told = [Quantity::ReferencePosition, Quantity::Duty, Quantity::Voltage].into_iter();
+        let channel = told.filter_map(|quantity| self.channel(quantity)).next()?;
+        Some(format!(
+            "; of a joint that reports no torque `[actuator]` of joint.toml says what makes it of {} (docs/servos.md)",
+            channel.name
+        ))
+    }
+
     /// The first of `wanted` that is recorded.
     ///
     /// # Errors
@@ -296,7 +309,10 @@ impl Recording {
             Some((quantity, column)) => columns::unknown_unit(*quantity, column),
             None => {
                 let names: Vec<String> = wanted.iter().map(|quantity| quantity.column()).collect();
-                let message = format!("{purpose} needs a column such as {}", names.join(" or "));
+                let mut message = format!("{purpose} needs a column such as {}", names.join(" or "));
+                if let Some(hint) = self.actuator_hint().filter(|_| wanted.contains(&Quantity::Torque)) {
+                    message += &hint;
+                }
                 Error::new(&codes::MISSING_COLUMN, message).at_row(1).in_column(names[0].clone())
             }
         }

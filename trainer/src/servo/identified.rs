@@ -33,6 +33,23 @@ pub struct Identified {
 }
 
 impl Identified {
+    /// An actuator of which nothing was identified yet.
+    pub(super) fn unsolved(partial: Partial, preparation: Preparation) -> Self {
+        Self {
+            partial,
+            parameters: Vec::new(),
+            remarks: Vec::new(),
+            has_own_gravity: true,
+            preparation,
+            values: Vec::new(),
+            open: Vec::new(),
+            back_emf: None,
+            delay_s: None,
+            torque_limit: None,
+            load: 0.0,
+        }
+    }
+
     /// The joint with the constants in force, those kept that its file gives.
     #[must_use]
     pub fn joint(&self, joint: &Joint) -> Joint {

@@ -5,6 +5,7 @@
 //! other, `by_trajectory` moves what was found until the simulation comes closest, and [`fit_servo`] is all of it.
 
 mod adopt;
+mod as_torque;
 mod by_trajectory;
 mod commanded;
 mod friction;
@@ -18,8 +19,9 @@ mod shooting;
 mod tests;
 mod torque_space;
 
+pub(crate) use as_torque::AsTorque;
 pub use friction::FLANK_SHARE;
 pub use identified::Identified;
 pub(crate) use known_torque::{Load, known_torque};
 pub use run::{ServoFit, Simulated, fit_servo};
-pub(crate) use torque_space::identify;
+pub(crate) use torque_space::{as_given, identify, identify_or_start};

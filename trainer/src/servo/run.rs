@@ -1,14 +1,15 @@
 //! The whole way from recordings of commands to an image.
 
 use super::adopt::adopt;
+use super::as_torque::AsTorque;
 use super::by_trajectory::by_trajectory;
 use super::identified::Identified;
-use super::known_torque::{Load, known_torque, reference_inertia, without_payload};
+use super::known_torque::{Load, known_torque, without_payload};
 use super::torque_space::identify;
 use crate::error::Result;
 use crate::fit::model::from_bytes;
 use crate::fit::{Options, Outcome, ProgressCallback, fit};
-use crate::joint::{Joint, RigidBody};
+use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::rollout::{Score, default_window_s, score_of_image};
 
@@ -47,20 +48,9 @@ pub fn fit_servo(
     progress: ProgressCallback<'_>,
 ) -> Result<ServoFit> {
     let mut identified = identify(recordings, joint)?;
-    // A given inertia is that of the joint itself, so that all of the payload's is taken off beforehand.
-    let reference = if joint.rigid_body.inertia_kgm2.is_some() { 0.0 } else { reference_inertia(recordings, joint) };
-    let torques = |of: &[Recording], identified: &Identified, reference, load| {
-        let torque = |recording| known_torque(recording, joint, identified, reference, load);
-        of.iter().map(torque).collect::<Result<Vec<_>>>()
-    };
-    let bare = if identified.has_own_gravity {
-        joint.clone()
-    } else {
-        Joint { rigid_body: RigidBody { gravity_torque_nm: Some(0.0), ..joint.rigid_body.clone() }, ..joint.clone() }
-    };
-    let known = |of| torques(of, &identified, reference, Load::None);
-    let outcome = fit(&known(recordings)?, &known(tests)?, &bare, options, progress)?;
-    let mut outcome = without_payload(outcome, &identified, reference)?;
+    let way = AsTorque::of(recordings, joint, &identified);
+    let outcome = fit(&way.known(recordings)?, &way.known(tests)?, &way.bare, options, progress)?;
+    let mut outcome = without_payload(outcome, &identified, way.reference)?;
     let mut train = simulated(&outcome, recordings, joint, &identified)?;
     let scores: Option<Vec<Score>> = train.iter().map(|simulated| simulated.score).collect();
     let in_torque_space = scores.map(|scores| Score::over(&scores).mae);
@@ -68,7 +58,10 @@ pub fn fit_servo(
     let by = by_trajectory(recordings, joint, &identified, &start)?;
     if in_torque_space.is_none_or(|error| by.mae < error) {
         // Scored with all of the payload taken off, as the model is that of the joint alone.
-        let known = |of| torques(of, &by.identified, 0.0, Load::OfActuator);
+        let known = |of: &[Recording]| {
+            let torque = |recording| known_torque(recording, joint, &by.identified, 0.0, Load::OfActuator);
+            of.iter().map(torque).collect::<Result<Vec<_>>>()
+        };
         outcome = adopt(outcome, &by, &known(recordings)?, &known(tests)?, in_torque_space)?;
         identified = by.identified;
         train = simulated(&outcome, recordings, joint, &identified)?;

@@ -36,28 +36,28 @@ const ENABLED: &str = "actuator_enabled";
 /// # Errors
 /// `FRK-D009` and `FRK-D014` for columns and constants that are missing, `FRK-N005` for a constant that the recordings do not determine.
 pub(crate) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identified> {
+    match identify_or_start(recordings, joint)? {
+        (identified, None) => Ok(identified),
+        (_, Some(undetermined)) => Err(undetermined),
+    }
+}
+
+/// The same; where the recordings do not determine a constant, all that are open are where they start, beside the error that says so.
+///
+/// # Errors
+/// As [`identify`], `FRK-N005` only where nothing says where an open constant starts.
+pub(crate) fn identify_or_start(recordings: &[Recording], joint: &Joint) -> Result<(Identified, Option<Error>)> {
     let commanded = recordings.iter().map(|recording| Commanded::of(recording, joint)).collect::<Result<Vec<_>>>()?;
     let first = commanded.first().ok_or_else(|| Error::new(&codes::RECORDINGS_DISAGREE, "no recording is given"))?;
     let all = open_constants(&commanded);
     // Without a reference velocity the velocity gain of a controller acts as viscous friction does.
     let is_told = |open: &Open| *open != Open::Kd || commanded.iter().any(|one| one.has(Quantity::ReferenceVelocity));
     let (open, untold): (Vec<Open>, Vec<Open>) = all.into_iter().partition(is_told);
-    let provisional: Vec<Recording> = commanded.iter().map(|one| columns(one, &one.partial, &open)).collect();
-    let preparation =
-        Preparation::plan(&provisional.iter().collect::<Vec<_>>(), &Joint::default(), &Request::default())?;
-    let mut identified = Identified {
-        partial: first.partial.clone(),
-        parameters: Vec::new(),
-        remarks: Vec::new(),
-        has_own_gravity: true,
-        preparation,
-        values: untold.iter().map(|open| (*open, 0.0)).collect(),
-        open: open.clone(),
-        back_emf: None,
-        delay_s: None,
-        torque_limit: None,
-        load: 0.0,
-    };
+    let untold: Vec<(Open, f64)> = untold.into_iter().map(|open| (open, 0.0)).collect();
+    let preparation = preparation(&commanded, &open)?;
+    let mut identified = Identified::unsolved(first.partial.clone(), preparation);
+    identified.values.clone_from(&untold);
+    identified.open.clone_from(&open);
     let kind = first.partial.actuator.kind;
     let mut problem = None;
     for _ in 0..PASSES {
@@ -66,8 +66,7 @@ pub(crate) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identi
         let samples = Samples::join(parts.collect::<Result<Vec<_>>>()?)?;
         let found = Problem::of(&samples, &commanded, joint, &open)?;
         let coefficients = found.fit.coefficients.iter().map(|value| value.max(0.0));
-        identified.values =
-            open.iter().copied().zip(coefficients).chain(untold.iter().map(|open| (*open, 0.0))).collect();
+        identified.values = open.iter().copied().zip(coefficients).chain(untold.iter().copied()).collect();
         identified.back_emf = found.back_emf.map(|(value, _)| value.max(0.0));
         identified.load = found.load;
         problem = Some(found);
@@ -75,15 +74,43 @@ pub(crate) fn identify(recordings: &[Recording], joint: &Joint) -> Result<Identi
             break;
         }
     }
-    if let Some(problem) = problem {
-        problem.tell(kind, &open, joint, &mut identified)?;
-    }
+    let told = problem.map_or(Ok(()), |problem| problem.tell(kind, &open, joint, &mut identified));
     if !untold.is_empty() {
         let sentence = "The velocity gain of the controller is counted as viscous friction: without a reference velocity nothing tells them apart.";
         identified.remarks.push(sentence.to_owned());
     }
+    if let Err(undetermined) = &told {
+        let start = |open: &Open| Some((*open, open.start(kind, &joint.actuator.constants)?));
+        let Some(started) = open.iter().map(start).collect::<Option<Vec<_>>>() else {
+            return Err(undetermined.clone());
+        };
+        identified.values = started.into_iter().chain(untold).collect();
+        identified.back_emf = None;
+        identified.parameters.clear();
+    }
     identified.partial = identified.complete(&first.partial);
-    Ok(identified)
+    Ok((identified, told.err()))
+}
+
+/// The actuator of a recording as joint.toml gives it, all of it.
+///
+/// # Errors
+/// `FRK-D009` and `FRK-D014` for columns and constants that are missing.
+pub(crate) fn as_given(recording: &Recording, joint: &Joint) -> Result<Identified> {
+    let commanded = Commanded::of(recording, joint)?;
+    if let Some(open) = commanded.partial.open.first() {
+        let message = "the torque that the actuator makes of its commands needs this constant; `trainer fit` identifies it and writes it beside its image";
+        let key = format!("actuator.{}", open.constant(commanded.partial.actuator.kind).key());
+        return Err(Error::new(&codes::MISSING_PARAMETER, message).in_column(key).in_file(recording.file()));
+    }
+    let preparation = preparation(std::slice::from_ref(&commanded), &[])?;
+    Ok(Identified::unsolved(commanded.partial, preparation))
+}
+
+/// The filter of recordings of commands: that of the torque with the constants as they are taken.
+fn preparation(commanded: &[Commanded<'_>], open: &[Open]) -> Result<Preparation> {
+    let provisional: Vec<Recording> = commanded.iter().map(|one| columns(one, &one.partial, open)).collect();
+    Preparation::plan(&provisional.iter().collect::<Vec<_>>(), &Joint::default(), &Request::default())
 }
 
 /// What is open in any of the recordings.
@@ -202,6 +229,7 @@ impl Problem {
 
     /// Parameters and remarks, or which constant is not determined.
     fn tell(&self, kind: Kind, open: &[Open], joint: &Joint, identified: &mut Identified) -> Result<()> {
+        identified.has_own_gravity = !self.own_gravity_left_out;
         for (index, constant) in open.iter().enumerate() {
             let (value, error) = (self.fit.coefficients[index], self.fit.standard_error(index));
             let (key, (name, symbol, unit)) = (constant.constant(kind), described(kind, *constant));
@@ -236,7 +264,6 @@ impl Problem {
                             viscous friction: let the joint coast switched off for a while, or give one of them.";
             identified.remarks.push(sentence.to_owned());
         }
-        identified.has_own_gravity = !self.own_gravity_left_out;
         if self.own_gravity_left_out {
             let sentence = "The joint is taken to have no gravity of its own beside the payload; a second recording with another payload would tell.";
             identified.remarks.push(sentence.to_owned());

@@ -2,13 +2,17 @@
 
 use serde_json::{Value, json};
 
+use super::actuator;
 use super::recordings::{Reading, Source, Warning, load_all, load_with_faults};
+use crate::actuator::Kind;
 use crate::checks::survey::{Fact, Motion, Seen, survey};
 use crate::error::{Error, Result, codes};
 use crate::figures::{digits, quantity};
 use crate::fit::{Identifiable, identifiable};
 use crate::joint::Joint;
-use crate::recording::{Axis, Recording};
+use crate::recording::{Axis, Quantity, Recording};
+use crate::report::tell::folded::{Noted, folded};
+use crate::servo::{AsTorque, identify_or_start};
 
 /// The quality of recordings, what can be identified from them and what to record next.
 #[derive(Clone, Debug)]
@@ -16,6 +20,8 @@ pub struct Checked {
     verdict: &'static str,
     items: Vec<Item>,
     identified: Identifiable,
+    /// Constants of an actuator that stands for a recorded torque.
+    actuator: Option<Value>,
     /// 0 good or usable, 3 a recording is at fault, 4 nothing can be identified.
     pub status: u8,
 }
@@ -26,6 +32,8 @@ struct Item {
     code: &'static str,
     severity: Severity,
     message: String,
+    /// The recording that the message names, where it names one.
+    recording: Option<String>,
     when_s: Vec<[f64; 2]>,
 }
 
@@ -42,7 +50,7 @@ impl Severity {
     }
 }
 
-/// Checks recordings of one joint.
+/// Checks recordings of one joint. Where it reports no torque, that of its actuator is looked at, as `fit` takes it.
 ///
 /// # Errors
 /// Whatever reading a recording reports, and what keeps a recording from being looked at at all.
@@ -51,18 +59,36 @@ pub fn check(recordings: &[Source<'_>], joint: &Joint) -> Result<Checked> {
         load_with_faults(source, joint, Reading::of(&[], None, recordings.len()))
     })?;
     let mut items: Vec<Item> = warnings.iter().map(of_warning).collect();
-    for recording in &recordings {
-        let name = if recordings.len() > 1 { format!("{}: ", recording.label) } else { String::new() };
-        items.extend(survey(recording).iter().map(|fact| of_fact(fact, recording, &name)));
-    }
+    let survey_all = |recordings: &[Recording], is_told: &dyn Fn(&Seen) -> bool| {
+        let one = |recording: &Recording| {
+            let name = (recordings.len() > 1).then(|| recording.label.clone());
+            let facts = survey(recording).into_iter().filter(|fact| is_told(&fact.seen));
+            facts.map(|fact| of_fact(&fact, recording, name.as_deref())).collect::<Vec<_>>()
+        };
+        recordings.iter().flat_map(one).collect::<Vec<_>>()
+    };
+    items.extend(survey_all(&recordings, &|_| true));
     let is_at_fault = items.iter().any(|item| item.severity == Severity::Error);
     // Beside a fault that cannot be put right no figure means anything.
-    let found = if is_at_fault { Ok(Identifiable::default()) } else { identifiable(&recordings, joint) };
+    let (found, actuator) = if is_at_fault {
+        (Ok(Identifiable::default()), None)
+    } else if joint.actuator.kind == Kind::Torque {
+        (identifiable(&recordings, joint), None)
+    } else {
+        match commanded(&recordings, joint) {
+            Ok(Commanded { known, bare, constants, told }) => {
+                items.extend(told);
+                items.extend(survey_all(&known, &is_of_torque));
+                (identifiable(&known, &bare), Some(constants))
+            }
+            Err(error) => (Err(error), None),
+        }
+    };
     let (identified, status) = match found {
         Ok(identified) => (identified, if is_at_fault { 3 } else { 0 }),
         Err(error) => {
             let status = error.exit_status();
-            items.push(of_error(&error));
+            items.push(of_error(&error, Severity::Error));
             (Identifiable::default(), status)
         }
     };
@@ -72,7 +98,58 @@ pub fn check(recordings: &[Source<'_>], joint: &Joint) -> Result<Checked> {
         Some(Severity::Warning) => "usable",
         _ => "good",
     };
-    Ok(Checked { verdict, items, identified, status })
+    Ok(Checked { verdict, items, identified, actuator, status })
+}
+
+/// Recordings of commands under the torque of their actuator.
+struct Commanded {
+    known: Vec<Recording>,
+    /// The joint that this torque moves.
+    bare: Joint,
+    constants: Value,
+    told: Vec<Item>,
+}
+
+/// Takes the torque that the actuator makes of its commands, with constants that the recordings leave open where they start.
+fn commanded(recordings: &[Recording], joint: &Joint) -> Result<Commanded> {
+    let (identified, undetermined) = identify_or_start(recordings, joint)?;
+    let way = AsTorque::of(recordings, joint, &identified);
+    let sentence = actuator::sentence(&identified);
+    let mut told = vec![Item::of_all(codes::ACTUATOR_TORQUE.id, Severity::Info, sentence.trim_end_matches('.'))];
+    if let Some(error) = undetermined {
+        told.push(of_error(&error, Severity::Warning));
+    }
+    let remarks = identified.remarks.iter().map(|remark| remark.trim_end_matches('.'));
+    told.extend(remarks.map(|remark| Item::of_all(codes::ACTUATOR_TORQUE.id, Severity::Info, remark)));
+    let (known, constants) = (way.known(recordings)?, actuator::constants(&identified));
+    Ok(Commanded { known, bare: way.bare, constants, told })
+}
+
+/// Whether something is of the torque and not of the motion, which was looked at as it was recorded. A torque that is computed has no resolution of its own.
+fn is_of_torque(seen: &Seen) -> bool {
+    match seen {
+        Seen::Constant { channel, .. } | Seen::AtLimit { channel, .. } => {
+            [Quantity::Torque, Quantity::Force].iter().any(|quantity| channel == quantity.name())
+        }
+        Seen::Clock { .. }
+        | Seen::Gaps { .. }
+        | Seen::Resolution { .. }
+        | Seen::Motion(_)
+        | Seen::Temperature { .. } => false,
+    }
+}
+
+impl Item {
+    /// One that is of all recordings.
+    fn of_all(code: &'static str, severity: Severity, message: &str) -> Self {
+        Self { code, severity, message: message.to_owned(), recording: None, when_s: Vec::new() }
+    }
+
+    /// The message with the name of its recording.
+    fn named(&self) -> String {
+        let name = self.recording.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+        name + &self.message
+    }
 }
 
 impl Checked {
@@ -91,22 +168,26 @@ impl Checked {
 
 fn of_warning(warning: &Warning) -> Item {
     let severity = if warning.is_blocking() { Severity::Error } else { Severity::Warning };
-    Item { code: warning.code(), severity, message: warning.message().to_owned(), when_s: warning.when_s().to_vec() }
+    let Noted { recording, sentence } = warning.noted();
+    Item { code: warning.code(), severity, message: sentence, recording, when_s: warning.when_s().to_vec() }
 }
 
-fn of_error(error: &Error) -> Item {
-    Item { code: error.code().id, severity: Severity::Error, message: error.message().to_owned(), when_s: Vec::new() }
+/// An error with the place that it names: a column of the recording, or a key of joint.toml.
+fn of_error(error: &Error, severity: Severity) -> Item {
+    let place = error.column().map_or_else(String::new, |column| format!("{column}: "));
+    Item::of_all(error.code().id, severity, &(place + error.message()))
 }
 
 fn of_unknown((name, _): &(String, f64)) -> Item {
     let message = format!("this motion says nothing of {name}: it may be nothing or all of the friction");
-    Item { code: codes::UNIDENTIFIED.id, severity: Severity::Warning, message, when_s: Vec::new() }
+    Item::of_all(codes::UNIDENTIFIED.id, Severity::Warning, &message)
 }
 
-fn of_fact(fact: &Fact, recording: &Recording, name: &str) -> Item {
+fn of_fact(fact: &Fact, recording: &Recording, name: Option<&str>) -> Item {
     let severity = if fact.is_poor { Severity::Warning } else { Severity::Info };
-    let message = format!("{name}{}", sentence(&fact.seen, recording));
-    Item { code: fact.seen.code().id, severity, message, when_s: fact.when_s.clone() }
+    let message = sentence(&fact.seen, recording);
+    let recording = name.map(str::to_owned);
+    Item { code: fact.seen.code().id, severity, message, recording, when_s: fact.when_s.clone() }
 }
 
 fn sentence(seen: &Seen, recording: &Recording) -> String {
@@ -143,26 +224,41 @@ fn sentence(seen: &Seen, recording: &Recording) -> String {
 }
 
 /// The object of schema `frikan.check/1`.
-fn summary(Checked { verdict, items, identified, .. }: &Checked) -> Value {
-    let item = |item: &Item| json!({"code": item.code, "severity": item.severity.name(), "message": item.message, "when_s": item.when_s});
+fn summary(Checked { verdict, items, identified, actuator, .. }: &Checked) -> Value {
+    let item = |item: &Item| json!({"code": item.code, "severity": item.severity.name(), "message": item.named(), "when_s": item.when_s});
     let of = |is_known: bool| {
         let chosen = identified.shares.iter().filter(move |(_, share)| (*share < 1.0) == is_known);
         chosen.map(|(name, share)| json!({"name": name, "within_share_of_friction": share})).collect::<Vec<_>>()
     };
-    json!({
+    let mut summary = json!({
         "schema": "frikan.check/1",
         "verdict": verdict,
         "items": items.iter().map(item).collect::<Vec<_>>(),
         "identifiable": of(true),
         "not_identifiable": of(false),
         "record_next": identified.record_next,
-    })
+    });
+    if let Some(constants) = actuator {
+        summary["actuator"] = constants.clone();
+    }
+    summary
 }
 
 fn text(Checked { verdict, items, identified, .. }: &Checked) -> String {
     let mut text = format!("{verdict}\n\n");
+    let mut groups: Vec<((Severity, &str), Vec<Noted>)> = Vec::new();
     for item in items {
-        text += &format!("{:<8} {} {}\n", item.severity.name(), item.code, item.message);
+        let (group, noted) =
+            ((item.severity, item.code), Noted { recording: item.recording.clone(), sentence: item.message.clone() });
+        match groups.iter_mut().find(|(other, _)| *other == group) {
+            Some((_, notes)) => notes.push(noted),
+            None => groups.push((group, vec![noted])),
+        }
+    }
+    for ((severity, code), notes) in groups {
+        for sentence in folded(&notes) {
+            text += &format!("{:<8} {code} {sentence}\n", severity.name());
+        }
     }
     if identified.shares.iter().any(|(_, share)| *share < 1.0) {
         text += "\ncan be identified                    within, of the friction\n";

@@ -4,33 +4,61 @@ use frikan_shared::units::Unit;
 
 use super::columns::with_columns;
 use super::recordings::{Source, Warning, motion};
-use crate::error::Result;
+use crate::actuator::Kind;
+use crate::error::{Error, Result};
 use crate::fit::HostModel;
 use crate::fit::predict::every_row;
 use crate::joint::Joint;
-use crate::recording::{Channel, Quantity, Recording};
+use crate::recording::{Axis, Channel, Quantity, Recording};
 use crate::samples::interpolate;
+use crate::servo::{Load, as_given, known_torque};
 
 /// A recording with what a model predicts of it.
 #[derive(Clone, Debug)]
 pub struct Predicted {
-    /// The recording's columns, then `predicted_<quantity>_<unit>` and, where the actuator is recorded, `residual_<unit>`; as CSV.
+    /// The recording's columns, then `predicted_<quantity>_<unit>` and, where the actuator is recorded, `residual_<unit>`; of a joint that reports no
+    /// torque before them `actuator_<quantity>_<unit>`, what its actuator made of the commands. As CSV.
     pub csv: Vec<u8>,
     /// What the checks of the recording noticed.
     pub warnings: Vec<Warning>,
 }
 
-/// Predicts a recording, row by row.
+/// Predicts a recording, row by row. Of a joint that reports no torque `[actuator]` has to give every constant: the torque is then what the actuator makes
+/// of its commands, and the load of the gear, as `fit` scores such a law.
 ///
 /// # Errors
-/// `FRK-D...` when the recording cannot be used or lacks what the model reads.
+/// `FRK-D...` when the recording cannot be used or lacks what the model reads, `FRK-D014` for a constant of the actuator that is open.
 pub fn predict(model: &HostModel, recording: Source<'_>, joint: &Joint) -> Result<Predicted> {
     let recording = recording.read(joint)?;
     let (motion, warnings) = motion(recording.clone(), joint)?;
-    let samples = every_row(model, &motion).map_err(|error| error.in_file(recording.file()))?;
-    let prediction = crate::fit::predict::predict(model, &samples).map_err(|error| error.in_file(recording.file()))?;
-    let predicted = at_rows(&recording, &motion, prediction.total());
-    Ok(Predicted { csv: table(&recording, model, &predicted)?, warnings })
+    let in_file = |error: Error| error.in_file(recording.file());
+    let csv = if joint.actuator.kind == Kind::Torque {
+        let predicted = total(model, &motion).map_err(in_file)?;
+        table(&recording, model, &at_rows(&recording, &motion, predicted))?
+    } else {
+        let identified = as_given(&motion, joint)?;
+        let known = known_torque(&motion, joint, &identified, 0.0, Load::OfActuator)?;
+        let own = total(model, &known).map_err(in_file)?;
+        let whole = known.values(Quantity::LoadTorque).unwrap_or_default().to_vec();
+        let bare = known.actuator().map(|channel| channel.values.as_slice()).unwrap_or_default();
+        // What the payload takes is no part of the model.
+        let predicted = own.iter().zip(&whole).zip(bare).map(|((own, whole), bare)| own + whole - bare).collect();
+        let [whole, predicted] = [whole, predicted].map(|values| at_rows(&recording, &motion, values));
+        let residual = whole.iter().zip(&predicted).map(|(whole, predicted)| whole - predicted).collect();
+        let (quantity, unit) = if recording.axis == Axis::Rotary { ("torque", "Nm") } else { ("force", "N") };
+        let added = [
+            (format!("actuator_{quantity}_{unit}"), whole),
+            (format!("predicted_{quantity}_{unit}"), predicted),
+            (format!("residual_{unit}"), residual),
+        ];
+        with_columns(&recording, &added)?
+    };
+    Ok(Predicted { csv, warnings })
+}
+
+/// The whole torque that the model explains, at every row of a recording that was checked.
+fn total(model: &HostModel, motion: &Recording) -> Result<Vec<f64>> {
+    Ok(crate::fit::predict::predict(model, &every_row(model, motion)?)?.total())
 }
 
 /// The prediction at every row of the file: rows that the checks left out, since they repeat or hold others, lie between those.

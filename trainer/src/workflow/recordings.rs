@@ -7,6 +7,7 @@ use crate::joint::Joint;
 use crate::physics::EffectId;
 use crate::physics::units::Units;
 use crate::recording::{self, Axis, Recording};
+use crate::report::tell::folded::{Noted, folded};
 use crate::report::tell::recording_note::recording_note;
 use serde_json::{Value, json};
 use std::fmt;
@@ -114,6 +115,21 @@ pub struct Warning {
     message: String,
 }
 
+/// What warnings say with their codes, in sentences without a final stop: what several recordings have in common is said once.
+pub(crate) fn folded_warnings(warnings: &[Warning]) -> Vec<String> {
+    let mut codes: Vec<(&str, Vec<Noted>)> = Vec::new();
+    for (code, note) in warnings.iter().map(|warning| (warning.code(), warning.noted())) {
+        match codes.iter_mut().find(|(other, _)| *other == code) {
+            Some((_, notes)) => notes.push(note),
+            None => codes.push((code, vec![note])),
+        }
+    }
+    let told = |(code, notes): &(&str, Vec<Noted>)| {
+        folded(notes).into_iter().map(|sentence| format!("{code} {sentence}")).collect::<Vec<_>>()
+    };
+    codes.iter().flat_map(told).collect()
+}
+
 /// Recordings of one joint, each read by `load`, with the warnings of all; where there are several, a warning names its own.
 ///
 /// # Errors
@@ -215,6 +231,14 @@ impl Warning {
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
+    }
+
+    /// What was found, the recording by itself where the message names one.
+    pub(crate) fn noted(&self) -> Noted {
+        let recording = self.note.recording.clone();
+        let prefix = recording.as_ref().map_or_else(String::new, |recording| format!("in {recording} "));
+        let sentence = self.message.strip_prefix(&prefix).unwrap_or(&self.message).to_owned();
+        Noted { recording, sentence }
     }
 
     /// Stable code, message and times.

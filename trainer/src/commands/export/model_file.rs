@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use frikan_shared::image::Image;
 
 use crate::commands::measurement::with_identified;
-use crate::error::{Result, codes};
-use crate::export::simulator::{ModelFile, Release, Request, SimulatedActuator, Simulator, write};
+use crate::error::{Error, Result, codes};
+use crate::export::simulator::{self, ModelFile, Release, Request, SimulatedActuator, Simulator, write};
 use crate::files;
 use crate::fit::CELLS;
 use crate::joint::Joint;
@@ -19,9 +19,10 @@ const SIZE_LIMIT_BYTES: u64 = 64 << 20;
 #[derive(Args, Clone, Debug)]
 pub struct ModelFileArguments {
     /// Model file of a simulator, for `mujoco`, `mjcf-patch`, `urdf`, `sdf`, `usd`: written with the joint as identified, all else as it is
-    #[arg(long, value_name = "MODEL_FILE", requires = "joint_name")]
+    #[arg(long, value_name = "MODEL_FILE")]
     pub into: Option<PathBuf>,
-    /// Joint of the model file, or the name that the joint has in the simulator, for `isaac` and `drake`
+    /// Joint of the model file, which may be left out where the file has just one, or the name that the joint has in the simulator, for `isaac` and
+    /// `drake`
     #[arg(long, value_name = "NAME")]
     pub joint_name: Option<String>,
     /// Inertia of the model file's bodies about the joint without its armature, kg m2 (kg); for MJCF read from the file where it says it
@@ -76,7 +77,15 @@ impl ModelFileArguments {
             Some(path) => files::read_text(path, SIZE_LIMIT_BYTES)?,
             None => String::new(),
         };
-        let into = path.as_deref().zip(self.joint_name.as_deref()).map(|(path, joint)| ModelFile {
+        let in_file = |error: Error| match &path {
+            Some(path) if error.code() == &codes::BAD_MODEL_FILE => error.in_file(path),
+            _ => error,
+        };
+        let only = match (&self.joint_name, &self.into) {
+            (None, Some(_)) => Some(only_joint(simulator, &text).map_err(in_file)?),
+            _ => None,
+        };
+        let into = path.as_deref().zip(self.joint_name.as_deref().or(only.as_deref())).map(|(path, joint)| ModelFile {
             text: &text,
             path,
             joint,
@@ -96,15 +105,23 @@ impl ModelFileArguments {
         });
         let name = self.joint_name.as_deref().filter(|_| into.is_none());
         let request = Request { title, into, torque_per_ampere, joint: name, release, actuator };
-        write(image, simulator, &request).map_err(|error| match &path {
-            Some(path) if error.code() == &codes::BAD_MODEL_FILE => error.in_file(path),
-            _ => error,
-        })
+        write(image, simulator, &request).map_err(in_file)
     }
 
     /// Files that are read.
     pub(super) fn inputs(&self) -> impl Iterator<Item = &Path> {
         [&self.into, &self.joint].into_iter().flatten().map(PathBuf::as_path)
+    }
+}
+
+/// The joint of a model file that has one only, empty for a form that goes into no file. The prims of a stage do not tell which of them is meant.
+fn only_joint(simulator: Simulator, text: &str) -> Result<String> {
+    match simulator {
+        Simulator::Usd => {
+            Err(Error::new(&codes::USAGE, "`--joint-name` has to be the path of the joint's prim in the stage"))
+        }
+        Simulator::Isaac | Simulator::Drake | Simulator::Bam => Ok(String::new()),
+        Simulator::Mujoco | Simulator::MjcfPatch | Simulator::Urdf | Simulator::Sdf => simulator::only_joint(text),
     }
 }
 

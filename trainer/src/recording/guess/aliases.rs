@@ -1,109 +1,8 @@
 //! Which quantity a column is likely to be by its name, and which joint it belongs to.
 
+use super::words::ALIASES;
 use crate::recording::names::{JointState, plain, split_unit};
 use crate::recording::quantity::Quantity;
-
-/// Other names of a quantity in small letters, the likelier first; as loggers, drives and papers write them.
-const ALIASES: &[(Quantity, &[&str])] = &[
-    (Quantity::Time, &["time", "t", "timestamp", "timestamps", "elapsed_time", "elapsed", "stamp", "seconds", "clock"]),
-    (
-        Quantity::Position,
-        &[
-            "position",
-            "pos",
-            "q",
-            "angle",
-            "theta",
-            "joint_position",
-            "actual_position",
-            "actual_q",
-            "position_actual",
-            "present_position",
-            "measured_position",
-            "joint_pos",
-            "qpos",
-            "phi",
-            "x",
-            "observation.state",
-            "state",
-        ],
-    ),
-    (
-        Quantity::Velocity,
-        &[
-            "velocity",
-            "vel",
-            "dq",
-            "qd",
-            "qdot",
-            "speed",
-            "omega",
-            "joint_velocity",
-            "actual_velocity",
-            "actual_qd",
-            "velocity_actual",
-            "present_velocity",
-            "measured_velocity",
-            "joint_vel",
-            "qvel",
-            "dtheta",
-            "v",
-        ],
-    ),
-    (
-        Quantity::Torque,
-        &[
-            "torque",
-            "tau",
-            "effort",
-            "trq",
-            "joint_torque",
-            "actual_torque",
-            "torque_actual",
-            "measured_torque",
-            "motor_torque",
-            "tau_j",
-            "tau_measured",
-            "moment",
-            "m",
-        ],
-    ),
-    (Quantity::Force, &["force", "f", "actual_force", "measured_force"]),
-    (
-        Quantity::Current,
-        &[
-            "current",
-            "cur",
-            "i",
-            "iq",
-            "i_q",
-            "motor_current",
-            "actual_current",
-            "current_actual",
-            "present_current",
-            "measured_current",
-        ],
-    ),
-    (Quantity::Acceleration, &["acceleration", "acc", "ddq", "qdd", "qacc"]),
-    (Quantity::Temperature, &["temperature", "temp", "motor_temperature", "present_temperature"]),
-    (Quantity::LinkPosition, &["link_position", "link_pos", "output_position", "secondary_position"]),
-    (
-        Quantity::ReferencePosition,
-        &[
-            "reference_position",
-            "goal_position",
-            "desired_position",
-            "target_position",
-            "commanded_position",
-            "q_des",
-            "q_d",
-            "qd_des",
-            "reference",
-            "command",
-        ],
-    ),
-    (Quantity::Voltage, &["voltage", "bus_voltage", "supply_voltage", "present_voltage"]),
-];
 
 /// Words that name a joint in front of a quantity, followed by its number.
 const JOINT_WORDS: [&str; 4] = ["joint", "axis", "motor", "j"];
@@ -189,6 +88,11 @@ mod tests {
             ("pos_deg", Quantity::Position, "", Some("deg")),
             ("/joint_states/elbow/effort", Quantity::Torque, "/joint_states/elbow", Some("Nm")),
             ("observation.state[3]", Quantity::Position, "[3]", None),
+            ("motor_angle", Quantity::Position, "", None),
+            ("Encoder", Quantity::Position, "", None),
+            ("Drehzahl [rpm]", Quantity::Velocity, "", Some("rpm")),
+            ("Couple", Quantity::Torque, "", None),
+            ("Posición", Quantity::Position, "", None),
         ] {
             let read = read(name).unwrap_or_else(|| panic!("{name}"));
             assert_eq!((read.quantity, read.joint.as_str(), read.unit.as_deref()), (quantity, joint, unit), "{name}");

@@ -1,19 +1,25 @@
 //! What the columns of a file are likely to be: a `joint.toml` that reads it, with the reason for each of its lines.
 
+mod actuator;
 pub(super) mod aliases;
+mod candidate;
+mod content;
+mod missing;
 mod units;
-
-use std::fmt::Write as _;
+mod words;
+mod written;
 
 use super::clock;
 use super::names::{self, JointState};
 use super::quantity::{Axis, ColumnName, Quantity, Unit};
 use super::table::RawTable;
 use aliases::Reading;
+use candidate::{Candidate, has, numbers, range};
 use units::Told;
+use written::{Clock, written};
 
-/// Rows from which units are told.
-const ROWS_LOOKED_AT: usize = 100_000;
+/// What a gear changes.
+const BEHIND_THE_GEAR: [Quantity; 3] = [Quantity::Position, Quantity::Velocity, Quantity::Torque];
 
 /// What one column is taken for.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,21 +47,12 @@ pub struct Proposal {
     pub other_joints: Vec<String>,
     /// Rate of the clock, Hz.
     pub rate_hz: Option<f64>,
+    /// What was not found, in sentences without a full stop.
+    pub missing: Vec<String>,
 }
 
-/// A column on its way to be taken.
-struct Candidate {
-    index: usize,
-    quantity: Quantity,
-    unit: Option<&'static Unit>,
-    scale: f64,
-    /// Whether the name alone is read as this, without an entry under `[columns]`.
-    by_itself: bool,
-    why: String,
-}
-
-/// Proposes a `joint.toml` for a table; `name` is that of the joint where the table does not say it.
-pub(super) fn propose(raw: &RawTable, name: &str) -> Proposal {
+/// Proposes a `joint.toml` for a table.
+pub(super) fn propose(raw: &RawTable) -> Proposal {
     let header = raw.table.header();
     let readings: Vec<Option<Reading>> = header.iter().map(|column| aliases::read(column)).collect();
     let joint = busiest_joint(raw, &readings);
@@ -84,21 +81,27 @@ pub(super) fn propose(raw: &RawTable, name: &str) -> Proposal {
             let unit =
                 reading.unit.as_deref().or(below).and_then(|unit| reading.quantity.unit(names::unbracketed(unit)));
             let by_itself = JointState::of(&header[index]).is_some();
-            let why = format!("by its name, {}", reading.quantity.name().replace('_', " "));
+            let mut why = format!("by its name, {}", reading.quantity.name().replace('_', " "));
+            if header[index].to_lowercase().starts_with("motor") && BEHIND_THE_GEAR.contains(&reading.quantity) {
+                why += "; before the gear? then add side = \"motor\"";
+            }
             found.push(Candidate { index, quantity: reading.quantity, unit, scale: 1.0, by_itself, why });
         }
     }
+    content::take(raw, &mut found);
     found.sort_by_key(|candidate| candidate.quantity);
     let counts = tell_units(raw, &mut found);
     let time = found.iter().find(|candidate| candidate.quantity == Quantity::Time);
     let period = time.and_then(|time| Some(units::median_step(&numbers(raw, time.index))? * time.unit?.factor));
     let rate_hz = period.map(|period| 1.0 / period);
-    let name = if joint.contains('/') { joint.rsplit('/').next().unwrap_or(name) } else { name };
+    // Other names of a joint are numbers of columns.
+    let name = joint.rsplit_once('/').map(|(_, name)| name);
     let mut other_joints: Vec<String> = readings.iter().flatten().map(|reading| reading.joint.clone()).collect();
     other_joints.sort();
     other_joints.dedup();
     other_joints.retain(|other| !other.is_empty() && *other != joint);
-    let toml = written(raw, &found, name, counts, rate_hz, &other_joints);
+    let missing = missing::sentences(&found);
+    let toml = written(raw, &found, name, Clock { counts, rate_hz }, &other_joints);
     let taken = found.iter().map(|candidate| Taken {
         column: header[candidate.index].clone(),
         quantity: candidate.quantity,
@@ -107,7 +110,7 @@ pub(super) fn propose(raw: &RawTable, name: &str) -> Proposal {
     });
     let is_taken = |index: &usize| found.iter().any(|candidate| candidate.index == *index);
     let channels = (0..header.len()).filter(|index| !is_taken(index)).map(|index| header[index].clone()).collect();
-    Proposal { toml, taken: taken.collect(), channels, other_joints, rate_hz }
+    Proposal { toml, taken: taken.collect(), channels, other_joints, rate_hz, missing }
 }
 
 /// The joint with most quantities, empty where the names say none; of several, the one whose position moves furthest.
@@ -126,16 +129,13 @@ fn busiest_joint(raw: &RawTable, readings: &[Option<Reading>]) -> String {
 }
 
 fn span(values: &[f64]) -> f64 {
-    let finite = || values.iter().copied().filter(|value| value.is_finite());
-    let span = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
-    if span.is_finite() { span } else { 0.0 }
+    range(values).map_or(0.0, |[low, high]| high - low)
 }
 
 /// Fills in the units that no name says; counts of a turn where the position is in counts.
 fn tell_units(raw: &RawTable, found: &mut [Candidate]) -> Option<f64> {
-    let has = |found: &[Candidate], wanted| found.iter().any(|candidate| candidate.quantity == wanted);
     let axis = found.iter().filter_map(|candidate| candidate.unit).find_map(|unit| unit.axis);
-    let force = has(found, Quantity::Force) || has(found, Quantity::FrictionForce);
+    let force = has(found, &[Quantity::Force, Quantity::FrictionForce]);
     let axis = axis.unwrap_or(if force { Axis::Linear } else { Axis::Rotary });
     let (mut time, mut position, mut counts) = (Vec::new(), Vec::new(), None);
     for candidate in found.iter_mut() {
@@ -174,72 +174,8 @@ fn tell_units(raw: &RawTable, found: &mut [Candidate]) -> Option<f64> {
     counts
 }
 
-/// The numbers of a column, not finite where there is none.
-fn numbers(raw: &RawTable, column: usize) -> Vec<f64> {
-    raw.numbers[column].values.iter().take(ROWS_LOOKED_AT).copied().collect()
-}
-
 fn is_number(raw: &RawTable, column: usize) -> bool {
     numbers(raw, column).iter().any(|value| value.is_finite())
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
-}
-
-fn written(
-    raw: &RawTable,
-    found: &[Candidate],
-    name: &str,
-    counts: Option<f64>,
-    rate_hz: Option<f64>,
-    other_joints: &[String],
-) -> String {
-    let mut text =
-        String::from("# Proposed from the recording: what stands behind a # is why. Correct what is wrong.\n");
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "name = {}", quoted(name));
-    if let Some(rate) = rate_hz {
-        let _ = writeln!(text, "# recorded at {} Hz", units::short(rate));
-    }
-    if !other_joints.is_empty() {
-        let _ = writeln!(text, "# other joints of the file: {}", other_joints.join(" ").escape_debug());
-    }
-    let _ = writeln!(text, "\n[columns]");
-    for candidate in found {
-        let column = &raw.table.header()[candidate.index];
-        let unit = candidate.unit.map_or("", |unit| unit.suffix);
-        let mark = if candidate.by_itself { "# " } else { "" };
-        let scale = if candidate.scale < 0.0 { ", scale = -1.0" } else { "" };
-        let (quantity, column, unit) = (candidate.quantity.name(), quoted(column), quoted(unit));
-        let entry = format!("{mark}{quantity} = {{ name = {column}, unit = {unit}{scale} }}");
-        let _ = writeln!(text, "{entry:<72} # {}", candidate.why);
-    }
-    let measured = |quantities: &[Quantity]| found.iter().any(|candidate| quantities.contains(&candidate.quantity));
-    if !measured(&[
-        Quantity::Torque,
-        Quantity::Force,
-        Quantity::Current,
-        Quantity::FrictionTorque,
-        Quantity::FrictionForce,
-    ]) {
-        let _ = writeln!(
-            text,
-            "# torque = {{ name = \"...\", unit = \"Nm\" }}   # no column looks like torque, force or current: `fit` needs one"
-        );
-    }
-    let _ = writeln!(
-        text,
-        "# side = \"motor\" in an entry says that it is measured before the gear, scale = -1.0 turns its sign"
-    );
-    let _ = writeln!(text, "\n[drive]");
-    if let Some(counts) = counts {
-        let _ =
-            writeln!(text, "counts_per_turn = {counts:.1}   # a guess: the power of two that the positions are within");
-    }
-    let _ = writeln!(text, "# gear_ratio = 1.0             # motor turns per joint turn");
-    let _ = writeln!(text, "# torque_constant_Nm_A = 0.1   # of the motor, beside a current");
-    text
 }
 
 #[cfg(test)]
@@ -250,7 +186,7 @@ mod tests {
     use crate::recording::keep::{InUse, Keep};
 
     fn proposed(text: &str) -> Proposal {
-        propose(&read(text.as_bytes(), Keep::Numbers(InUse::all())).unwrap().0, "arm")
+        propose(&read(text.as_bytes(), Keep::Numbers(InUse::all())).unwrap().0)
     }
 
     #[test]
@@ -277,5 +213,48 @@ mod tests {
             proposed(&format!("time_s,position_rad,torque_Nm,joint1_position_rad,joint3_position_rad\n{rows}"));
         assert_eq!(proposal.channels, ["joint1_position_rad", "joint3_position_rad"]);
         assert!(Joint::parse(&proposal.toml).unwrap().columns.is_empty());
+    }
+
+    /// A joint that swings by two sines, its columns by these names.
+    fn swing(header: &str, columns: impl Fn(f64) -> Vec<f64>) -> String {
+        let row = |row: i32| {
+            let values = columns(f64::from(row) * 0.004);
+            values.iter().map(f64::to_string).collect::<Vec<_>>().join(";")
+        };
+        let rows: Vec<String> = (0..500).map(row).collect();
+        format!("{header}\n{}\n", rows.join("\n"))
+    }
+
+    #[test]
+    fn what_no_name_tells_is_told_by_what_the_columns_hold() {
+        let columns = |t: f64| {
+            let (position, velocity) = (t.sin() + 0.3 * (3.1 * t).sin(), t.cos() + 0.93 * (3.1 * t).cos());
+            let acceleration = -t.sin() - 0.3 * 3.1 * 3.1 * (3.1 * t).sin();
+            vec![velocity.signum() + 0.4 * velocity + acceleration, velocity, position, acceleration, t, 5.0]
+        };
+        let proposal = proposed(&swing("a;b;c;d;e;f", columns));
+        let named =
+            |quantity| proposal.taken.iter().find(|taken| taken.quantity == quantity).map(|taken| &taken.column[..]);
+        assert_eq!(named(Quantity::Time), Some("e"), "{}", proposal.toml);
+        assert_eq!((named(Quantity::Position), named(Quantity::Velocity)), (Some("c"), Some("b")));
+        assert_eq!(proposal.channels, ["a", "d", "f"]);
+        assert_eq!(proposal.missing.len(), 1, "{:?}", proposal.missing);
+        assert!(proposal.toml.contains("# torque = { name = \"a\", unit = \"Nm\" }"), "{}", proposal.toml);
+        assert!(proposal.toml.contains("5 in every row"), "{}", proposal.toml);
+        assert_eq!(Joint::parse(&proposal.toml).unwrap().name, None);
+    }
+
+    #[test]
+    fn a_position_is_found_by_its_velocity_and_a_counter_is_no_clock_beside_one() {
+        let columns = |t: f64| vec![t / 0.004, t + 1e-5 * (1e4 * t).sin(), t.sin(), t.cos(), t.cos()];
+        let proposal = proposed(&swing("n;ticks;foo;velocity_rad_s;torque_Nm", columns));
+        let joint = Joint::parse(&proposal.toml).unwrap();
+        assert_eq!(joint.columns["position"].name, "foo");
+        assert_eq!(joint.columns["time"].name, "ticks");
+        assert!(proposal.missing.is_empty(), "{:?}", proposal.missing);
+        // A torque that friction makes goes with the velocity, and is none.
+        let columns = |t: f64| vec![t, t.sin(), 0.3 * t.cos() + t.cos().signum(), -t.sin()];
+        let proposal = proposed(&swing("time_s;foo;bar;torque_Nm", columns));
+        assert!(proposal.missing[0].contains("position or the velocity"), "{:?}", proposal.missing);
     }
 }

@@ -86,18 +86,28 @@ pub(super) fn of_position(values: &[f64], time: &[f64], axis: Axis) -> Option<To
     span.is_finite().then(|| Told::plain(unit, format!("{why} {}", short(span))))
 }
 
-/// The unit and sign of a velocity by the derivative of the position; time in s, position in SI.
-pub(super) fn of_velocity(velocity: &[f64], time: &[f64], position: &[f64], axis: Axis) -> Option<Told> {
+/// Slope of `values` over time at every row but the first and the last, by the rows beside it.
+pub(super) fn slopes(values: &[f64], time: &[f64]) -> Vec<f64> {
+    let rows = 1..values.len().min(time.len()).saturating_sub(1);
+    rows.map(|row| (values[row + 1] - values[row - 1]) / (time[row + 1] - time[row - 1])).collect()
+}
+
+/// Slopes over a column, whose first row has none, and their correlation with it about zero.
+pub(super) fn compared(slopes: &[f64], column: &[f64]) -> (f64, f64) {
     let (mut both, mut own, mut derived) = (0.0, 0.0, 0.0);
-    for row in 1..velocity.len().min(time.len()).min(position.len()).saturating_sub(1) {
-        let slope = (position[row + 1] - position[row - 1]) / (time[row + 1] - time[row - 1]);
-        if slope.is_finite() && velocity[row].is_finite() {
-            both += slope * velocity[row];
-            own += velocity[row] * velocity[row];
+    for (slope, value) in slopes.iter().zip(column.iter().skip(1)) {
+        if slope.is_finite() && value.is_finite() {
+            both += slope * value;
+            own += value * value;
             derived += slope * slope;
         }
     }
-    let (factor, correlation) = (both / own, both / (own * derived).sqrt());
+    (both / own, both / (own * derived).sqrt())
+}
+
+/// The unit and sign of a velocity by the derivative of the position; time in s, position in SI.
+pub(super) fn of_velocity(velocity: &[f64], time: &[f64], position: &[f64], axis: Axis) -> Option<Told> {
+    let (factor, correlation) = compared(&slopes(position, time), velocity);
     if correlation.is_nan() || correlation.abs() < SAME_MOTION {
         return None;
     }

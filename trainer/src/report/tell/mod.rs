@@ -3,6 +3,7 @@
 pub(super) mod certainty;
 mod discarded;
 pub mod evidence;
+pub mod folded;
 pub mod measurement;
 pub mod recording_note;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod tests;
 use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Finding, Verdict};
 use crate::diagnose::answer::region::{Region, Side};
 use crate::diagnose::answer::sealed::SealedScore;
+use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::figures::{digits, pair, quantity};
 use crate::parameter::Parameter;
 use crate::physics::names::{capital, plain_name};
@@ -19,6 +21,7 @@ use crate::physics::{Action, EffectId};
 use crate::report::tell::certainty::certainty;
 use discarded::{doubtful, listed, minor, negligible};
 use evidence::{parameter, parameters, sealed_sentence};
+use folded::{Noted, folded};
 use measurement::observation;
 
 /// Quantile of the effect's torque that a sentence states as its largest. Chosen by judgement: the largest value itself may be
@@ -83,11 +86,7 @@ pub fn tell(diagnosis: &Diagnosis, sealed: Option<&SealedScore>, units: Units) -
         sealed: sealed.filter(|_| !diagnosis.findings.is_empty()).map(|score| sealed_sentence(score, units)),
         headline: headline(diagnosis, units),
         given: given(diagnosis, units),
-        health: diagnosis
-            .health
-            .iter()
-            .map(|note| capital(&format!("{}.", observation(&note.observation, units))))
-            .collect(),
+        health: health(diagnosis, units),
         findings: (0..diagnosis.findings.len()).map(|index| finding(diagnosis, index, units)).collect(),
         proof: proof(diagnosis, units),
         minor: minor(diagnosis),
@@ -97,6 +96,16 @@ pub fn tell(diagnosis: &Diagnosis, sealed: Option<&SealedScore>, units: Units) -
         undetermined: listed(UNDETERMINED, &diagnosis.discarded.undetermined),
         limits: limits(diagnosis, units),
     }
+}
+
+/// What was seen of the measurement, each once.
+fn health(diagnosis: &Diagnosis, units: Units) -> Vec<String> {
+    let noted = |note: &HealthNote| match &note.observation {
+        Observation::Recording(found) => recording_note::noted(found, units),
+        other => Noted { recording: None, sentence: observation(other, units) },
+    };
+    let notes: Vec<Noted> = diagnosis.health.iter().map(noted).collect();
+    folded(&notes).iter().map(|sentence| capital(&format!("{sentence}."))).collect()
 }
 
 fn headline(diagnosis: &Diagnosis, units: Units) -> String {

@@ -4,12 +4,19 @@ use crate::checks::{Contradiction, Fault, WrongUnit};
 use crate::diagnose::checks::note::RecordingNote;
 use crate::figures::{digits, quantity};
 use crate::physics::units::Units;
+use crate::report::tell::folded::Noted;
 
 /// The sentence of a note on a recording, in small letters and without a full stop; it names the recording where that is one of several.
 #[must_use]
 pub fn recording_note(found: &RecordingNote, units: Units) -> String {
-    let sentence = fault(&found.note.fault, &found.actuator, units);
-    found.recording.as_ref().map_or(sentence.clone(), |recording| format!("in {recording} {sentence}"))
+    let Noted { recording, sentence } = noted(found, units);
+    recording.map_or(sentence.clone(), |recording| format!("in {recording} {sentence}"))
+}
+
+/// The same, the recording by itself.
+#[must_use]
+pub fn noted(found: &RecordingNote, units: Units) -> Noted {
+    Noted { recording: found.recording.clone(), sentence: fault(&found.note.fault, &found.actuator, units) }
 }
 
 fn fault(fault: &Fault, name: &str, units: Units) -> String {

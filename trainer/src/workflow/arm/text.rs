@@ -6,6 +6,7 @@ use super::fitted::{FittedArm, beyond_trained, joint_doubt};
 use crate::fit::outcome::{Score, SplitScore};
 use crate::law::significant;
 use crate::workflow::fit::text::write_parameter;
+use crate::workflow::recordings::folded_warnings;
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;
@@ -14,7 +15,8 @@ const TOLD_BEYOND: f64 = 0.001;
 
 /// What `trainer arm` prints; `images` holds the name of the image of each joint, `None` where it was kept back.
 pub(super) fn summary(arm: &FittedArm, images: &[Option<String>]) -> String {
-    let mut text: String = arm.warnings.iter().map(|warning| format!("warning     {warning}\n")).collect();
+    let mut text: String =
+        folded_warnings(&arm.warnings).iter().map(|warning| format!("warning     {warning}\n")).collect();
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, arm, images);
     text

@@ -6,7 +6,6 @@ use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::rollout::Series;
 use crate::servo::{Identified, Load, identify, known_torque};
-use serde_json::{Map, Value};
 
 /// What is known of the actuator of a joint that reports no torque: what its file gives, and of the rest what the simulation tells, whose
 /// constants are those of the simulator, or else the recordings themselves. `None` of a joint that reports torque.
@@ -69,20 +68,4 @@ impl Commands {
         };
         Commanded::of(instants.iter().map(acting).collect(), self.actuator)
     }
-}
-
-/// The constants in force, for JSON.
-pub(super) fn constants(actuator: &Identified) -> Value {
-    let constants = actuator.partial.in_force().into_iter();
-    Value::Object(constants.map(|(constant, value)| (constant.key().to_owned(), value.into())).collect::<Map<_, _>>())
-}
-
-/// Where the torque comes from, in a sentence.
-pub(super) fn sentence(actuator: &Identified) -> String {
-    let constants = actuator.partial.in_force().into_iter();
-    let told: Vec<String> = constants.map(|(constant, value)| format!("{} {value:.4}", constant.key())).collect();
-    let told = told.join(", ");
-    format!(
-        "The torque is what the actuator makes of its commands ({told}): a wrong constant of it shows as a wrong torque."
-    )
 }

@@ -14,6 +14,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
+use super::actuator;
 use super::recordings::{Reading, Warning, load_all, load_with_faults, units};
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
@@ -168,7 +169,7 @@ impl Diagnosed {
     /// The result for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
-        let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", commanded::sentence(actuator)));
+        let actuator = self.actuator.as_ref().map(|actuator| format!("{}\n", actuator::sentence(actuator)));
         let factor = |factor: &Parameter| {
             format!(
                 "Taken off: {} {} ({} to {}).\n",
@@ -200,7 +201,7 @@ impl Diagnosed {
         };
         let mut summary = summary(&told, self.seconds, self.seed);
         if let Some(actuator) = &self.actuator {
-            summary["actuator"] = commanded::constants(actuator);
+            summary["actuator"] = actuator::constants(actuator);
         }
         if let Some(searched) = self.searched {
             summary["searched"] = searched.to_json();
@@ -212,7 +213,7 @@ impl Diagnosed {
     /// `command` is what made it, for its foot.
     #[must_use]
     pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
-        let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", commanded::sentence(actuator)));
+        let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", actuator::sentence(actuator)));
         let searched = self.searched.map(|searched| format!(" {}", searched.sentence()));
         let settings = format!("Seed {}.{}{}", self.seed, actuator.unwrap_or_default(), searched.unwrap_or_default());
         report::diagnosis(&DiagnosisPage {

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-use super::recordings::{Reading, Source, Warning, load, load_all};
+use super::recordings::{Reading, Source, Warning, folded_warnings, load, load_all};
 use crate::actuator::Kind;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Soundness;
@@ -122,7 +122,7 @@ impl Fitted {
     /// The result as one HTML page; `command` is what made it, for its foot.
     #[must_use]
     pub fn report(&self, command: &str) -> String {
-        let told: Vec<String> = self.warnings.iter().map(|warning| format!("{warning}.")).collect();
+        let told: Vec<String> = folded_warnings(&self.warnings).iter().map(|warning| format!("{warning}.")).collect();
         let settings = format!("Seed {}. Filter: {}.", self.outcome.seed, self.outcome.filter);
         report::fit(&self.outcome, &told, &Origin { command, recordings: &self.sources, settings: &settings })
     }

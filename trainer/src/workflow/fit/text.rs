@@ -8,14 +8,14 @@ use crate::fit::Outcome;
 use crate::fit::outcome::{Score, Trace};
 use crate::law::significant;
 use crate::parameter::Parameter;
-use crate::workflow::recordings::Warning;
+use crate::workflow::recordings::{Warning, folded_warnings};
 
 /// Significant digits of printed figures.
 const DIGITS: usize = 4;
 
 /// What `trainer fit` prints; `image` is where it went, `None` where it was kept back.
 pub(super) fn summary(outcome: &Outcome, warnings: &[Warning], image: Option<&Path>, seconds: f64) -> String {
-    let mut text: String = warnings.iter().map(|warning| format!("warning     {warning}\n")).collect();
+    let mut text: String = folded_warnings(warnings).iter().map(|warning| format!("warning     {warning}\n")).collect();
     // Writing to a string cannot fail.
     let _ = write_summary(&mut text, outcome, image, seconds);
     text
