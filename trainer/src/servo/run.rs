@@ -7,7 +7,7 @@ use super::known_torque::{Load, known_torque, reference_inertia, without_payload
 use super::torque_space::identify;
 use crate::error::Result;
 use crate::fit::model::from_bytes;
-use crate::fit::{Options, Outcome, ProgressCallback, fit};
+use crate::fit::{Options, Outcome, Progress, ProgressCallback, Stage, fit};
 use crate::joint::{Joint, RigidBody};
 use crate::recording::Recording;
 use crate::rollout::{Score, default_window_s, of_image};
@@ -46,6 +46,8 @@ pub fn fit_servo(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<ServoFit> {
+    let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
+    tell(Stage::Identifying);
     let mut identified = identify(recordings, joint)?;
     // A given inertia is that of the joint itself, so that all of the payload's is taken off beforehand.
     let reference = if joint.rigid_body.inertia_kgm2.is_some() { 0.0 } else { reference_inertia(recordings, joint) };
@@ -61,10 +63,12 @@ pub fn fit_servo(
     let known = |of| torques(of, &identified, reference, Load::None);
     let outcome = fit(&known(recordings)?, &known(tests)?, &bare, options, progress)?;
     let mut outcome = without_payload(outcome, &identified, reference)?;
+    tell(Stage::Simulating);
     let mut train = simulated(&outcome, recordings, joint, &identified)?;
     let scores: Option<Vec<Score>> = train.iter().map(|simulated| simulated.score).collect();
     let in_torque_space = scores.map(|scores| Score::over(&scores).mae);
     let start = from_bytes(&outcome.image)?.model;
+    tell(Stage::FittingMotion);
     let by = by_trajectory(recordings, joint, &identified, &start)?;
     if in_torque_space.is_none_or(|error| by.mae < error) {
         // Scored with all of the payload taken off, as the model is that of the joint alone.
@@ -78,6 +82,7 @@ pub fn fit_servo(
             "By trajectory nothing better was found: it leaves {own:.4} rad of the position, the law in torque space {other:.4} rad."
         ));
     }
+    tell(Stage::Simulating);
     let tests = simulated(&outcome, tests, joint, &identified)?;
     Ok(ServoFit { outcome, identified, train, tests })
 }
