@@ -44,6 +44,8 @@ addEventListener("load", async () => {
   seen.undrawn = figures.filter((figure) => figure.clientWidth && !figure.querySelector("canvas")).length;
   seen.overflow = document.documentElement.scrollWidth - innerWidth;
   seen.smallest = Math.min(...drawn);
+  seen.cut = [...document.querySelectorAll(".table")]
+    .filter((box) => box.querySelector("table") && box.scrollWidth > box.clientWidth).map((box) => box.textContent.slice(0, 100));
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const parent = texts.currentNode.parentElement, box = parent.getBoundingClientRect();

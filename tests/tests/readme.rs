@@ -30,6 +30,15 @@ fn a_demo_in_c_takes_few_commands() {
     let is_done = |line: &str| ALREADY_DONE.iter().any(|start| line.starts_with(start));
     let commands = prints_what_it_shows(&root.join("docs/demo.md"), |line| (!is_done(line)).then(|| printed(at, line)));
     assert!((2..=5).contains(&commands), "{commands}");
+    // An image that it cannot use is refused with the reason: a formula, and the friction of a joint of another size.
+    let run = |image: &str| printed(at, &format!("cmake -DIMAGE={image} -P runtime/c/example/demo.cmake"));
+    let told = run("fixtures/elbow.frk");
+    assert!(told.contains("status 16: ") && told.contains("--representation table"), "{told}");
+    let crane = "[columns]\ntorque = { name = \"torque_Nm\", unit = \"Nm\", scale = 1000 }\n";
+    std::fs::write(at.join("crane.toml"), crane).unwrap();
+    printed(at, "trainer fit fixtures/elbow.csv --joint crane.toml --representation table -o crane.frk --quiet");
+    let told = run("crane.frk");
+    assert!(told.starts_with("the image is of a joint of another size") && !told.contains("tracking"), "{told}");
 }
 
 #[test]

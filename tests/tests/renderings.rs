@@ -205,3 +205,26 @@ fn a_table_has_no_formula() {
     assert!(export.messages.contains("--representation expression"), "{}", export.messages);
     assert!(!folder.path().join("law.tex").exists());
 }
+
+/// What the page of the drive says: beside separated friction a prediction leaves the rigid body off, so that exported source can be compared with it.
+#[test]
+fn a_prediction_of_separated_friction_is_the_law_alone() {
+    let (bytes, image) = model::load(&folder().join("elbow.frk")).unwrap();
+    assert!(image.model.rigid_body.inertia > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("law.frk"), bytes).unwrap();
+    let velocities: Vec<f32> = (-60..=60).map(|i| 0.02 * i as f32).collect();
+    let rows: String = velocities.iter().map(|v| format!("{v},0\n")).collect();
+    std::fs::write(folder.path().join("v.csv"), format!("velocity_rad_s,friction_torque_Nm\n{rows}")).unwrap();
+    let done = run(folder.path(), &["predict", "law.frk", "v.csv", "-o", "out.csv"]);
+    assert_eq!(done.status, 0, "{}", done.messages);
+    let text = std::fs::read_to_string(folder.path().join("out.csv")).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let place = lines.next().unwrap().iter().position(|name| *name == "predicted_friction_torque_Nm").unwrap();
+    let predicted: Vec<f64> = lines.map(|cells| cells[place].parse().unwrap()).collect();
+    assert_eq!(predicted.len(), velocities.len());
+    for (v, predicted) in velocities.iter().zip(predicted) {
+        let expected = f64::from(evaluate(&image.model, &[*v, 0.0, 0.0, 0.0]));
+        assert!((predicted - expected).abs() < 1e-5, "{predicted} for {expected} at {v}");
+    }
+}

@@ -86,12 +86,16 @@ fn pages_can_be_read_and_used_on_a_phone_and_at_a_desk() {
                 "{name}: {seen}"
             );
             assert!(seen["overflow"].as_f64().unwrap() <= 0.0, "{name} at {window:?}: {seen}");
+            is("cut", Value::Array(Vec::new()));
             assert!(seen["smallest"].as_f64().unwrap() >= SMALLEST_LETTER, "{name} at {window:?}: {seen}");
             assert!(seen["axe"].as_array().is_none_or(Vec::is_empty), "{name} at {window:?}: {:#}", seen["axe"]);
             if ["itself", "simulation"].contains(&name) {
                 is("answered", Value::from(vec!["Where", "How much", "How sure", "What to do"]));
                 let below = seen["answered_above"].as_f64().unwrap();
                 assert!(below < f64::from(window.1), "{name} at {window:?}: the answer ends at {below}");
+                // What puts a simulator right stands there once.
+                let text = std::fs::read_to_string(&page).unwrap();
+                assert_eq!(text.matches("<dd class=\"command\">In the simulator: ").count(), 1, "{name}");
             }
             if kept.is_some() {
                 let picture = at.join(format!("{name}-{}.png", window.0));

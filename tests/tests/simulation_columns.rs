@@ -66,6 +66,15 @@ fn recording_and_simulation_have_maps_of_their_own() {
     assert_eq!(wrong.status, 3, "{}", wrong.messages);
     assert!(wrong.messages.contains("simulated.csv") && wrong.messages.contains("speed"), "{}", wrong.messages);
 
+    // Columns that nobody knows are to be said where those of the simulation stand.
+    std::fs::write(at.join("simulated.csv"), motion("a,b,c,d", SIMULATED_COULOMB, (0.0, 1.0))).unwrap();
+    let unknown = diagnose(at, real);
+    assert!(unknown.messages.contains("say what they are under [simulation.columns]"), "{}", unknown.messages);
+    std::fs::write(at.join("real.csv"), motion("a,b,c,d", REAL_COULOMB, (0.2, 1.0))).unwrap();
+    let unknown = diagnose(at, "");
+    assert!(unknown.messages.contains("say what they are under [columns]"), "{}", unknown.messages);
+    std::fs::write(at.join("real.csv"), motion("t,position[1],dq,effort", REAL_COULOMB, (0.2, 1.0))).unwrap();
+
     // Without a map of its own the simulation is read by [columns] as far as they fit, else by the standard names.
     let standard = motion("time_s,position_rad,dq,torque_Nm", SIMULATED_COULOMB, (0.0, 1.0));
     std::fs::write(at.join("simulated.csv"), standard).unwrap();

@@ -112,7 +112,14 @@ impl Joint {
             (quantity.clone(), ColumnMapping { may_be_absent: true, ..mapping.clone() })
         };
         let shared = || self.columns.iter().map(optional).collect();
-        Self { columns: self.simulation.columns.clone().unwrap_or_else(shared), ..self.clone() }
+        let columns = self.simulation.columns.clone().unwrap_or_else(shared);
+        Self { columns, simulation: Simulation { is_read: true, ..self.simulation.clone() }, ..self.clone() }
+    }
+
+    /// The table of `joint.toml` that says what the columns of the file are that is read.
+    #[must_use]
+    pub fn columns_table(&self) -> &'static str {
+        if self.simulation.is_read { "[simulation.columns]" } else { "[columns]" }
     }
 
     /// Reads `joint.toml` and the URDF file that it names.

@@ -21,6 +21,13 @@ enum { SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20, APPLICATION_EXIT = 0x20026 }
 #define VISCOUS_NMS_RAD 1.2f
 #define COUNT_RAD (6.2831853f / 1048576.0f)
 
+/* Speeds at which the friction of the image is asked, the latter next to the fastest of the reference; and how far it may be from that of this
+ * joint, as a factor: a compensation of twice the friction or of half of it says nothing of the image. */
+#define SLOW_RAD_S 0.5f
+#define FAST_RAD_S 1.2f
+#define MOST_FACTOR 2.0f
+#define ASKED_SAMPLES 100
+
 /* The position loop, N m/rad and N m s/rad. */
 #define STIFFNESS 300.0f
 #define DAMPING 20.0f
@@ -30,6 +37,9 @@ enum { SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20, APPLICATION_EXIT = 0x20026 }
 #define OMEGA_RAD_S 3.1415927f
 #define COSINE 0.99999507f
 #define SINE 0.0031415875f
+
+/* Defined by the linker script: the flash that is kept for the image. */
+extern const uint8_t _image_start[], _image_end[];
 
 static uintptr_t call(uintptr_t operation, const void *arguments) {
     register uintptr_t r0 __asm("r0") = operation;
@@ -45,11 +55,11 @@ static _Noreturn void leave(uintptr_t status) {
     for (;;) call(SYS_EXIT_EXTENDED, arguments);
 }
 
-/* A number with two decimals. */
+/* A number with two decimals, as large as they leave room for. */
 static void print_number(float number) {
     char digits[12];
     char *at = digits + sizeof digits - 1;
-    uint32_t hundredths = (uint32_t)(100.0f * number + 0.5f);
+    uint32_t hundredths = number < 4e7f ? (uint32_t)(100.0f * number + 0.5f) : UINT32_MAX;
     *at = 0;
     for (int place = 0; place < 3 || hundredths > 0; place++, hundredths /= 10) {
         if (place == 2) *--at = '.';
@@ -66,10 +76,15 @@ static float root(float x) {
     return y;
 }
 
+/* Friction of the joint, N m. */
+static float friction_at(float speed) {
+    const float peak = speed / STRIBECK_RAD_S;
+    return COULOMB_NM + STRIBECK_NM / (1.0f + peak * peak) + VISCOUS_NMS_RAD * speed;
+}
+
 /* A step of the joint: what friction may take of the velocity, it takes at most to rest. */
 static float next_velocity(float velocity, float torque, float dt) {
-    const float peak = velocity / STRIBECK_RAD_S;
-    const float friction = COULOMB_NM + STRIBECK_NM / (1.0f + peak * peak) + VISCOUS_NMS_RAD * magnitude(velocity);
+    const float friction = friction_at(magnitude(velocity));
     const float free = velocity + dt * torque / INERTIA_KGM2, most = dt * friction / INERTIA_KGM2;
     if (magnitude(free) <= most) return 0.0f;
     return free > 0.0f ? free - most : free + most;
@@ -106,6 +121,50 @@ static float tracking_error(float share) {
     return root(squares);
 }
 
+/* The status of an image that the drive refuses, and what to do. */
+static void tell_refusal(FrikanStatus status) {
+    const char digits[] = {(char)('0' + status / 10 % 10), (char)('0' + status % 10), 0};
+    print("the drive refuses the image, status ");
+    print(digits);
+    switch (status) {
+    case FRIKAN_STATUS_NOT_BUILT_IN:
+        print(": this library reads tables over velocity: fit with --representation table, or take the law as source (trainer export --to c)\n");
+        break;
+    case FRIKAN_STATUS_TOO_LARGE:
+        print(": it has more cells than this library: fit with --max-bytes\n");
+        break;
+    case FRIKAN_STATUS_MISSING_CHANNEL:
+        print(": it reads what this drive does not measure: fit with --inputs velocity\n");
+        break;
+    case FRIKAN_STATUS_OTHER_UNIT:
+        print(": this drive commands N m, the image is in another unit\n");
+        break;
+    default:
+        print(": frikan.h says what it means, trainer show what the image holds\n");
+    }
+}
+
+/* Whether the friction of the image at a speed is that of this joint, roughly; says so where it is not. */
+static int is_of_this_joint(float speed) {
+    static FrikanCompensator asked;
+    const FrikanLimits none = {.gain = 1.0f, .torque = 1e9f, .slew = 1e15f};
+    const FrikanMeasurement moving = {.velocity = speed};
+    frikan_start(&asked, _image_start, (size_t)(_image_end - _image_start), 0, &none);
+    float friction = 0.0f;
+    for (int sample = 0; sample < ASKED_SAMPLES; sample++) friction = frikan_step(&asked, &moving, PERIOD_S).torque;
+    const float own = friction_at(speed);
+    if (friction > own / MOST_FACTOR && friction < own * MOST_FACTOR) return 1;
+    print("the image is of a joint of another size: at ");
+    print_number(speed);
+    print(" rad/s its friction is ");
+    if (friction < 0.0f) print("-");
+    print_number(magnitude(friction));
+    print(" N m, that of the joint simulated here ");
+    print_number(own);
+    print(" N m; trainer loop JOINT.toml --image MODEL.frk simulates its own\n");
+    return 0;
+}
+
 void fault(void) {
     print("fault\n");
     leave(101);
@@ -114,9 +173,10 @@ void fault(void) {
 int main(void) {
     const FrikanStatus status = drive_start();
     if (status != FRIKAN_STATUS_ACTIVE) {
-        print("the drive refuses the image\n");
+        tell_refusal(status);
         leave(1);
     }
+    if (!is_of_this_joint(SLOW_RAD_S) || !is_of_this_joint(FAST_RAD_S)) leave(1);
     const float without = tracking_error(0.0f);
     drive_start();
     const float with = tracking_error(1.0f);

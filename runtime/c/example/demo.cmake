@@ -19,4 +19,8 @@ execute_process(COMMAND ${CMAKE_COMMAND} --build ${build} --target demo.elf OUTP
 execute_process(
     COMMAND ${QEMU} -M mps2-an386 -kernel ${build}/demo.elf -device loader,file=${image},addr=0x200000,force-raw=on
             -display none -serial none -monitor none -chardev stdio,id=out -semihosting-config enable=on,target=native,chardev=out
-    COMMAND_ERROR_IS_FATAL ANY)
+    RESULT_VARIABLE result)
+# The firmware has said why.
+if(result)
+    message(FATAL_ERROR "nothing was compensated with ${IMAGE}")
+endif()

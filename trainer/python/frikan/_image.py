@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Union
+from collections.abc import Callable
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +19,9 @@ class Image:
     Called with the velocity, and the other inputs by name, as numbers or arrays, it gives the friction.
     """
 
-    def __init__(self, content: bytes) -> None:
+    def __init__(self, content: bytes, refuse_doubtful: Optional[Callable[[], None]] = None) -> None:
         self._native = _frikan.Image(content)
+        self._refuse_doubtful = refuse_doubtful
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> Image:
@@ -27,8 +29,14 @@ class Image:
         with open(path, "rb") as file:
             return cls(file.read())
 
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes the image to a file."""
+    def save(self, path: Union[str, "os.PathLike[str]"], force: bool = False) -> None:
+        """Writes the image to a file.
+
+        That of a fit which may not be relied upon raises ``frikan.Error`` with the code of ``Fitted.doubt``, unless ``force`` says to write it
+        nevertheless.
+        """
+        if self._refuse_doubtful is not None and not force:
+            self._refuse_doubtful()
         with open(path, "wb") as file:
             file.write(self.content)
 

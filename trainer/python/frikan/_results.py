@@ -69,8 +69,8 @@ class Fitted:
 
     @property
     def image(self) -> Image:
-        """The image for the drive."""
-        return Image(self._native.image())
+        """The image for the drive; where the fit may not be relied upon, it is saved by ``force=True`` alone."""
+        return Image(self._native.image(), self._native.refuse_doubtful)
 
     @property
     def integers(self) -> Optional[dict[str, Any]]:
@@ -80,7 +80,7 @@ class Fitted:
 
     @property
     def doubt(self) -> Optional[tuple[str, str]]:
-        """Code and sentence of why the fit may not be relied upon; ``None`` where it may."""
+        """Code and sentence of why the fit may not be relied upon, where the command line ends with 4; ``None`` where it may."""
         return self._native.doubt()
 
     @property
@@ -112,7 +112,7 @@ class Fitted:
         return axes
 
     def __str__(self) -> str:
-        return self._native.text("MODEL.frk")
+        return self._native.text(None if self.doubt else "MODEL.frk")
 
     def __repr__(self) -> str:
         return f"<frikan.Fitted: friction = {self.law}>"

@@ -2,7 +2,7 @@
 
 use frikan_trainer::workflow::Warning;
 use frikan_trainer::workflow::arm::FittedArm;
-use frikan_trainer::workflow::diagnose::Diagnosed;
+use frikan_trainer::workflow::diagnose::{Diagnosed, Told};
 use frikan_trainer::workflow::fit::Fitted;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -26,8 +26,9 @@ impl FittedObject {
     }
 
     /// The result as `trainer fit` prints it.
-    fn text(&self, image: &str) -> String {
-        self.0.text(Some(image.as_ref()))
+    #[pyo3(signature = (image))]
+    fn text(&self, image: Option<&str>) -> String {
+        self.0.text(image.map(AsRef::as_ref))
     }
 
     /// The image, as it is written to a file.
@@ -38,6 +39,11 @@ impl FittedObject {
     /// Code and sentence of why the fit may not be relied upon, where it may not.
     fn doubt(&self) -> Option<(&'static str, String)> {
         self.0.doubt().map(|doubt| (doubt.code().id, doubt.message().to_owned()))
+    }
+
+    /// Raises why the fit may not be relied upon, where it may not.
+    fn refuse_doubtful(&self, py: Python<'_>) -> PyResult<()> {
+        self.0.doubt().map_or(Ok(()), |doubt| Err(raise(py, &doubt)))
     }
 
     /// The friction law over velocity, and the band in which the friction lies with 95 %.
@@ -59,7 +65,7 @@ impl DiagnosedObject {
 
     /// The result as one HTML page.
     fn report(&self, compared_with: &str, command: &str) -> String {
-        self.0.report(compared_with, &[], command)
+        self.0.report(compared_with, Told { command, ..Told::default() })
     }
 
     /// The result as `trainer diagnose` prints it.

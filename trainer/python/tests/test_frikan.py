@@ -52,6 +52,20 @@ def test_a_fit_is_that_of_the_command_line(fitted, tmp_path):
     assert fitted.curve.shape[1] == 2 and fitted.band.shape[1] == 3
 
 
+def test_a_doubtful_image_is_saved_by_force_alone(tmp_path):
+    # One speed each way: Coulomb and viscous friction have one shape.
+    one_speed = {"velocity_rad_s": np.tile([0.5, -0.5], 200), "friction_torque_Nm": np.tile([2.0, -2.0], 200)}
+    one_speed["friction_torque_Nm"] += 0.01 * np.random.default_rng(1).standard_normal(400)
+    doubtful = frikan.fit(one_speed)
+    code, sentence = doubtful.doubt
+    assert code.startswith("FRK-N") and "not written" in str(doubtful)
+    with pytest.raises(frikan.Error, match=code) as refused:
+        doubtful.image.save(tmp_path / "doubtful.frk")
+    assert refused.value.exit_status == 4 and sentence in str(refused.value) and not any(tmp_path.iterdir())
+    doubtful.image.save(tmp_path / "doubtful.frk", force=True)
+    assert frikan.Image.load(tmp_path / "doubtful.frk").content == doubtful.image.content
+
+
 def test_arrays_and_frames_give_the_law_of_their_file(fitted):
     table = np.genfromtxt(FIXTURES / "stribeck.csv", delimiter=",", names=True, comments=None)
     columns = {name: table[name] for name in table.dtype.names}
@@ -102,6 +116,7 @@ def test_a_check_is_that_of_the_command_line(tmp_path):
     checked = frikan.check(FIXTURES / "elbow.csv", joint=FIXTURES / "elbow.toml")
     assert checked.json == without_time(json.loads((tmp_path / "c.json").read_text())) and str(checked) == said
     assert checked.verdict in ("good", "usable") and "Coulomb friction" in checked.identifiable
+    assert len(checked.identifiable) == len(checked.json["identifiable"]) and "gravity (sine)" in checked.identifiable
     assert checked.items[0]["code"] in checked._repr_html_() and isinstance(checked.record_next, list)
 
 

@@ -12,7 +12,7 @@ use crate::fit::{Options, Progress, Stage, fit as fit_joint};
 use crate::joint::Joint;
 use crate::recording::{Quantity, Recording};
 use crate::samples::states::{States, states};
-use crate::samples::{BendingLaw, Preparation, Samples};
+use crate::samples::{BendingLaw, Preparation, Samples, told_of_clock};
 
 /// Most samples of all runs together: constants of bodies and friction are known no better for more, and memory grows with them.
 const MOST_SAMPLES: f64 = 20_000.0;
@@ -121,7 +121,7 @@ pub fn fit(arm: &Arm, options: &Options, progress: ArmProgress<'_>) -> Result<Ou
                 estimate,
             })
             .collect(),
-        filter: preparation.to_string(),
+        filter: preparation.to_string() + told_of_clock(arm.runs.iter().flat_map(|run| &run.joints)),
     })
 }
 

@@ -12,7 +12,7 @@ use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::preparation::rows::Lock;
 use crate::error::Result;
 use crate::fit;
-use crate::workflow::diagnose::{Against, Improvement, Request, diagnose};
+use crate::workflow::diagnose::{Against, Improvement, Request, Told, diagnose};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -144,7 +144,10 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     }
     if let Some(path) = &arguments.report {
         let remarks: Vec<String> = remarks.iter().chain(&unwritten).cloned().collect();
-        outputs.add(path, found.report(&compared_with(arguments), &remarks, &command_line()));
+        let image = arguments.output.as_deref().filter(|_| found.image().is_some());
+        let put_right = image.map(|image| put_right::export(image, joint.name.as_deref()));
+        let told = Told { remarks: &remarks, put_right: put_right.as_deref(), command: &command_line() };
+        outputs.add(path, found.report(&compared_with(arguments), told));
     }
     match (&arguments.advise, found.trajectory()) {
         (Some(path), Some(trajectory)) => outputs.add(path, trajectory),

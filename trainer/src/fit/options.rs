@@ -103,6 +103,12 @@ pub enum Stage {
     Compiling,
     /// Scoring the exported image.
     Scoring,
+    /// Identifying the actuator of a joint that reports no torque, from its commands.
+    Identifying,
+    /// Simulating such a joint with its image.
+    Simulating,
+    /// Fitting constants of actuator, law and rigid body to the recorded motion of such a joint.
+    FittingMotion,
 }
 
 impl Stage {
@@ -117,6 +123,9 @@ impl Stage {
             Self::Comparing => "fitting classical laws",
             Self::Compiling => "compiling the image",
             Self::Scoring => "scoring the image",
+            Self::Identifying => "identifying the actuator",
+            Self::Simulating => "simulating the joint with the image",
+            Self::FittingMotion => "fitting actuator, law and body to the motion",
         }
     }
 }

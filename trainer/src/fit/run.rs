@@ -31,6 +31,7 @@ use crate::joint::Joint;
 use crate::law::{FormFit, Law};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
+use crate::samples::told_of_clock;
 
 /// Share of the inertia that noise may take untold.
 const TOLD_ATTENUATION: f64 = 0.01;
@@ -149,7 +150,7 @@ fn fit_once(
         axis: material.samples.axis,
         unit: rigid::printed(material.samples.actuator_unit),
         seed: options.seed,
-        filter: material.samples.filter.clone(),
+        filter: material.samples.filter.clone() + told_of_clock(recordings),
         inputs: input_ranges(&model, &inputs),
         relevance,
         network: training.summary(&first.fitted, &first.pruned, &refitted),

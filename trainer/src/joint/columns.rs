@@ -42,6 +42,9 @@ pub enum Side {
 pub struct Simulation {
     /// Its columns; absent: those of the recording as far as it has them.
     pub columns: Option<Columns>,
+    /// Whether that file is the one that is read.
+    #[serde(skip)]
+    pub is_read: bool,
 }
 
 /// The table that an entry may be.

@@ -46,8 +46,29 @@ pub fn plain_name(effect: EffectId) -> &'static str {
     }
 }
 
+/// What an improved model has of an effect: what was wrong is corrected in it, all else is added to it.
+#[must_use]
+pub fn name_in_model(effect: EffectId) -> String {
+    let name = plain_name(effect);
+    name.strip_prefix("wrong ").map_or_else(|| name.to_owned(), |corrected| format!("corrected {corrected}"))
+}
+
 /// A sentence with a capital.
 pub(crate) fn capital(sentence: &str) -> String {
     let mut characters = sentence.chars();
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_model_has_nothing_wrong_in_it() {
+        for &effect in EffectId::ALL {
+            assert!(!name_in_model(effect).contains("wrong"), "{effect:?}");
+        }
+        assert_eq!(name_in_model(EffectId::InertiaError), "corrected inertia");
+        assert_eq!(name_in_model(EffectId::Stribeck), "Stribeck friction");
+    }
 }

@@ -76,16 +76,16 @@ pub(super) fn assign(raw: &RawTable, joint: &Joint) -> Result<Assigned> {
     let reading = take_clock(&mut columns, raw, &mut unusable);
     if columns.iter().all(|column| column.known.is_none_or(|known| known.quantity == Quantity::Time)) {
         if let Some((quantity, column)) = unusable.first() {
-            return Err(unknown_unit(*quantity, column));
+            return Err(unknown_unit(*quantity, column, joint.columns_table()));
         }
         if columns.iter().all(|column| column.known.is_none()) {
-            return Err(no_known_column(header, raw.table.header_line()));
+            return Err(no_known_column(header, raw.table.header_line(), joint.columns_table()));
         }
     }
     // A quantity whose unit is not understood must not be replaced silently by a derived one.
     let recorded = |wanted| columns.iter().any(|column| column.known.is_some_and(|known| known.quantity == wanted));
     if let Some((quantity, column)) = unusable.iter().find(|(quantity, _)| !recorded(*quantity)) {
-        return Err(unknown_unit(*quantity, column));
+        return Err(unknown_unit(*quantity, column, joint.columns_table()));
     }
     let notes = unusable
         .iter()
@@ -158,23 +158,24 @@ fn which_joint(sources: &BTreeSet<&str>) -> Error {
     Error::new(&codes::SEVERAL_JOINTS, message).at_row(1)
 }
 
-fn no_known_column(header: &[String], line: u64) -> Error {
+fn no_known_column(header: &[String], line: u64, table: &str) -> Error {
     let message = if header.first().is_some_and(|name| name == "column[0]") {
-        "the names of the columns are missing, and the first row holds numbers only: name them by their place under [columns] of \
-         joint.toml, as in position = { name = \"column[0]\", unit = \"rad\" }"
-            .to_owned()
+        format!(
+            "the names of the columns are missing, and the first row holds numbers only: name them by their place under {table} of \
+             joint.toml, as in position = {{ name = \"column[0]\", unit = \"rad\" }}"
+        )
     } else {
         let example = header.iter().find(|name| !name.is_empty()).map_or("q", String::as_str);
         format!(
-            "no column is named <quantity>_<unit>, as in time_s, position_rad, torque_Nm: say what they are under [columns] of \
+            "no column is named <quantity>_<unit>, as in time_s, position_rad, torque_Nm: say what they are under {table} of \
              joint.toml, as in position = {{ name = \"{example}\", unit = \"rad\" }}; `trainer init` writes one that lists them all"
         )
     };
     Error::new(&codes::NO_KNOWN_COLUMN, message).at_row(line).with_value(header.join(","))
 }
 
-/// The error of a column whose unit is not one of its quantity.
-pub(super) fn unknown_unit(quantity: Quantity, column: &str) -> Error {
+/// The error of a column whose unit is not one of its quantity; `table` of joint.toml may say what it is.
+pub(super) fn unknown_unit(quantity: Quantity, column: &str, table: &str) -> Error {
     let unit = match names::split_unit(column) {
         Some((_, unit)) => unit,
         None => column.strip_prefix(quantity.name()).map_or("", |rest| rest.trim_start_matches('_')),
@@ -186,7 +187,7 @@ pub(super) fn unknown_unit(quantity: Quantity, column: &str) -> Error {
     };
     let (name, suffix) = (quantity.name(), quantity.units()[0].suffix);
     let message = format!(
-        "{what}; or say it under [columns] of joint.toml: {name} = {{ name = \"{column}\", unit = \"{suffix}\" }}"
+        "{what}; or say it under {table} of joint.toml: {name} = {{ name = \"{column}\", unit = \"{suffix}\" }}"
     );
     Error::new(&codes::UNKNOWN_UNIT, message).at_row(1).in_column(column).with_value(unit)
 }

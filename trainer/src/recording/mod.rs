@@ -306,7 +306,7 @@ impl Recording {
         }
         let misnamed = self.unusable.iter().find(|(quantity, _)| wanted.contains(quantity));
         Err(match misnamed {
-            Some((quantity, column)) => columns::unknown_unit(*quantity, column),
+            Some((quantity, column)) => columns::unknown_unit(*quantity, column, "[columns]"),
             None => {
                 let names: Vec<String> = wanted.iter().map(|quantity| quantity.column()).collect();
                 let mut message = format!("{purpose} needs a column such as {}", names.join(" or "));

@@ -5,6 +5,7 @@ use super::ink::Ink;
 use super::page::{Origin, PARAMETER_HEADER, Page, Plot, Size, columns, parameter_rows};
 use crate::figures::{digits, quantity};
 use crate::fit::outcome::{Outcome, Soundness, Trace};
+use crate::parameter::NOT_DETERMINED;
 use crate::physics::names::capital;
 use crate::recording::Axis;
 
@@ -25,7 +26,7 @@ pub fn fit(outcome: &Outcome, warnings: &[String], origin: &Origin<'_>) -> Strin
     summary(&mut page, outcome, warnings);
     page.equation(&format!("friction = {}", outcome.law.expression));
     page.html("<div class=\"split\"><div>");
-    page.table(&PARAMETER_HEADER, &parameter_rows(&outcome.parameters));
+    page.table(&PARAMETER_HEADER, &parameter_rows(&outcome.parameters, NOT_DETERMINED));
     page.html("</div>");
     law(&mut page, outcome);
     page.html("</div>");

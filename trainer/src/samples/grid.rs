@@ -32,6 +32,20 @@ pub(super) struct Segment {
     pub(super) points: usize,
 }
 
+/// Whether the time stamps of a recording scatter by more than the rounding of their text.
+fn is_resampled(recording: &Recording) -> bool {
+    recording.health.jitter > UNIFORM_JITTER
+}
+
+/// What is said of the clock behind what is said of the filter.
+pub(crate) fn told_of_clock<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> &'static str {
+    if recordings.into_iter().any(is_resampled) {
+        "; uneven time stamps linearly interpolated to a uniform grid"
+    } else {
+        ""
+    }
+}
+
 impl Grid {
     /// The grid of the mean period; a gap of the clock and a new `trajectory` begin a new segment.
     pub(super) fn of(recording: &Recording, time: &[f64]) -> Self {
@@ -41,7 +55,7 @@ impl Grid {
     /// The grid of a period (s) where the clock jitters and values are interpolated anyway, else of the mean one.
     pub(super) fn at(recording: &Recording, time: &[f64], jittering_s: Option<f64>) -> Self {
         let health = &recording.health;
-        let resampled = health.jitter > UNIFORM_JITTER;
+        let resampled = is_resampled(recording);
         let mut bounds: Vec<usize> = std::iter::once(0).chain(health.gaps.iter().copied()).collect();
         if let Some(trajectory) = recording.named(TRAJECTORY) {
             let changes =

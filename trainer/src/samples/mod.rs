@@ -23,7 +23,7 @@ use std::ops::Range;
 
 pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
-pub(crate) use grid::interpolate;
+pub(crate) use grid::{interpolate, told_of_clock};
 pub use plan::{Preparation, Request, VelocitySource};
 pub(crate) use prepare::{EveryRow, prepare_every_row_of};
 pub use prepare::{prepare, prepare_every_row};

@@ -170,8 +170,7 @@ impl fmt::Display for Preparation {
         };
         write!(
             f,
-            "every channel through one zero-phase Gaussian, sigma {:.2} ms (half power at {cutoff_hz:.1} Hz); {source}; \
-             uneven time stamps linearly interpolated to a uniform grid",
+            "every channel through one zero-phase Gaussian, sigma {:.2} ms (half power at {cutoff_hz:.1} Hz); {source}",
             1e3 * sigma_s,
         )?;
         let delay_ms = 1e3 * self.torque_delay_s;

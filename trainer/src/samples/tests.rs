@@ -107,6 +107,10 @@ fn gaps_split_segments_and_jitter_is_resampled() {
     assert!(samples.time[before] < 2.5 && samples.time[after] > 3.0);
 
     let jitter = recording(&swing(6.0, 0.0, |i, t| t + if i % 3 == 0 { 3e-4 } else { 0.0 }));
+    // Stamps that are rounded only are said nothing of.
+    let rounded = recording(&swing(6.0, 0.0, |_, t| (1e6 * t).round() / 1e6 + 2.5e-9 * (t * 1e5).sin()));
+    assert_eq!(told_of_clock([&rounded, &gap]), "");
+    assert!(told_of_clock([&rounded, &jitter]).contains("uneven time stamps"));
     let (_, samples) = prepared(&jitter);
     let truth = |t: f64| 1.2 * 1.2 * (1.2 * t).cos() + 0.3 * 4.1 * (4.1 * t).cos();
     for (t, v) in samples.time.iter().zip(samples.velocity.as_deref().unwrap()) {

@@ -8,7 +8,7 @@ use super::known_torque::{Load, known_torque, without_payload};
 use super::torque_space::identify;
 use crate::error::Result;
 use crate::fit::model::from_bytes;
-use crate::fit::{Options, Outcome, ProgressCallback, fit};
+use crate::fit::{Options, Outcome, Progress, ProgressCallback, Stage, fit};
 use crate::joint::Joint;
 use crate::recording::Recording;
 use crate::rollout::{Score, default_window_s, score_of_image};
@@ -47,14 +47,18 @@ pub fn fit_servo(
     options: &Options,
     progress: ProgressCallback<'_>,
 ) -> Result<ServoFit> {
+    let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
+    tell(Stage::Identifying);
     let mut identified = identify(recordings, joint)?;
     let way = AsTorque::of(recordings, joint, &identified);
     let outcome = fit(&way.known(recordings)?, &way.known(tests)?, &way.bare, options, progress)?;
     let mut outcome = without_payload(outcome, &identified, way.reference)?;
+    tell(Stage::Simulating);
     let mut train = simulated(&outcome, recordings, joint, &identified)?;
     let scores: Option<Vec<Score>> = train.iter().map(|simulated| simulated.score).collect();
     let in_torque_space = scores.map(|scores| Score::over(&scores).mae);
     let start = from_bytes(&outcome.image)?.model;
+    tell(Stage::FittingMotion);
     let by = by_trajectory(recordings, joint, &identified, &start)?;
     if in_torque_space.is_none_or(|error| by.mae < error) {
         // Scored with all of the payload taken off, as the model is that of the joint alone.
@@ -71,6 +75,7 @@ pub fn fit_servo(
             "By trajectory nothing better was found: it leaves {own:.4} rad of the position, the law in torque space {other:.4} rad."
         ));
     }
+    tell(Stage::Simulating);
     let tests = simulated(&outcome, tests, joint, &identified)?;
     Ok(ServoFit { outcome, identified, train, tests })
 }

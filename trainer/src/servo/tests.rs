@@ -7,7 +7,7 @@ use super::friction::GearFriction;
 use super::torque_space::identify;
 use crate::actuator::Partial;
 use crate::error::codes;
-use crate::fit::{Options, Training};
+use crate::fit::{Options, Progress, Stage, Training};
 use crate::joint::Joint;
 use crate::recording::{Recording, parse};
 use crate::rollout::{Body, Rig, Series, State, payload, simulate};
@@ -122,7 +122,14 @@ fn a_servo_of_two_gains_is_found_in_torque_space_and_by_trajectory() {
     close(identified.partial.actuator.gain, 0.15);
     assert!(identified.remarks.iter().any(|remark| remark.contains("viscous friction")));
 
-    let found = fit_servo(&recordings, &recordings[..1], &joint, &quick(), &|_| {}).unwrap();
+    let told = std::sync::Mutex::new(Vec::new());
+    let tell = |now: &Progress| told.lock().unwrap().push(now.stage);
+    let found = fit_servo(&recordings, &recordings[..1], &joint, &quick(), &tell).unwrap();
+    // What takes most of the time is told by its own name.
+    let told = told.into_inner().unwrap();
+    assert_eq!(told.first(), Some(&Stage::Identifying));
+    let of = |stage| told.iter().position(|told| *told == stage);
+    assert!(of(Stage::Scoring) < of(Stage::FittingMotion) && told.last() == Some(&Stage::Simulating), "{told:?}");
     let error = found.train[0].score.unwrap().mae;
     assert!(error < 5e-3, "{error}");
 }

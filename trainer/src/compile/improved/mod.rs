@@ -22,7 +22,7 @@ use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::proof::refit::Refit;
 use crate::law::significant;
 use crate::numerics::statistics::quantile;
-use crate::physics::names::plain_name;
+use crate::physics::names::name_in_model;
 use crate::physics::{EffectId, JointState};
 use frikan_shared::model::{Input, Law, MAX_INPUTS, RigidBody};
 use frikan_shared::pool::Pool;
@@ -256,8 +256,8 @@ fn write_term(
     origin: &str,
 ) -> String {
     match terms.add(effect, shape, coefficients, context) {
-        Ok(()) => format!("In the image: {}{origin}{}.", plain_name(effect), of_position(effect)),
-        Err(why) => format!("Not in the image: {}{origin} ({why}).", plain_name(effect)),
+        Ok(()) => format!("In the image: {}{origin}{}.", name_in_model(effect), of_position(effect)),
+        Err(why) => format!("Not in the image: {}{origin} ({why}).", name_in_model(effect)),
     }
 }
 

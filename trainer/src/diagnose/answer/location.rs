@@ -39,8 +39,8 @@ pub(crate) fn locate(workbench: &Workbench, refit: &Refit, index: usize) -> Loca
     location
 }
 
-/// Channels along which an effect is a function: where it sits is said of these alone. `None` of a structure without a name, which may
-/// be one of any channel; empty of what acts in every row alike.
+/// Channels along which an effect is a function, that of its equation first: where it sits is said of these alone. `None` of a structure
+/// without a name, which may be one of any channel; empty of what acts in every row alike.
 fn own_channels(effect: EffectId) -> Option<&'static [&'static str]> {
     use EffectId::*;
     let channels: &[&str] = match effect {
@@ -65,11 +65,21 @@ fn own_channels(effect: EffectId) -> Option<&'static [&'static str]> {
     Some(channels)
 }
 
+/// The channel along which an effect is shown; `None` where there is none of its own.
+pub(crate) fn own_axis(effect: EffectId) -> Option<&'static str> {
+    own_channels(effect)?.first().copied()
+}
+
 impl Location {
-    /// Puts first the sharpest region along a channel of the effect's own; where none says more than the rest, nothing is said.
+    /// Puts first the sharpest region along the channel of the effect's equation, else along another of its own; where none says more than
+    /// the rest, nothing is said.
     fn name_first(&mut self, effect: EffectId) {
-        let is_own = |region: &Region| own_channels(effect).is_none_or(|own| own.contains(&region.side.channel));
-        let first = self.regions.iter().position(|region| region.is_telling() && is_own(region));
+        let is_own = |channel: &str| own_channels(effect).is_none_or(|own| own.contains(&channel));
+        let is_of_equation = |channel: &str| own_axis(effect) == Some(channel);
+        let sharpest = |is_meant: &dyn Fn(&str) -> bool| {
+            self.regions.iter().position(|region| region.is_telling() && is_meant(region.side.channel))
+        };
+        let first = sharpest(&is_of_equation).or_else(|| sharpest(&is_own));
         self.is_named = first.is_some();
         if let Some(first) = first {
             self.regions[..=first].rotate_right(1);
@@ -134,5 +144,21 @@ mod tests {
         assert_eq!(named(EffectId::Stribeck, 0.2), None, "a region that tells nothing is passed over");
         assert_eq!(named(EffectId::PositionRipple, 0.7), None);
         assert_eq!(named(EffectId::Unknown, 0.7), Some("time"));
+    }
+
+    #[test]
+    fn presliding_is_placed_along_the_distance_of_its_equation_where_that_tells() {
+        let named = |of_distance: f64| {
+            let region = |channel, share_of_excess| {
+                let side = Side { channel, from: 0.0, to: 1.0 };
+                Region { side, and: None, share_of_excess, share_of_samples: 0.1 }
+            };
+            let regions = vec![region("time_since_reversal", 0.9), region("distance_since_reversal", of_distance)];
+            let mut location = Location { regions, ..Location::default() };
+            location.name_first(EffectId::Presliding);
+            location.named().map(|region| region.side.channel)
+        };
+        assert_eq!(named(0.6), Some("distance_since_reversal"));
+        assert_eq!(named(0.2), Some("time_since_reversal"));
     }
 }

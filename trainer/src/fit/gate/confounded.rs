@@ -42,8 +42,10 @@ pub(in crate::fit) enum Constant {
     Offset,
     /// Torque per acceleration.
     Inertia,
-    /// Torque per sine or cosine of the position.
-    Gravity,
+    /// Torque per sine of the position.
+    GravitySine,
+    /// Torque per cosine of the position.
+    GravityCosine,
     /// Factor of the recorded rigid body.
     Scale,
 }
@@ -121,7 +123,8 @@ impl<'a> SimpleLaw<'a> {
             kinds.push(match column.kind {
                 TermKind::TorqueOffset => continue,
                 TermKind::Inertia | TermKind::ExtraInertia => Constant::Inertia,
-                TermKind::GravitySine | TermKind::GravityCosine => Constant::Gravity,
+                TermKind::GravitySine => Constant::GravitySine,
+                TermKind::GravityCosine => Constant::GravityCosine,
                 TermKind::TorqueScale => Constant::Scale,
             });
             columns.push(pick(&column.values));
@@ -241,7 +244,8 @@ impl Constant {
             Self::Viscous => &["viscous"],
             Self::Offset => &["torque_offset"],
             Self::Inertia => &["inertia", "mass", "extra_inertia", "extra_mass"],
-            Self::Gravity => &["gravity"],
+            Self::GravitySine => &["gravity_sine"],
+            Self::GravityCosine => &["gravity_cosine"],
             Self::Scale => &["torque_scale"],
         };
         begins.iter().any(|begin| name.starts_with(begin))
@@ -253,7 +257,7 @@ impl Constant {
             Self::Coulomb | Self::Offset => "the same motion in both directions",
             Self::Viscous => "at least two speeds in each direction, one several times the other",
             Self::Inertia => "a motion that speeds up and slows down faster, at the same speeds",
-            Self::Gravity => "positions beyond +-60 degrees",
+            Self::GravitySine | Self::GravityCosine => "positions beyond +-60 degrees",
             Self::Scale => "a motion at which the rigid body needs more torque than friction",
         }
     }
@@ -291,7 +295,8 @@ impl fmt::Display for Constant {
             Self::Viscous => "viscous friction",
             Self::Offset => "offset",
             Self::Inertia => "inertia",
-            Self::Gravity => "gravity",
+            Self::GravitySine => "gravity (sine)",
+            Self::GravityCosine => "gravity (cosine)",
             Self::Scale => "scale of the rigid body",
         })
     }

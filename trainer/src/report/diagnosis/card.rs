@@ -2,6 +2,7 @@
 
 use super::changes;
 use super::content::{DiagnosisPage, axis_label};
+use crate::diagnose::answer::location::own_axis;
 use crate::diagnose::answer::outcome::{Diagnosis, Finding};
 use crate::diagnose::answer::region::Region;
 use crate::figures::quantity;
@@ -36,6 +37,16 @@ pub(super) fn card(page: &mut Page, content: &DiagnosisPage<'_>, index: usize) {
     }
     answer(page, "How sure", &certainty(found));
     answer(page, "What to do", &what_to_do(found, content));
+    // Said once, of the first effect that an image holds.
+    let is_held = |found: &Finding| {
+        matches!(found.action, Action::FeedForward | Action::Parameter) && !found.effect.is_of_actuator()
+    };
+    let first = diagnosis.findings.iter().position(is_held);
+    if let Some(command) = content.put_right.filter(|_| first == Some(index)) {
+        // Lines break between words, not within an option.
+        let words: Vec<String> = command.split(' ').map(|word| format!("<span>{}</span>", escape(word))).collect();
+        page.html(&format!("<dd class=\"command\">In the simulator: <code>{}</code></dd>", words.join(" ")));
+    }
     page.html("</dl>");
     let body = content.rigid_body.as_ref();
     page.table(&changes::HEADER, &changes::of_finding(diagnosis, found, body, units));
@@ -70,33 +81,16 @@ fn what_to_do(found: &Finding, content: &DiagnosisPage<'_>) -> String {
     format!("{act} To be sure of the name: {}.", separate_by(found, content.plan))
 }
 
-/// The channel along which an effect acts by its equation; `None` where there is none of its own.
-fn own_axis(effect: EffectId) -> Option<&'static str> {
-    use EffectId::*;
-    match effect {
-        Stribeck | ViscousNonlinearity | DirectionAsymmetry | FrictionLevel => Some("velocity"),
-        PositionRipple | KinematicError | PositionFriction | RecurrentFault | GravityError | Spring | Contact => {
-            Some("position")
-        }
-        Presliding | Backlash | WindupHysteresis => Some("distance_since_reversal"),
-        DwellBreakaway => Some("dwell"),
-        LoadFriction | DriveBackdrive => Some("load"),
-        Temperature => Some("temperature"),
-        WarmUp | SlowDrift | TransientEvent => Some("time"),
-        InertiaError => Some("acceleration"),
-        _ => None,
-    }
-}
-
 /// What all other terms leave and the torque of this one, over its own axis or else the one that locates it.
 fn over_its_axis(diagnosis: &Diagnosis, index: usize, units: Units) -> Option<(Plot, String)> {
     let traces = &diagnosis.traces;
     let found = &diagnosis.findings[index];
     let torque = traces.effects.get(index).filter(|torque| torque.iter().any(|value| *value != 0.0))?;
     let regions = || found.location.regions.iter().map(|region: &Region| &region.side);
-    let located = regions().map(|side| side.channel);
-    let (channel, values) =
-        own_axis(found.effect).into_iter().chain(located).find_map(|name| Some((name, traces.channel(name)?)))?;
+    // Drawn over the axis along which the card says where it is.
+    let named = found.location.named().map(|region| region.side.channel);
+    let axes = named.into_iter().chain(own_axis(found.effect)).chain(regions().map(|side| side.channel));
+    let (channel, values) = axes.into_iter().find_map(|name| Some((name, traces.channel(name)?)))?;
     let without: Vec<f64> = traces.after.iter().zip(torque).map(|(rest, effect)| rest + effect).collect();
     let labels = [axis_label(channel, units), format!("torque ({})", units.actuator)];
     let by_decades = BY_DECADES.contains(&channel);
@@ -105,13 +99,16 @@ fn over_its_axis(diagnosis: &Diagnosis, index: usize, units: Units) -> Option<(P
     if let Some(side) = regions().find(|side| side.channel == channel) {
         plot.band(side.from, side.to);
     }
-    plot.dots(values, &[(&without, Ink::Data, "needed beside all else"), (torque, Ink::Two, plain_name(found.effect))]);
+    plot.dots(
+        values,
+        &[(&without, Ink::Data, "recorded, less all other terms"), (torque, Ink::Two, plain_name(found.effect))],
+    );
     let largest = quantity(torque.iter().fold(0.0, |most: f64, value| most.max(value.abs())), units.actuator);
     let over = channel.replace('_', " ");
     Some((
         plot,
         format!(
-            "Torque over {over}: what the recording asks for beside all other terms, and this effect, up to {largest}."
+            "Torque over {over}: what was recorded less all other terms of the model, and this effect, up to {largest}."
         ),
     ))
 }

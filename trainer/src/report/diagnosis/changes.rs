@@ -3,7 +3,7 @@
 use frikan_shared::model::RigidBody;
 
 use crate::diagnose::answer::outcome::{Diagnosis, Estimate, Finding};
-use crate::figures::{pair, quantity};
+use crate::figures::{estimate, interval, quantity};
 use crate::parameter::Parameter;
 use crate::physics::units::Units;
 use crate::report::tell::evidence::parameter;
@@ -37,7 +37,7 @@ pub(super) fn of_finding(
     };
     // A change is told by what it changes.
     let told = found.parameters.iter().filter(|estimate| !estimate.name.ends_with("_change"));
-    told.map(change).map(row).collect()
+    told.map(change).map(|change| row(change).to_vec()).collect()
 }
 
 /// The constant of a rigid body that a correction of that name is added to.
@@ -59,13 +59,30 @@ fn corrected(by: Parameter, before: f64) -> Change {
     Change { before: Some(before), after: Parameter { name, symbol, value, ci95: [low, high], ..by } }
 }
 
-fn row(Change { after, before }: Change) -> Vec<String> {
-    let interval = if after.ci95[1] > after.ci95[0] {
-        pair(after.ci95[0], "to", after.ci95[1], &after.unit)
-    } else {
-        String::new()
-    };
+fn row(Change { after, before }: Change) -> [String; 3] {
+    // Lines break between figures, not between a figure and its unit.
+    let whole = |figure: &str| figure.replace(' ', "\u{a0}");
+    let bounds = if after.ci95[1] > after.ci95[0] { interval(after.ci95, &after.unit) } else { String::new() };
     let before = before.map_or_else(|| "none".to_string(), |before| quantity(before, &after.unit));
-    let values = format!("{before} \u{2192} {}", quantity(after.value, &after.unit)).replace(' ', "\u{a0}");
-    vec![after.name.replace('_', " "), values, interval]
+    let now = estimate(after.value, after.ci95, &after.unit);
+    let values = format!("{}\u{a0}\u{2192} {}", whole(&before), whole(&now));
+    [after.name.replace('_', " "), values, whole(&bounds).replace("to\u{a0}", "to ")]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_interval_keeps_its_digits_and_its_value() {
+        let after = Parameter {
+            name: "coulomb_torque".to_owned(),
+            symbol: "F_c".to_owned(),
+            value: 1.5,
+            unit: "N m".to_owned(),
+            ci95: [1.4965, 1.5035],
+        };
+        let cells = row(Change { after, before: Some(1.0) }).map(|cell| cell.replace('\u{a0}', " "));
+        assert_eq!(cells, ["coulomb torque", "1 N m \u{2192} 1.5000 N m", "1.4965 to 1.5035 N m"]);
+    }
 }

@@ -28,6 +28,8 @@ pub struct DiagnosisPage<'a> {
     pub plan: Option<&'a Plan>,
     /// Rigid body of the model compared with, where it is known.
     pub rigid_body: Option<RigidBody>,
+    /// The command that puts a simulator right with the improved image, where one is written.
+    pub put_right: Option<&'a str>,
     /// What was written into an improved image, and what not; empty where none was asked for.
     pub export: &'a [String],
     /// Command and recordings.

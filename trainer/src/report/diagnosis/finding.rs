@@ -34,7 +34,7 @@ fn details(
 ) {
     page.paragraph(&format!("{}.", capital(&evidence(found, units))));
     page.equation(&found.equation);
-    page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&found.parameters, units)));
+    page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&found.parameters, units), "fixed"));
     over_time(page, (diagnosis, found, index), units);
     let regions: Vec<Vec<String>> = found
         .location
@@ -86,9 +86,10 @@ fn over_time(page: &mut Page, (diagnosis, found, index): (&Diagnosis, &Finding, 
     for [begin, end] in found.location.when_s.iter().filter(|[begin, end]| *end > from && *begin < to) {
         plot.band(begin.max(from), end.min(to));
     }
-    let series = [(&*at(&without), Ink::Data, "needed beside all else"), (&*at(torque), Ink::Two, "this effect")];
+    let series =
+        [(&*at(&without), Ink::Data, "recorded, less all other terms"), (&*at(torque), Ink::Two, "this effect")];
     plot.lines(&at(&traces.time), &series);
-    page.plot(&plot, "The stretch of time with the densest evidence: what the recording asks for beside all other terms, and this effect.");
+    page.plot(&plot, "The stretch of time with the densest evidence: what was recorded less all other terms of the model, and this effect.");
 }
 
 /// A stretch of time around the densest evidence, at most a tenth of the recording.

@@ -203,7 +203,7 @@ fn base(page: &mut Page, diagnosis: &Diagnosis, units: Units) {
         None => "Parameters of the base model, refitted",
     };
     page.folded(heading, |page| {
-        page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&diagnosis.base_parameters, units)));
+        page.table(&PARAMETER_HEADER, &parameter_rows(&parameters(&diagnosis.base_parameters, units), "fixed"));
     });
 }
 

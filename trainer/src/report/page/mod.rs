@@ -5,8 +5,9 @@ mod plot;
 
 use std::fmt::Write;
 
-use crate::figures::digits;
+use crate::figures::{digits, estimate, interval};
 use crate::markup::escape;
+use crate::parameter::{NOT_DETERMINED, Parameter};
 
 pub use origin::Origin;
 pub(super) use plot::{Cells, Plot, Size, columns};
@@ -146,16 +147,13 @@ impl Page {
         if rows.is_empty() {
             return;
         }
-        let cells = |tag: &str, cells: Vec<&str>| -> String {
-            cells.iter().map(|cell| format!("<{tag}>{}</{}>", escape(cell), &tag[..2])).collect()
-        };
-        let head = cells("th scope=\"col\"", header.to_vec());
-        let body: String = rows
-            .iter()
-            .map(|row| format!("<tr>{}</tr>", cells("td", row.iter().map(String::as_str).collect())))
-            .collect();
+        let head: String = header.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
+        // On a phone each cell stands below the one before it, behind the name of its column.
+        let cell = |(name, text): (&&str, &String)| format!("<td data-of=\"{}\">{}</td>", escape(name), escape(text));
+        let row = |row: &Vec<String>| format!("<tr>{}</tr>", header.iter().zip(row).map(cell).collect::<String>());
+        let body: String = rows.iter().map(row).collect();
         self.html(&format!(
-            "<div class=\"table\" tabindex=\"0\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
+            "<div class=\"table\" tabindex=\"0\"><table class=\"stacked\"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
         ));
     }
 
@@ -192,19 +190,17 @@ impl Page {
     }
 }
 
-/// Parameters as rows of a table: name, symbol, value, unit, interval.
-pub(super) fn parameter_rows(parameters: &[crate::parameter::Parameter]) -> Vec<Vec<String>> {
-    parameters
-        .iter()
-        .map(|p| {
-            let interval = if p.ci95[1] > p.ci95[0] {
-                format!("{} to {}", digits(p.ci95[0]), digits(p.ci95[1]))
-            } else {
-                "fixed".to_string()
-            };
-            vec![p.name.replace('_', " "), p.symbol.clone(), digits(p.value), p.unit.clone(), interval]
-        })
-        .collect()
+/// Parameters as rows of a table: name, symbol, value, unit, interval; `held` is said of a value that has no width.
+pub(super) fn parameter_rows(parameters: &[Parameter], held: &str) -> Vec<Vec<String>> {
+    let row = |p: &Parameter| {
+        let bounds = match p.without_interval() {
+            None => interval(p.ci95, ""),
+            Some(NOT_DETERMINED) => held.to_owned(),
+            Some(why) => why.to_owned(),
+        };
+        vec![p.name.replace('_', " "), p.symbol.clone(), estimate(p.value, p.ci95, ""), p.unit.clone(), bounds]
+    };
+    parameters.iter().map(row).collect()
 }
 
 /// Header of [`parameter_rows`].

@@ -42,9 +42,9 @@ use commanded::{Commands, under_torque};
 use compare::{Compared, comparison};
 use improvement::improved_image;
 pub use improvement::{Improvement, Written};
-pub use request::{Against, BaseKind, Request};
+pub use request::{Against, BaseKind, Request, Told};
 pub use searched::Searched;
-use summary::{Told, summary};
+use summary::{Summarised, summary};
 
 /// A diagnosis with what was made of it.
 #[derive(Debug)]
@@ -192,7 +192,7 @@ impl Diagnosed {
     /// The result as JSON, schema `frikan.diagnose/1`.
     #[must_use]
     pub fn json(&self) -> Value {
-        let told = Told {
+        let told = Summarised {
             diagnosis: &self.diagnosis,
             story: &self.story,
             plan: self.advice.as_ref(),
@@ -209,10 +209,9 @@ impl Diagnosed {
         summary
     }
 
-    /// The result as one HTML page; `compared_with` names what the recording was compared with, `remarks` are sentences on the image,
-    /// `command` is what made it, for its foot.
+    /// The result as one HTML page; `compared_with` names what the recording was compared with.
     #[must_use]
-    pub fn report(&self, compared_with: &str, remarks: &[String], command: &str) -> String {
+    pub fn report(&self, compared_with: &str, told: Told<'_>) -> String {
         let actuator = self.actuator.as_ref().map(|actuator| format!(" {}", actuator::sentence(actuator)));
         let searched = self.searched.map(|searched| format!(" {}", searched.sentence()));
         let settings = format!("Seed {}.{}{}", self.seed, actuator.unwrap_or_default(), searched.unwrap_or_default());
@@ -227,8 +226,9 @@ impl Diagnosed {
                 Improvement::Written(written) => written.compared_with,
                 Improvement::Refused(_) | Improvement::Blocked => None,
             },
-            export: remarks,
-            origin: report::Origin { command, recordings: &self.sources, settings: &settings },
+            put_right: told.put_right,
+            export: told.remarks,
+            origin: report::Origin { command: told.command, recordings: &self.sources, settings: &settings },
         })
     }
 

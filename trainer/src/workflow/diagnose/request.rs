@@ -56,3 +56,14 @@ impl<'a> Request<'a> {
         }
     }
 }
+
+/// What a page of a diagnosis tells beside it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Told<'a> {
+    /// Sentences on the improved image.
+    pub remarks: &'a [String],
+    /// The command that puts a simulator right with the image, where one is written.
+    pub put_right: Option<&'a str>,
+    /// What made the page, for its foot.
+    pub command: &'a str,
+}

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 const STANDINGS: usize = 8;
 
 /// A diagnosis and how it is told.
-pub(super) struct Told<'a> {
+pub(super) struct Summarised<'a> {
     pub diagnosis: &'a Diagnosis,
     pub story: &'a Story,
     pub plan: Option<&'a Plan>,
@@ -28,8 +28,8 @@ pub(super) struct Told<'a> {
 }
 
 /// The whole summary.
-pub(super) fn summary(told: &Told, seconds: f64, seed: u64) -> Value {
-    let Told { diagnosis, story, plan, sealed, units } = *told;
+pub(super) fn summary(told: &Summarised, seconds: f64, seed: u64) -> Value {
+    let Summarised { diagnosis, story, plan, sealed, units } = *told;
     let held_out = diagnosis.proof.as_ref().map(|proof| {
         json!({
             "baseline_rmse": proof.baseline_rmse,
@@ -102,8 +102,8 @@ fn health_json(note: &HealthNote, units: Units) -> Value {
     json!({ "code": code, "effect": note.effect, "blocking": note.blocking, "sentence": sentence, "when_s": when_s })
 }
 
-fn finding_json(told: &Told, index: usize) -> Value {
-    let Told { plan, units, .. } = *told;
+fn finding_json(told: &Summarised, index: usize) -> Value {
+    let Summarised { plan, units, .. } = *told;
     let (found, sentence) = (&told.diagnosis.findings[index], &told.story.findings[index]);
     json!({
         "effect": found.effect,

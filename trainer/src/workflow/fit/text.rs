@@ -95,11 +95,13 @@ fn write_summary(out: &mut String, outcome: &Outcome, image: Option<&Path>, seco
 
 /// A line for a parameter, in a list.
 pub(in crate::workflow) fn write_parameter(out: &mut String, parameter: &Parameter) -> std::fmt::Result {
-    let [low, high] = parameter.ci95.map(|bound| significant(bound, DIGITS));
-    let interval = match parameter.ci95 {
-        [f64::NEG_INFINITY, f64::INFINITY] => "not told apart from others".to_owned(),
-        _ => format!("95 % in [{low}, {high}]"),
-    };
+    let interval = parameter.without_interval().map_or_else(
+        || {
+            let [low, high] = parameter.ci95.map(|bound| significant(bound, DIGITS));
+            format!("95 % in [{low}, {high}]")
+        },
+        str::to_owned,
+    );
     writeln!(
         out,
         "  {:<30} {:<6} {:>11} {:<10} {interval}",
@@ -156,5 +158,7 @@ mod tests {
         assert!(line([1.9, 2.1]).contains("95 % in [1.9, 2.1]"));
         let open = line([f64::NEG_INFINITY, f64::INFINITY]);
         assert!(open.contains("not told apart") && !open.contains("inf"), "{open}");
+        let held = line([2.0, 2.0]);
+        assert!(held.contains("not determined") && !held.contains('['), "{held}");
     }
 }
