@@ -36,7 +36,8 @@ fn a_demo_in_c_takes_few_commands() {
     assert!(told.contains("status 16: ") && told.contains("--representation table"), "{told}");
     let crane = "[columns]\ntorque = { name = \"torque_Nm\", unit = \"Nm\", scale = 1000 }\n";
     std::fs::write(at.join("crane.toml"), crane).unwrap();
-    printed(at, "trainer fit fixtures/elbow.csv --joint crane.toml --representation table -o crane.frk --quiet");
+    let _ =
+        printed(at, "trainer fit fixtures/elbow.csv --joint crane.toml --representation table -o crane.frk --quiet");
     let told = run("crane.frk");
     assert!(told.starts_with("the image is of a joint of another size") && !told.contains("tracking"), "{told}");
 }
