@@ -123,7 +123,7 @@ fn a_wrong_friction_level_of_a_simulation_is_a_finding_with_the_level_of_the_joi
         assert!(before > 0.9 * change && after < 0.15, "{simulation}: {before} {after}");
         let page = std::fs::read_to_string(at.join("page.html")).unwrap();
         assert!(
-            page.contains("Wrong level of Coulomb or viscous friction") && page.contains("<td>coulomb torque</td>"),
+            page.contains("Wrong level of Coulomb or viscous friction") && page.contains(">coulomb torque</td>"),
             "{page}"
         );
         assert!(page.contains("trainer export IMPROVED.frk --to mujoco --into MODEL.xml --joint-name"), "{page}");
