@@ -10,5 +10,6 @@ pub mod fit;
 pub mod predict;
 pub mod recordings;
 pub mod rollout;
+mod source;
 
 pub use recordings::{Source, Warning};
