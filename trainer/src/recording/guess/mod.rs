@@ -232,12 +232,12 @@ mod tests {
             let acceleration = -t.sin() - 0.3 * 3.1 * 3.1 * (3.1 * t).sin();
             vec![velocity.signum() + 0.4 * velocity + acceleration, velocity, position, acceleration, t, 5.0]
         };
-        let proposal = proposed(&swing("a;b;c;d;e;f", columns));
+        let proposal = proposed(&swing("a;b;c;d;e;h", columns));
         let named =
             |quantity| proposal.taken.iter().find(|taken| taken.quantity == quantity).map(|taken| &taken.column[..]);
         assert_eq!(named(Quantity::Time), Some("e"), "{}", proposal.toml);
         assert_eq!((named(Quantity::Position), named(Quantity::Velocity)), (Some("c"), Some("b")));
-        assert_eq!(proposal.channels, ["a", "d", "f"]);
+        assert_eq!(proposal.channels, ["a", "d", "h"]);
         assert_eq!(proposal.missing.len(), 1, "{:?}", proposal.missing);
         assert!(proposal.toml.contains("# torque = { name = \"a\", unit = \"Nm\" }"), "{}", proposal.toml);
         assert!(proposal.toml.contains("5 in every row"), "{}", proposal.toml);
