@@ -256,13 +256,9 @@ impl Joint {
             Kind::Current => vec![("torque_constant", self.torque_constant)],
             Kind::PositionServo | Kind::DcMotor => vec![("torque_per_volt", self.torque_constant / self.resistance)],
         };
-        // A loss by back-EMF that is not told apart counts as viscous friction.
-        let is_motor = matches!(self.kind, Kind::PositionServo | Kind::DcMotor);
-        let lost = if is_motor { self.torque_constant * self.torque_constant / self.resistance } else { 0.0 };
-        let apart = found(&json, "back_emf", lost).map(|_| ("back_emf", lost));
-        let viscous = if apart.is_some() { self.viscous } else { self.viscous + lost };
-        let of_joint = [("coulomb_torque", self.coulomb), ("viscous_coefficient", viscous), ("inertia", self.inertia)];
-        let truths = of_joint.into_iter().chain(constants).chain(apart);
+        let of_joint =
+            [("coulomb_torque", self.coulomb), ("viscous_coefficient", self.viscous), ("inertia", self.inertia)];
+        let truths = of_joint.into_iter().chain(constants);
         Ok(truths.map(|(name, truth)| Found { name, value: found(&json, name, truth) }).collect())
     }
 

@@ -31,7 +31,7 @@ Written by `cargo run --release -p frikan-tests --bin servo-draws`; nothing belo
 
 Joints with drawn inertia, friction, gains and torque constants are simulated ([Simulating a joint](simulate.md)) for 40 s under drives of 20 kHz that log
 positions and commands at 500 Hz, and no torque. `trainer fit` gets two recordings with a weighed payload each and has to find the
-constants of the actuator too; `trainer diagnose` gets one recording beside its simulation and knows the constants.
+constants of the actuator too, of a motor all but its resistance; `trainer diagnose` gets one recording beside its simulation and knows the constants.
 
 ---
 ";
@@ -39,10 +39,10 @@ constants of the actuator too; `trainer diagnose` gets one recording beside its 
 #[derive(Parser)]
 struct Arguments {
     /// Draws of each kind that are fitted
-    #[arg(long, default_value_t = 20)]
+    #[arg(long, default_value_t = 5)]
     draws: u64,
     /// Draws of each kind and each hidden effect that are diagnosed
-    #[arg(long, default_value_t = 4)]
+    #[arg(long, default_value_t = 1)]
     diagnosed: u64,
     /// First seed
     #[arg(long, default_value_t = 7001)]
