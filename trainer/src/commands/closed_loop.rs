@@ -30,7 +30,7 @@ use account::{Account, FedBy};
 /// machine.
 ///
 /// The drive is the firmware's code: position loop, encoder filter and supervised compensator, on the host or on an emulated
-/// microcontroller, bit for bit the same. The joint is that of `trainer simulate`, effects included. Where it reports no torque ([actuator]),
+/// microcontroller, bit for bit the same. The joint is that of `trainer simulate`, effects included. Where it reports no torque (`[actuator]`),
 /// the actuator is told in its own form: a `pd` or `position_servo` joint follows the reference by its own law and limits and is told of the
 /// compensation alone, as a torque to add or an offset of its position reference; `current` and `dc_motor` joints are told of all of the
 /// drive's torque, as current, duty or voltage.
