@@ -131,6 +131,8 @@ impl Candidates {
             if !columns.is_empty() {
                 let relative_variance = vec![1.0; columns.len()];
                 let known = named.and_then(|hypothesis| hypothesis.known_coefficient(&shape)).map(|c| c * sizes[0]);
+                // A column that this recording does not show is expected nowhere.
+                let known = known.filter(|known| *known > 0.0 && known.is_finite());
                 self.entries[entry].shapes.push(Shaped { shape, columns, relative_variance, known, log_weight });
             }
         }
@@ -226,8 +228,8 @@ impl Candidates {
                 shared: shared(shaped),
                 mean: vec![shaped.known.unwrap_or(0.0); shaped.columns.len()],
                 variance: match shaped.known {
-                    Some(known) if known > 0.0 => vec![(KNOWN_WITHIN_SHARE * known).powi(2)],
-                    _ => Self::variance(friction, &shaped.relative_variance),
+                    Some(known) => vec![(KNOWN_WITHIN_SHARE * known).powi(2)],
+                    None => Self::variance(friction, &shaped.relative_variance),
                 },
                 log_weight: shaped.log_weight,
                 only_positive: entry.only_positive && shaped.known.is_none(),
