@@ -13,8 +13,10 @@ use crate::error::{Error, Result, codes};
 use crate::fit::HostModel;
 use crate::joint::{Drive, Joint};
 
-use crate::workflow::recordings::{Reading, folded_warnings, load_all, load_with_faults};
-pub(super) use crate::workflow::recordings::{Source, motion};
+pub(super) use crate::workflow::recordings::motion;
+use crate::workflow::recordings::{folded_warnings, load_all, load_with_faults};
+use crate::workflow::source::Reading;
+pub(super) use crate::workflow::source::Source;
 
 /// What is known of the joint, from its file where one is given; what nothing reads of that file is told on standard error.
 ///

@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::actuator;
-use super::recordings::{Reading, Source, Warning, load_all, load_with_faults};
+use super::recordings::{Warning, load_all, load_with_faults};
+use super::source::{Reading, Source};
 use crate::actuator::Kind;
 use crate::checks::survey::{Fact, Motion, Seen, survey};
 use crate::error::{Error, Result, codes};

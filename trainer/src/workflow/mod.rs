@@ -10,6 +10,7 @@ pub mod fit;
 pub mod predict;
 pub mod recordings;
 pub mod rollout;
-mod source;
+pub(crate) mod source;
 
-pub use recordings::{Source, Warning};
+pub use recordings::Warning;
+pub use source::Source;

@@ -3,7 +3,8 @@
 use frikan_shared::units::Unit;
 
 use super::columns::with_columns;
-use super::recordings::{Source, Warning, motion};
+use super::recordings::{Warning, motion};
+use super::source::Source;
 use crate::actuator::Kind;
 use crate::error::{Error, Result};
 use crate::fit::HostModel;

@@ -1,5 +1,6 @@
 //! Recordings as they are safe to use, and what was wrong with them in sentences.
 
+use super::source::{Reading, Source};
 use crate::checks::{self, Fault, Note, Reviewed};
 use crate::diagnose::checks::note::{HealthNote, Observation, RecordingNote};
 use crate::error::{Error, Result};
@@ -11,9 +12,6 @@ use crate::report::tell::folded::{Noted, folded};
 use crate::report::tell::recording_note::recording_note;
 use serde_json::{Value, json};
 use std::fmt;
-
-pub(crate) use super::source::Reading;
-pub use super::source::Source;
 
 /// A note on a recording for a reader.
 #[derive(Clone, Debug)]

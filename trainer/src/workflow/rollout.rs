@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::columns::with_columns;
-use super::recordings::{Source, Warning, motion};
+use super::recordings::{Warning, motion};
+use super::source::Source;
 use crate::error::{Error, Result, codes};
 use crate::fit::HostModel;
 use crate::joint::Joint;

@@ -5,7 +5,8 @@ use crate::error::Error;
 use crate::fit::outcome::{Outcome as JointLaw, Trace};
 use crate::joint::ArmFile;
 use crate::workflow::fit::doubt;
-use crate::workflow::recordings::{Source, Warning};
+use crate::workflow::recordings::Warning;
+use crate::workflow::source::Source;
 
 /// What is known of an arm, and its recordings.
 #[derive(Clone, Copy, Debug)]

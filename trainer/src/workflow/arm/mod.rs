@@ -11,7 +11,8 @@ use std::time::Instant;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use super::recordings::{Source, Warning, motion_of};
+use super::recordings::{Warning, motion_of};
+use super::source::Source;
 use crate::arm::chain::Chain;
 use crate::arm::fit::{Arm, ArmProgress, JointOutcome};
 use crate::arm::motion::Run;

@@ -14,7 +14,8 @@ use crate::joint::{self, Joint};
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{Quantity, Recording};
-use crate::workflow::recordings::{Reading, motion, units};
+use crate::workflow::recordings::{motion, units};
+use crate::workflow::source::Reading;
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
 

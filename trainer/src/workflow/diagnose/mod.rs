@@ -15,7 +15,8 @@ use std::time::Instant;
 use serde_json::Value;
 
 use super::actuator;
-use super::recordings::{Reading, Warning, load_all, load_with_faults, units};
+use super::recordings::{Warning, load_all, load_with_faults, units};
+use super::source::Reading;
 use crate::diagnose::advice::{Limits, Plan, Question, plan};
 use crate::diagnose::answer::finding::tell_first;
 use crate::diagnose::answer::outcome::Diagnosis;

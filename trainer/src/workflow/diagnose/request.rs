@@ -6,7 +6,7 @@ use crate::compile::profile::Profile;
 pub use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::preparation::rows::Lock;
 use crate::fit::CELLS;
-use crate::workflow::recordings::Source;
+use crate::workflow::source::Source;
 
 /// What a diagnosis is asked for.
 #[derive(Clone, Debug)]

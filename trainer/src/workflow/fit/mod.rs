@@ -11,7 +11,8 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-use super::recordings::{Reading, Source, Warning, folded_warnings, load, load_all};
+use super::recordings::{Warning, folded_warnings, load, load_all};
+use super::source::{Reading, Source};
 use crate::actuator::Kind;
 use crate::error::{Error, Result, codes};
 use crate::fit::outcome::Soundness;
