@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use frikan_trainer::rollout::FREE_FALL_M_S2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use serde_json::Value;
@@ -15,9 +16,8 @@ const DRIVE: &str = "[plant.drive]\nrate_Hz = 20000\n[plant.control]\nvelocity_c
 const SAMPLES_PER_ROW: usize = 40;
 /// Length of a recording, s.
 const SECONDS: &str = "40";
-/// Distance of a payload from the axis, m, and the acceleration of its weight, m/s2.
+/// Distance of a payload from the axis, m.
 const PAYLOAD_M: f64 = 0.3;
-const GRAVITY_M_S2: f64 = 9.806_65;
 /// Gains of the firmware, as it counts them, in the two recordings of a position servo.
 const FIRMWARE_GAINS: [f64; 2] = [100.0, 300.0];
 /// Supply of motors, V.
@@ -173,7 +173,7 @@ impl Joint {
     /// joint.toml of what is simulated, with the payload at a place.
     fn simulated(&self, place: usize, hidden: Hidden) -> String {
         let mut joint = self.clone();
-        let weight = self.payloads[place] * GRAVITY_M_S2 * PAYLOAD_M;
+        let weight = self.payloads[place] * FREE_FALL_M_S2 * PAYLOAD_M;
         let mut more = String::new();
         match hidden {
             Hidden::WeakGain(share) => {

@@ -12,7 +12,7 @@ mod score;
 mod series;
 mod simulate;
 
-pub use body::{Body, payload};
+pub use body::{Body, FREE_FALL_M_S2, payload};
 pub use image::{ImageFriction, law};
 pub use of_image::{Rollout, default_window_s, of_image, score_of_image};
 pub use resistance::{Instant, Levels, Resistance, Split};
