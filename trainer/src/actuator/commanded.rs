@@ -10,6 +10,8 @@ pub struct Commanded {
     pub commands: Vec<Command>,
     /// Samples of each recording with its actuator.
     pub actuators: Vec<(Range<usize>, Actuator)>,
+    /// Torque that a weighed payload takes of the actuator's, N m, one a sample; zero where none is weighed.
+    pub payload: Vec<f64>,
 }
 
 impl Commanded {
@@ -17,13 +19,20 @@ impl Commanded {
     #[must_use]
     pub fn of(commands: Vec<Command>, actuator: Actuator) -> Self {
         let actuators = vec![(0..commands.len(), actuator)];
-        Self { commands, actuators }
+        Self { payload: vec![0.0; commands.len()], commands, actuators }
+    }
+
+    /// The same under a payload that takes a torque, N m, one a sample.
+    #[must_use]
+    pub fn carrying(self, payload: Vec<f64>) -> Self {
+        Self { payload, ..self }
     }
 
     /// Puts those of a later recording behind these.
     pub fn append(&mut self, next: Self) {
         let count = self.commands.len();
         self.commands.extend(next.commands);
+        self.payload.extend(next.payload);
         let later = next.actuators.into_iter();
         self.actuators.extend(later.map(|(samples, actuator)| (samples.start + count..samples.end + count, actuator)));
     }
@@ -51,7 +60,7 @@ impl Commanded {
     #[must_use]
     pub fn with(&self, change: impl Fn(&Actuator) -> Actuator) -> Self {
         let changed = self.actuators.iter().map(|(samples, actuator)| (samples.clone(), change(actuator)));
-        Self { commands: self.commands.clone(), actuators: changed.collect() }
+        Self { actuators: changed.collect(), ..self.clone() }
     }
 
     /// The same with a reference that moves no faster than `limit`, rad/s, over stretches of uninterrupted time of one sample every

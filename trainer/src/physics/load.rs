@@ -49,10 +49,13 @@ impl Hypothesis for LoadFriction {
             return Vec::new();
         }
         let top = state.top_speed();
-        let mut shapes = vec![vec![1.0, 0.0, 1.0], vec![2.0, 0.0, 1.0]];
-        shapes.extend(geometric_grid(0.015 * top, 0.12 * top, 3).into_iter().map(|velocity| vec![1.0, velocity, 1.0]));
+        let mut velocities = vec![0.0];
+        velocities.extend(geometric_grid(0.015 * top, 0.12 * top, 3));
+        let mut shapes = vec![vec![2.0, 0.0, 1.0]];
+        let mut add = |share: f64| shapes.extend(velocities.iter().map(|velocity| vec![1.0, *velocity, share]));
+        add(1.0);
         if of_inertia(state).is_some() {
-            shapes.extend(ROTOR_SHARES.map(|share| vec![1.0, 0.0, share]));
+            ROTOR_SHARES.into_iter().for_each(add);
         }
         if state.commanded.is_some() {
             shapes.extend(LOSSES.map(|loss| vec![1.0, 0.0, 1.0, loss]));

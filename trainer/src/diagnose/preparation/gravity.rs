@@ -5,7 +5,11 @@ use crate::physics::JointState;
 
 /// What a given rigid body has beside its inertia, which goes with the acceleration; `None` where none is given.
 pub(crate) fn gravity_of_body(state: &JointState) -> Option<Vec<f64>> {
-    let body = state.rigid_body.as_ref()?;
+    without_inertia(state, state.rigid_body.as_ref()?)
+}
+
+/// What a torque has beside what goes with the acceleration; `None` where the motion does not tell these apart.
+pub(super) fn without_inertia(state: &JointState, body: &[f64]) -> Option<Vec<f64>> {
     let mut columns = vec![state.acceleration.clone(), vec![1.0; state.len()]];
     columns.extend(torques_of_position(state));
     let inertia = least_squares(&columns, body, &state.segments)?[0];

@@ -2,7 +2,7 @@
 //! aside.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position};
+use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position, without_inertia};
 use crate::diagnose::preparation::rows::{Block, Division, Lock, divide, hesitation, standstill};
 use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
 use crate::diagnose::preparation::two_encoders::shown_by_twist;
@@ -129,6 +129,10 @@ impl Prepared {
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
         state.gravity = match &signals.load {
+            // What a commanded joint carries is weighed, and has its inertia in it.
+            Some(_) if state.commanded.is_some() => {
+                state.load.as_ref().and_then(|load| without_inertia(&state, load)).or_else(|| state.load.clone())
+            }
             Some(_) => state.load.clone(),
             None => gravity_of_body(&state),
         };

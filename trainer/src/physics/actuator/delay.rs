@@ -1,6 +1,8 @@
 //! H8: the command acts later than the actuator's constants say.
 
-use super::missing_torque;
+use super::{asked_of_gain, missing_torque};
+use crate::actuator::Commanded;
+use crate::numerics::between_samples::between_samples;
 use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName, geometric_grid};
 
 pub(in crate::physics) struct CommandDelay;
@@ -16,6 +18,19 @@ const STEPS: usize = 18;
 fn bounds(state: &JointState) -> (f64, f64) {
     let shortest = SHORTEST_SAMPLES * state.period;
     (shortest, LONGEST_S.max(2.0 * shortest))
+}
+
+/// Torque that a recorded current or duty lacks where it acts late by so many samples: by what the joint needs of it.
+fn late_torque(state: &JointState, samples: f64) -> Vec<f64> {
+    let asked = asked_of_gain(state, &state.predicted);
+    let mut column = vec![0.0; state.len()];
+    for segment in &state.segments {
+        let of_segment = &asked[segment.clone()];
+        for i in segment.clone() {
+            column[i] = asked[i] - between_samples(of_segment, (i - segment.start) as f64 - samples);
+        }
+    }
+    column
 }
 
 impl Hypothesis for CommandDelay {
@@ -36,7 +51,14 @@ impl Hypothesis for CommandDelay {
     }
 
     fn columns(&self, state: &JointState, shape: &[f64]) -> Vec<Vec<f64>> {
-        let mut column = missing_torque(state, |commanded| commanded.delayed(&state.segments, shape[0] / state.period));
+        let late = shape[0] / state.period;
+        let follows_position =
+            |commanded: &Commanded| commanded.actuators.iter().all(|(_, a)| a.kind.follows_position());
+        let mut column = if state.commanded.as_ref().is_none_or(follows_position) {
+            missing_torque(state, |commanded| commanded.delayed(&state.segments, late))
+        } else {
+            late_torque(state, late)
+        };
         column.iter_mut().for_each(|torque| *torque /= shape[0]);
         vec![column]
     }

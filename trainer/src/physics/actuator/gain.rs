@@ -1,6 +1,6 @@
 //! H6: the actuator's gain is not the one compared with, which is larger by a share epsilon of what it is.
 
-use super::motion;
+use super::{asked_of_gain, motion};
 use crate::actuator::{Actuator, Kind};
 use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
@@ -13,23 +13,21 @@ const DAMPING: f64 = 1.0;
 /// Variant in which all that a controller asks for is: the torque constant of the motor behind it.
 const TORQUE: f64 = 2.0;
 
-/// Torque of a part of an actuator, N m a sample; none where it stands at a limit. Of the gain it is what the torque compared with needs of it:
-/// what the commands make of it holds the noise of the position, and would explain the torque by itself.
+/// Torque of a part of an actuator, N m a sample; none where it stands at a limit.
 fn part(state: &JointState, variant: f64) -> Vec<f64> {
     let Some((commanded, known)) = state.commanded.as_ref().zip(state.known.as_ref()) else {
         return vec![0.0; state.len()];
     };
+    let asked = asked_of_gain(state, known);
     commanded.map(|actuator, command, i| {
         let motion = motion(state, i);
         let applied = actuator.apply(command, motion);
-        let own = match actuator.kind {
-            Kind::Torque => 0.0,
-            Kind::Pd if variant == DAMPING => return applied.by_kd * actuator.kd,
-            Kind::Pd if variant == TORQUE => applied.at(motion.velocity),
-            Kind::Pd => applied.by_kp * command.kp,
-            Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
-        };
-        if applied.limited { 0.0 } else { known[i] - (applied.at(motion.velocity) - own) }
+        match (actuator.kind, variant) {
+            (Kind::Pd, DAMPING) => applied.by_kd * actuator.kd,
+            (Kind::Pd, TORQUE) => applied.at(motion.velocity),
+            _ if applied.limited => 0.0,
+            _ => asked[i],
+        }
     })
 }
 

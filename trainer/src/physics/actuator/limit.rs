@@ -1,6 +1,6 @@
 //! H7: supply or firmware let the actuator do less than its command asks for.
 
-use super::{missing_torque, motion};
+use super::{asked_of_gain, missing_torque, motion};
 use crate::actuator::{Actuator, Command, Limits};
 use crate::numerics::statistics::quantile;
 use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
@@ -72,7 +72,8 @@ impl Hypothesis for SupplyOrDutyLimit {
         } else if variant == DUTY {
             limited(|limits, level| Limits { duty: limits.duty.min(level), ..limits })
         } else if variant == VOLTAGE {
-            missing_torque(state, |c| c.with(|actuator| Actuator { gain: level * actuator.gain, ..*actuator }))
+            let known = state.known.as_ref().unwrap_or(&state.predicted);
+            asked_of_gain(state, known).into_iter().map(|torque| (1.0 - level) * torque).collect()
         } else {
             missing_torque(state, |commanded| commanded.rate_limited(&state.segments, state.period, level))
         }]

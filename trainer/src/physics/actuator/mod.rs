@@ -7,7 +7,7 @@ mod gain;
 mod limit;
 
 use super::JointState;
-use crate::actuator::{Commanded, Motion};
+use crate::actuator::{Commanded, Kind, Motion};
 
 pub(super) use dead_band::DeadBand;
 pub(super) use delay::CommandDelay;
@@ -26,4 +26,20 @@ fn missing_torque(state: &JointState, otherwise: impl Fn(&Commanded) -> Commande
     let mut missing = torque(commanded);
     missing.iter_mut().zip(torque(&otherwise(commanded))).for_each(|(missing, torque)| *missing -= torque);
     missing
+}
+
+/// Torque that the gain of an actuator has to make at every sample, by a recorded position error, current or duty, so that `torque`, N m, is
+/// left of it beside what a payload takes. What the recorded commands make of it holds their noise, and would explain the torque, which is made of them, by itself.
+fn asked_of_gain(state: &JointState, torque: &[f64]) -> Vec<f64> {
+    let Some(commanded) = &state.commanded else { return vec![0.0; state.len()] };
+    commanded.map(|actuator, command, i| {
+        let motion = motion(state, i);
+        let applied = actuator.apply(command, motion);
+        let own = match actuator.kind {
+            Kind::Torque => 0.0,
+            Kind::Pd => applied.by_kp * command.kp,
+            Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
+        };
+        torque[i] + commanded.payload[i] - (applied.at(motion.velocity) - own)
+    })
 }

@@ -1,6 +1,7 @@
 //! Joints that report no torque: what their actuators made of the commands stands for it.
 
 use crate::actuator::{Actuator, Commanded, Kind, Partial};
+use crate::diagnose::measurement::signals::Signals;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::recording::Recording;
@@ -44,28 +45,36 @@ pub(super) fn under_torque(
 pub(super) struct Commands {
     series: Series,
     actuator: Actuator,
+    load: Load,
 }
 
 impl Commands {
-    /// `None` of a joint that reports torque.
+    /// `None` of a joint that reports torque; `load` is what its recordings have as the load of the gear.
     ///
     /// # Errors
     /// As [`Series::of`].
-    pub(super) fn of(recording: &Recording, joint: &Joint) -> Result<Option<Self>> {
+    pub(super) fn of(recording: &Recording, joint: &Joint, load: Load) -> Result<Option<Self>> {
         let joint = joint.in_recording(&recording.label);
         if joint.actuator.kind == Kind::Torque {
             return Ok(None);
         }
         let actuator = Partial::of(joint.actuator.kind, &joint.actuator.constants).actuator;
-        Ok(Some(Self { series: Series::of(recording, &actuator)?, actuator }))
+        Ok(Some(Self { series: Series::of(recording, &actuator)?, actuator, load }))
     }
 
-    /// What acts at some instants, s.
-    pub(super) fn at(&self, instants: &[f64]) -> Commanded {
+    /// What acts at the samples of the recording under the actuator's torque.
+    pub(super) fn at(&self, signals: &Signals) -> Commanded {
         let acting = |instant: &f64| {
             let time = instant - self.actuator.delay_s;
             self.series.at(time, self.series.time.partition_point(|row| *row <= time).saturating_sub(1))
         };
-        Commanded::of(instants.iter().map(acting).collect(), self.actuator)
+        let commanded = Commanded::of(signals.time.iter().map(acting).collect(), self.actuator);
+        match (&signals.load, self.load) {
+            (Some(payload), Load::OfPayload) => commanded.carrying(payload.clone()),
+            (Some(whole), Load::OfActuator) => {
+                commanded.carrying(whole.iter().zip(&signals.torque).map(|(whole, torque)| whole - torque).collect())
+            }
+            (None, _) | (_, Load::None) => commanded,
+        }
     }
 }

@@ -88,11 +88,11 @@ pub(super) fn comparison(
     }
 }
 
-/// What the gear of a commanded joint carries, N m a sample: what its actuator has to put out by a law, beside what a payload takes. What it
-/// did put out is the torque that is explained.
+/// What the gear of a commanded joint carries, N m a sample: the rigid body by a law, beside what a payload takes. What the actuator did put
+/// out is the torque that is explained.
 fn load_by_law(signals: &Signals, law: &Reference) -> Vec<f64> {
     let payload = signals.load.as_deref();
-    law.torque.iter().enumerate().map(|(i, torque)| torque + payload.map_or(0.0, |payload| payload[i])).collect()
+    law.rigid_body.iter().enumerate().map(|(i, torque)| torque + payload.map_or(0.0, |payload| payload[i])).collect()
 }
 
 /// A model at the states of a recording, with the error that its law has by the image.
@@ -122,7 +122,7 @@ fn as_recorded(mut simulated: Recording, real: &Recording, joint: &Joint) -> Res
 
 /// Signals of recordings of one joint, one behind the other, with what its actuator was told where that makes the torque.
 fn joined((real, told): (&[Recording], &[Commands]), joint: &Joint) -> Result<Signals> {
-    let commanded = |place: usize, signals: &Signals| told.get(place).map(|told: &Commands| told.at(&signals.time));
+    let commanded = |place: usize, signals: &Signals| told.get(place).map(|told: &Commands| told.at(signals));
     let mut first = Signals::of(&real[0], joint)?;
     first.commanded = commanded(0, &first);
     let mut all = first.clone();

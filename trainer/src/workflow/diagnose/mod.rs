@@ -105,7 +105,7 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref(), load));
     // From here on the constants of the actuator are known.
     let joint = &actuator.as_ref().map_or_else(|| joint.clone(), |actuator| actuator.joint(joint));
-    let told = recordings.iter().filter_map(|recording| Commands::of(recording, joint).transpose());
+    let told = recordings.iter().filter_map(|recording| Commands::of(recording, joint, load).transpose());
     let told = told.collect::<Result<Vec<_>>>()?;
     let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref(), load));
     let recordings = recordings.collect::<Result<Vec<_>>>()?;
