@@ -1,6 +1,6 @@
 //! H6: the actuator's gain is not the one compared with, which is larger by a share epsilon of what it is.
 
-use super::{asked_of_gain, motion};
+use super::{by_gain, motion};
 use crate::actuator::{Actuator, Kind};
 use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
@@ -10,23 +10,28 @@ pub(in crate::physics) struct ActuatorGain;
 const GAIN: f64 = 0.0;
 /// Variant in which the torque by the velocity error of a controller is.
 const DAMPING: f64 = 1.0;
-/// Variant in which all that a controller asks for is: the torque constant of the motor behind it.
+/// Variant in which the torque constant of the motor is: all that a controller asks for, or the torque by the voltage and, twice as much, what
+/// the induced voltage takes of it.
 const TORQUE: f64 = 2.0;
 
-/// Torque of a part of an actuator, N m a sample; none where it stands at a limit.
+/// Torque of a part of an actuator, N m a sample, by what the joint needs of it; none where it stands at a limit. That by a velocity error is
+/// taken as recorded: what is left for it holds what the position error made, the noise of the torque with it.
 fn part(state: &JointState, variant: f64) -> Vec<f64> {
     let Some((commanded, known)) = state.commanded.as_ref().zip(state.known.as_ref()) else {
         return vec![0.0; state.len()];
     };
-    let asked = asked_of_gain(state, known);
     commanded.map(|actuator, command, i| {
-        let motion = motion(state, i);
-        let applied = actuator.apply(command, motion);
+        let applied = actuator.apply(command, motion(state, i));
+        if applied.limited {
+            return 0.0;
+        }
+        let whole = known[i] + commanded.payload[i];
+        let beside_gain = applied.at(state.velocity[i]) - by_gain(actuator, command, &applied);
         match (actuator.kind, variant) {
             (Kind::Pd, DAMPING) => applied.by_kd * actuator.kd,
-            (Kind::Pd, TORQUE) => applied.at(motion.velocity),
-            _ if applied.limited => 0.0,
-            _ => asked[i],
+            (Kind::Pd, TORQUE) => whole,
+            (_, TORQUE) => whole + beside_gain,
+            _ => whole - beside_gain,
         }
     })
 }
@@ -49,6 +54,8 @@ impl Hypothesis for ActuatorGain {
         }
         if any(|actuator| actuator.kind == Kind::Pd && actuator.kd > 0.0) {
             shapes.extend([vec![DAMPING], vec![TORQUE]]);
+        } else if any(|actuator| actuator.kind.is_motor()) {
+            shapes.push(vec![TORQUE]);
         }
         shapes
     }

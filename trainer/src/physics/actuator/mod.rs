@@ -7,7 +7,7 @@ mod gain;
 mod limit;
 
 use super::JointState;
-use crate::actuator::{Commanded, Kind, Motion};
+use crate::actuator::{Actuator, Applied, Command, Commanded, Kind, Motion};
 
 pub(super) use dead_band::DeadBand;
 pub(super) use delay::CommandDelay;
@@ -28,18 +28,21 @@ fn missing_torque(state: &JointState, otherwise: impl Fn(&Commanded) -> Commande
     missing
 }
 
-/// Torque that the gain of an actuator has to make at every sample, by a recorded position error, current or duty, so that `torque`, N m, is
-/// left of it beside what a payload takes. What the recorded commands make of it holds their noise, and would explain the torque, which is made of them, by itself.
+/// Torque by the gain of an actuator: on a position error, a current, a duty.
+fn by_gain(actuator: &Actuator, command: &Command, applied: &Applied) -> f64 {
+    match actuator.kind {
+        Kind::Torque => 0.0,
+        Kind::Pd => applied.by_kp * command.kp,
+        Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
+    }
+}
+
+/// Torque that the gain of an actuator has to make at every sample so that `torque`, N m, is left beside what a payload takes. What the
+/// recorded commands make of it holds their noise, and would explain the torque, which is made of them, by itself.
 fn asked_of_gain(state: &JointState, torque: &[f64]) -> Vec<f64> {
     let Some(commanded) = &state.commanded else { return vec![0.0; state.len()] };
     commanded.map(|actuator, command, i| {
-        let motion = motion(state, i);
-        let applied = actuator.apply(command, motion);
-        let own = match actuator.kind {
-            Kind::Torque => 0.0,
-            Kind::Pd => applied.by_kp * command.kp,
-            Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
-        };
-        torque[i] + commanded.payload[i] - (applied.at(motion.velocity) - own)
+        let applied = actuator.apply(command, motion(state, i));
+        torque[i] + commanded.payload[i] - (applied.at(state.velocity[i]) - by_gain(actuator, command, &applied))
     })
 }
