@@ -190,6 +190,12 @@ impl Applied {
     pub fn at(&self, velocity: f64) -> f64 {
         self.torque - self.damping * velocity
     }
+
+    /// Whether a gain changes it: neither at the limit of its torque nor within a dead band. At the limit of a duty the motor still has one.
+    #[must_use]
+    pub fn follows_command(&self) -> bool {
+        self.by_gain != 0.0 || self.by_kp != 0.0 || self.by_kd != 0.0
+    }
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ const DAMPING: f64 = 1.0;
 /// the induced voltage takes of it.
 const TORQUE: f64 = 2.0;
 
-/// Torque of a part of an actuator, N m a sample, by what the joint needs of it; none where it stands at a limit. That by a velocity error is
+/// Torque of a part of an actuator, N m a sample, by what the joint needs of it; none where it does not follow its command. That by a velocity error is
 /// taken as recorded: what is left for it holds what the position error made, the noise of the torque with it.
 fn part(state: &JointState, variant: f64) -> Vec<f64> {
     let Some((commanded, known)) = state.commanded.as_ref().zip(state.known.as_ref()) else {
@@ -22,7 +22,7 @@ fn part(state: &JointState, variant: f64) -> Vec<f64> {
     };
     commanded.map(|actuator, command, i| {
         let applied = actuator.apply(command, motion(state, i));
-        if applied.limited {
+        if !applied.follows_command() {
             return 0.0;
         }
         let whole = known[i] + commanded.payload[i];

@@ -37,12 +37,16 @@ fn by_gain(actuator: &Actuator, command: &Command, applied: &Applied) -> f64 {
     }
 }
 
-/// Torque that the gain of an actuator has to make at every sample so that `torque`, N m, is left beside what a payload takes. What the
+/// Torque that the gain of an actuator has to make at every sample so that `torque`, N m, is left beside what a payload takes; none where it
+/// does not follow its command. What the
 /// recorded commands make of it holds their noise, and would explain the torque, which is made of them, by itself.
 fn asked_of_gain(state: &JointState, torque: &[f64]) -> Vec<f64> {
     let Some(commanded) = &state.commanded else { return vec![0.0; state.len()] };
     commanded.map(|actuator, command, i| {
         let applied = actuator.apply(command, motion(state, i));
+        if !applied.follows_command() {
+            return 0.0;
+        }
         torque[i] + commanded.payload[i] - (applied.at(state.velocity[i]) - by_gain(actuator, command, &applied))
     })
 }
