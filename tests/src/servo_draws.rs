@@ -218,9 +218,7 @@ impl Joint {
         assert_eq!(done.status, 0, "{}", done.messages);
         let path = at.join(name);
         let text = std::fs::read_to_string(&path).expect("the program wrote it");
-        let rows = text.lines().skip(1).step_by(SAMPLES_PER_ROW);
-        let kept: Vec<&str> = text.lines().take(1).chain(rows).collect();
-        std::fs::write(&path, kept.join("\n") + "\n").expect("it is a temporary folder");
+        std::fs::write(&path, logged(&text)).expect("it is a temporary folder");
     }
 
     /// joint.toml as its owner has it.
@@ -279,6 +277,31 @@ impl Joint {
         };
         json["findings"].as_array().into_iter().flatten().map(set).collect()
     }
+}
+
+/// What a drive logs of its samples: positions at some of them, a current or duty as its mean about each, since one sample of it holds what the
+/// differentiated encoder makes of its counts.
+fn logged(samples: &str) -> String {
+    let mut lines = samples.lines();
+    let head = lines.next().unwrap_or_default();
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let averaged: Vec<usize> =
+        head.split(',').enumerate().filter(|(_, name)| ["current_A", "duty"].contains(name)).map(|(k, _)| k).collect();
+    let mean = |rows: &[Vec<&str>], column: usize, at: usize| {
+        let about = &rows[at.saturating_sub(SAMPLES_PER_ROW / 2)..(at + SAMPLES_PER_ROW / 2).min(rows.len())];
+        let sum: f64 = about.iter().map(|row| row[column].parse::<f64>().expect("it is a number")).sum();
+        (sum / about.len() as f64).to_string()
+    };
+    let mut text = format!("{head}\n");
+    for at in (0..rows.len()).step_by(SAMPLES_PER_ROW) {
+        let means: Vec<String> = averaged.iter().map(|&column| mean(&rows, column, at)).collect();
+        let kept = rows[at].iter().enumerate().map(|(column, cell)| {
+            averaged.iter().position(|&other| other == column).map_or(*cell, |place| &means[place])
+        });
+        text += &kept.collect::<Vec<_>>().join(",");
+        text.push('\n');
+    }
+    text
 }
 
 /// A printed parameter over its truth, and whether its interval holds that.

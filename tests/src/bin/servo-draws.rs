@@ -30,7 +30,7 @@ const HEAD: &str = "\
 Written by `cargo run --release -p frikan-tests --bin servo-draws`; nothing below the line is typed by hand.
 
 Joints with drawn inertia, friction, gains and torque constants are simulated ([Simulating a joint](simulate.md)) for 40 s under drives of 20 kHz that log
-positions and commands at 500 Hz, and no torque. `trainer fit` gets two recordings with a weighed payload each and has to find the
+positions and commands at 500 Hz, currents and duties as their means, and no torque. `trainer fit` gets two recordings with a weighed payload each and has to find the
 constants of the actuator too, of a motor all but its resistance; `trainer diagnose` gets one recording beside its simulation and knows the constants.
 
 ---
