@@ -35,6 +35,12 @@ fn carried(state: &JointState, share: f64) -> Option<Vec<f64>> {
     }
 }
 
+/// What an actuator that reports no torque has to put out by the law compared with: the rigid body, its friction and what a payload takes.
+fn of_actuator(state: &JointState) -> Option<Vec<f64>> {
+    let (commanded, known) = (state.commanded.as_ref()?, state.known.as_ref()?);
+    Some(state.map(|i| known[i] + commanded.payload[i]))
+}
+
 impl Hypothesis for LoadFriction {
     fn id(&self) -> EffectId {
         EffectId::LoadFriction
@@ -72,9 +78,14 @@ impl Hypothesis for LoadFriction {
         let scale = quantile(load.iter().map(|l| l.abs()), 0.9).max(f64::MIN_POSITIVE);
         let grow = |l: f64| if shape[0] == 1.0 { l.abs() } else { scale * (l.abs() / scale).powf(shape[0]) };
         // Friction of the torque that the actuator puts in is part of that torque: driving adds to the load, backdriving takes from it.
-        let loss = shape.get(3).copied().unwrap_or(0.0);
-        let put_in = |i: usize| load[i] / (1.0 - loss * (load[i] * state.velocity[i]).signum());
-        let mut columns = vec![state.map(|i| grow(put_in(i)) * state.sign[i])];
+        let put_in = match shape.get(3) {
+            Some(loss) => {
+                let by_law = of_actuator(state).unwrap_or(load);
+                state.map(|i| by_law[i] / (1.0 - loss * (by_law[i] * state.velocity[i]).signum()))
+            }
+            None => load,
+        };
+        let mut columns = vec![state.map(|i| grow(put_in[i]) * state.sign[i])];
         if shape[1] > 0.0 {
             columns.push(state.map(|i| columns[0][i] * (-(state.velocity[i] / shape[1]).powi(2)).exp()));
         }
