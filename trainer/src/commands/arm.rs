@@ -90,6 +90,9 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         None => ArmFile::default(),
         Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
     };
+    if !arguments.quiet {
+        file.unknown_keys().iter().for_each(|sentence| say(&format!("{} {sentence}", codes::UNKNOWN_KEY.id)));
+    }
     if let Some(path) = &arguments.advise {
         return plan(arguments, path, &robot, &file);
     }
