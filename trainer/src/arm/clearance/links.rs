@@ -58,7 +58,9 @@ impl Links {
             links.is_body.push(is_open || !own.is_empty());
             if is_open {
                 let joint = placed.carrier.map(|joint| chain.joints[joint].name.as_str());
-                if let Some(radius) = around.link_radius(joint) {
+                // What stands around in a world has no joint to reach to.
+                let radius = around.link_radius(joint).filter(|_| placed.name != WORLD);
+                if let Some(radius) = radius {
                     let start = placed.pose.translation.vector;
                     let capsules = stand_ins(start, &ends, radius);
                     links.solids.extend(capsules.iter().map(|solid| add(solid, &Isometry3::identity())));
@@ -119,4 +121,43 @@ fn stand_ins(start: Vector3<f64>, ends: &[Vector3<f64>], radius: f64) -> Vec<Sol
         Solid { pose, form: Form::Capsule { radius, half_length: 0.5 * way.norm() } }
     };
     ends.iter().map(capsule).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::parse;
+
+    /// A floor and a stand as a mesh, an arm of two bodies that hangs above them.
+    const HUNG: &str = r#"<mujoco><compiler angle="radian"/><worldbody><geom type="plane" size="0 0 1"/><geom type="mesh" mesh="stand"/>
+        <body name="upper" pos="0 0 2"><joint name="a" range="-1 1"/><geom type="capsule" size="0.05" fromto="0 0 0 0 0 -0.5"/>
+          <body name="lower" pos="0 0 -0.5"><joint name="b" axis="0 1 0" range="-1 1"/><inertial pos="0 0 -0.3" mass="1" diaginertia="1 1 1"/>
+          </body></body></worldbody></mujoco>"#;
+
+    #[test]
+    fn bodies_stand_beside_the_world_and_hang_on_each_other() {
+        let robot = parse(HUNG).unwrap();
+        let chain = Chain::of(&robot, &[]).unwrap();
+        let around = Surroundings { link_radius_m: Some(0.04), ..Surroundings::default() };
+        let links = Links::of(&robot, &chain, &around);
+        assert_eq!((links.looked.stood_in.join(" "), links.looked.unseen.join(" ")), ("lower".into(), "world".into()));
+        let owners: Vec<usize> = links
+            .solids
+            .iter()
+            .map(|solid| match solid.owner {
+                Owner::Link(link) => link,
+                Owner::Obstacle(_) => panic!("no obstacle is given"),
+            })
+            .collect();
+        let [floor, upper, lower] = owners[..] else { panic!("{owners:?}") };
+        assert_eq!([floor, upper, lower].map(|link| links.names[link].as_str()), ["world", "upper", "lower"]);
+        assert!(links.are_neighbours(upper, lower) && links.are_neighbours(lower, upper));
+        assert!(!links.are_neighbours(floor, upper) && !links.are_neighbours(floor, lower));
+        // Down to its centre of mass.
+        let [floor, _, lower] = &links.solids[..] else { panic!() };
+        assert!(
+            (lower.distance(floor, &[Isometry3::identity(), Isometry3::translation(0.0, 0.0, 1.0)]) - 0.66).abs()
+                < 1e-9
+        );
+    }
 }

@@ -263,3 +263,78 @@ fn reach(chain: &Chain, ranges: &[[f64; 2]], solid: &Placed) -> BTreeMap<usize, 
     }
     reach
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::parse;
+
+    /// Upper arm, a hinge of no length and no mass, forearm as a mesh, a tool fixed to it.
+    const ARM: &str = r#"<robot name="r"><link name="world"/><link name="base"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+        <link name="upper"><inertial><mass value="1"/></inertial><collision><origin xyz="0 0 0.25"/><geometry><cylinder radius="0.05" length="0.5"/></geometry></collision></link>
+        <link name="hinge"/><link name="fore"><inertial><mass value="1"/></inertial><collision><geometry><mesh filename="fore.stl"/></geometry></collision></link>
+        <link name="tool"><inertial><origin xyz="0 0 0.1"/><mass value="1"/></inertial></link><link name="tip"/>
+        <joint name="foot" type="fixed"><origin xyz="0 0 1"/><parent link="world"/><child link="base"/></joint>
+        <joint name="a" type="revolute"><origin xyz="0 0 0.05"/><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+        <joint name="b" type="revolute"><origin xyz="0 0 0.5"/><parent link="upper"/><child link="hinge"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+        <joint name="c" type="revolute"><parent link="hinge"/><child link="fore"/><axis xyz="1 0 0"/><limit lower="-2" upper="2"/></joint>
+        <joint name="d" type="fixed"><origin xyz="0 0 0.4"/><parent link="fore"/><child link="tool"/></joint>
+        <joint name="e" type="fixed"><origin xyz="0 0 0.2"/><parent link="tool"/><child link="tip"/></joint></robot>"#;
+    const RANGES: [[f64; 2]; 3] = [[-2.0, 2.0]; 3];
+
+    fn with_room<T>(surroundings: &str, with: impl FnOnce(Result<Room<'_>>) -> T) -> T {
+        let robot = parse(ARM).unwrap();
+        let chain = Chain::of(&robot, &[]).unwrap();
+        let around = crate::joint::ArmFile::parse(surroundings).unwrap().surroundings;
+        with(Room::of(&robot, &chain, &RANGES, &around, 1))
+    }
+
+    fn pairs(room: &Room<'_>) -> Vec<[String; 2]> {
+        room.pairs.iter().map(|pair| room.names(pair)).collect()
+    }
+
+    #[test]
+    fn links_without_neighbours_between_them_are_kept_apart() {
+        with_room("", |room| {
+            let room = room.unwrap();
+            assert_eq!((room.looked().unseen.join(" "), room.looked().stood_in.len()), ("fore tool".to_owned(), 0));
+            assert!(room.is_open() && room.starts() == [vec![0.0; 3]]);
+        });
+        with_room("link_radius_m = 0.03\n[joints.c]\nlink_radius_m = 0.04", |room| {
+            let room = room.unwrap();
+            assert_eq!(room.looked().stood_in, ["fore", "tool"]);
+            // Neither neighbours nor what is fixed to them; the hinge and the tip are frames.
+            assert_eq!(pairs(&room), [["base", "fore"], ["base", "tool"], ["upper", "tool"]]);
+            let stretched = room.poses(&[0.0; 3]);
+            let distances: Vec<f64> = room.pairs.iter().map(|pair| room.distance(pair, &stretched)).collect();
+            for (found, wanted) in distances.iter().zip([0.5 - 0.04, 0.9 - 0.04, 0.4 - 0.04]) {
+                assert!((found - wanted).abs() < 1e-4, "{distances:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn links_that_are_never_apart_are_left_out_and_told() {
+        with_room("link_radius_m = 0.4", |room| {
+            let room = room.unwrap();
+            assert_eq!(room.looked().never_apart, [["upper", "tool"]]);
+            assert!(pairs(&room).iter().all(|pair| *pair != ["upper", "tool"]));
+        });
+    }
+
+    #[test]
+    fn an_arm_that_cannot_stand_or_move_is_told_with_what_is_in_its_way() {
+        let crate_at = |x: f64, size: f64| {
+            format!("[[obstacles]]\nname = \"crate\"\ncentre_m = [{x}, 0, 1.3]\nsize_m = [{size}, {size}, {size}]\n")
+        };
+        let told = with_room(&crate_at(0.0, 0.4), |room| room.err().unwrap());
+        assert_eq!((told.code(), told.value()), (&codes::NO_CLEAR_MOTION, Some("upper / crate")), "{told}");
+        let plates = crate_at(0.09, 0.03) + &crate_at(-0.09, 0.03).replace("crate", "box");
+        with_room(&plates, |room| {
+            let room = room.unwrap();
+            assert_eq!(room.starts()[0], [0.0; 3]);
+            let told = room.no_motion();
+            assert_eq!((told.code(), told.value()), (&codes::NO_CLEAR_MOTION, Some("upper / crate")), "{told}");
+        });
+    }
+}

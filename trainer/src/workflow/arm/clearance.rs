@@ -50,7 +50,7 @@ pub(super) fn text(room: &Room<'_>, around: &Surroundings, nearest: &[Nearest]) 
     if !looked.never_apart.is_empty() {
         let pairs: Vec<String> =
             looked.never_apart.iter().map(|[one, other]| format!("`{one}` and `{other}`")).collect();
-        blind.push(format!("links that are never apart: {}", pairs.join(", ")));
+        blind.push(format!("links that no posture keeps so far apart: {}", pairs.join(", ")));
     }
     if around.obstacles.is_empty() {
         blind.push("surroundings: arm.toml gives no [[obstacles]]".to_owned());
