@@ -26,6 +26,64 @@ pub const SIX_AXES: &str = r#"<robot name="six">
 </robot>
 "#;
 
+/// What may not be run into of the links of [`SIX_AXES`]: place in their frames, m, and shape.
+const SOLIDS: [(&str, [f64; 3], &str); 7] = [
+    ("base", [0.0, 0.0, 0.04], r#"<cylinder radius="0.09" length="0.08"/>"#),
+    ("turret", [0.0, 0.0, 0.0], r#"<cylinder radius="0.08" length="0.16"/>"#),
+    ("upper", [0.0, 0.0, 0.3], r#"<cylinder radius="0.06" length="0.6"/>"#),
+    ("fore", [0.0, 0.0, 0.28], r#"<box size="0.1 0.1 0.6"/>"#),
+    ("roll", [0.0, 0.06, 0.0], r#"<cylinder radius="0.045" length="0.1"/>"#),
+    ("hand", [0.0, 0.0, 0.06], r#"<cylinder radius="0.045" length="0.12"/>"#),
+    ("flange", [0.0, 0.05, 0.0], r#"<sphere radius="0.06"/>"#),
+];
+
+/// Pairs of links of [`SIX_AXES`] that hang on each other.
+pub const NEIGHBOURS: [[&str; 2]; 6] = [
+    ["base", "turret"],
+    ["turret", "upper"],
+    ["upper", "fore"],
+    ["fore", "roll"],
+    ["roll", "hand"],
+    ["hand", "flange"],
+];
+
+/// Limits of an arm among boxes, for its `arm.toml`.
+pub const LIMITS: &str = "[limits]
+lowest_position_rad = -2
+highest_position_rad = 2
+velocity_rad_s = 1.5
+acceleration_rad_s2 = 4
+";
+
+/// Boxes around the robot: name, middle (m), edges (m), and turn about z (rad).
+pub const BOXES: [(&str, [f64; 3], [f64; 3], f64); 3] = [
+    ("table", [0.0, 0.0, -0.05], [1.6, 1.6, 0.06], 0.0),
+    ("wall", [-0.5, 0.0, 0.8], [0.1, 2.0, 1.6], 0.0),
+    ("crate", [0.6, 0.5, 0.2], [0.3, 0.3, 0.4], 0.4),
+];
+
+/// The robot with the shapes of its links.
+#[must_use]
+pub fn solid_robot() -> String {
+    SOLIDS.iter().fold(SIX_AXES.to_owned(), |text, (link, [x, y, z], shape)| {
+        let collision = format!(r#"<collision><origin xyz="{x} {y} {z}"/><geometry>{shape}</geometry></collision>"#);
+        let [open, empty] = [">", "/>"].map(|end| format!(r#"<link name="{link}"{end}"#));
+        let text = text.replace(&empty, &format!("{open}</link>"));
+        text.replace(&open, &format!("{open}{collision}"))
+    })
+}
+
+/// The boxes as `[[obstacles]]` of `arm.toml`.
+#[must_use]
+pub fn obstacles() -> String {
+    let table = |(name, centre, size, yaw): &(&str, [f64; 3], [f64; 3], f64)| {
+        format!(
+            "[[obstacles]]\nname = \"{name}\"\ncentre_m = {centre:?}\nsize_m = {size:?}\nrpy_rad = [0, 0, {yaw:?}]\n"
+        )
+    };
+    BOXES.iter().map(table).collect()
+}
+
 /// Number of joints.
 pub const JOINTS: usize = 6;
 /// Inertia of the rotors seen through the gears, kg m2.

@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use frikan_tests::arm::{
-    COULOMB, JOINTS, LOAD, NOISE, SIX_AXES, VISCOUS, evaluate, numbers, point_to_point, recorded, tones,
+    BOXES, COULOMB, JOINTS, LIMITS, LOAD, NOISE, SIX_AXES, VISCOUS, evaluate, numbers, obstacles, point_to_point,
+    recorded, solid_robot, tones,
 };
 use frikan_tests::command::run;
+use frikan_trainer::arm::chain::Chain;
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {
@@ -95,6 +98,109 @@ fn what_is_wrong_with_an_arm_is_told() {
         assert_eq!(done.status, status, "{words:?}: {}", done.messages);
         assert!(done.messages.contains(told), "{words:?}: {}", done.messages);
         assert!(!at.join("out").exists(), "{words:?}");
+    }
+}
+
+/// The least distance that points of upper arm and forearm come from the boxes along a motion, m; negative within a box.
+fn least_distance(motion: &str) -> f64 {
+    let chain = Chain::parse(SIX_AXES, &[]).unwrap();
+    let mut rows = csv::Reader::from_reader(motion.as_bytes());
+    let columns: Vec<usize> = (0..JOINTS).map(|joint| 1 + 3 * joint).collect();
+    // Points of the shell of both, every centimetre along them.
+    let around = |radius: f64, turn: f64| [radius * turn.cos(), radius * turn.sin()];
+    let mut shells: [Vec<Point3<f64>>; 2] = [Vec::new(), Vec::new()];
+    for step in 0..=60 {
+        let z = 0.01 * f64::from(step);
+        for turn in 0..24 {
+            let [x, y] = around(0.06, std::f64::consts::TAU * f64::from(turn) / 24.0);
+            shells[0].push(Point3::new(x, y, z));
+        }
+        for edge in [-0.05, -0.025, 0.0, 0.025, 0.05] {
+            for side in [-0.05, 0.05] {
+                shells[1].extend([Point3::new(edge, side, z - 0.02), Point3::new(side, edge, z - 0.02)]);
+            }
+        }
+    }
+    let mut least = f64::INFINITY;
+    for row in rows.records() {
+        let row = row.unwrap();
+        let mut pose = Isometry3::identity();
+        for (joint, column) in columns.iter().enumerate().take(3) {
+            let angle: f64 = row[*column].parse().unwrap();
+            pose *= chain.joints[joint].pose * UnitQuaternion::new(chain.joints[joint].axis * angle);
+            let Some(shell) = joint.checked_sub(1).map(|link| &shells[link]) else { continue };
+            for (_, centre, size, yaw) in BOXES {
+                let place = Isometry3::new(Vector3::from(centre), Vector3::z() * yaw);
+                let into = place.inverse() * pose;
+                for point in shell {
+                    let beyond = (into * point).coords.abs() - 0.5 * Vector3::from(size);
+                    let outside = beyond.sup(&Vector3::zeros()).norm();
+                    least = least.min(if outside > 0.0 { outside } else { beyond.max() });
+                }
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn a_planned_motion_keeps_clear_of_boxes_that_it_would_hit() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "arm.urdf", &solid_robot());
+    write(at, "free.toml", LIMITS);
+    write(at, "boxes.toml", &format!("clearance_m = 0.03\n{LIMITS}{}", obstacles()));
+    let advise = |surroundings: &str, threads: &str| {
+        let words = ["arm", "--urdf", "arm.urdf", "--joint", surroundings, "--threads", threads];
+        let done = run(at, &[&words[..], &["--advise", "motion.csv"]].concat());
+        assert_eq!(done.status, 0, "{}", done.messages);
+        (std::fs::read_to_string(at.join("motion.csv")).unwrap(), done.output)
+    };
+    let (free, text) = advise("free.toml", "2");
+    assert!(least_distance(&free) < 0.0, "the motion without boxes would miss them");
+    assert!(text.contains("Not looked at: surroundings"), "{text}");
+    let (clear, text) = advise("boxes.toml", "2");
+    let least = least_distance(&clear);
+    assert!(least >= 0.03, "{least} m: {text}");
+    for told in ["tells all 40 base parameters", "condition number", "It keeps 0.03 m clear: link `", "to obstacle `"] {
+        assert!(text.contains(told), "{text}");
+    }
+    // One turns at a constant distance of 2.5 cm from the other.
+    let not_looked_at: Vec<&str> = text.split(". ").filter(|sentence| sentence.contains("ot looked at")).collect();
+    assert_eq!(not_looked_at, ["Not looked at: links that no posture keeps so far apart: `fore` and `hand`"], "{text}");
+    assert_eq!(advise("boxes.toml", "1"), (clear, text), "one thread, two threads");
+}
+
+#[test]
+fn what_a_planned_motion_cannot_keep_clear_of_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "arm.urdf", &solid_robot());
+    write(at, "bare.urdf", SIX_AXES);
+    write(at, "boxes.toml", &format!("{LIMITS}{}", obstacles()));
+    let buried = obstacles().replace("[0.0, 0.0, -0.05]", "[0.0, 0.0, 0.2]");
+    write(at, "buried.toml", &format!("{LIMITS}{buried}"));
+    write(at, "flat.toml", &format!("{LIMITS}{}", obstacles().replace("0.06]", "0.0]")));
+    for (robot, surroundings, told) in [
+        ("arm.urdf", "buried.toml", &["FRK-D047", "link `turret` and obstacle `table`"][..]),
+        ("arm.urdf", "flat.toml", &["FRK-D015", "flat.toml", "obstacles.size_m"]),
+        ("bare.urdf", "boxes.toml", &["FRK-D014", "link_radius_m"]),
+    ] {
+        let done = run(at, &["arm", "--urdf", robot, "--joint", surroundings, "--advise", "motion.csv"]);
+        assert_eq!((done.status, done.output.as_str()), (3, ""), "{surroundings}: {}", done.messages);
+        assert!(told.iter().all(|told| done.messages.contains(told)), "{surroundings}: {}", done.messages);
+        assert!(!at.join("motion.csv").exists());
+    }
+    // A robot without shapes: what stands in for them, and what was not looked at, is told.
+    write(at, "free.toml", LIMITS);
+    write(at, "wide.toml", &format!("{LIMITS}[joints.lift]\nlink_radius_m = 0.06\n"));
+    for (surroundings, told) in [
+        ("free.toml", "Not looked at: links of unknown shape"),
+        ("wide.toml", "stand in for links whose shape is not known: `upper`."),
+    ] {
+        let done = run(at, &["arm", "--urdf", "bare.urdf", "--joint", surroundings, "--advise", "-"]);
+        assert!(done.status == 0 && done.output.starts_with("time_s,pan_position_rad"), "{}", done.messages);
+        assert!(done.messages.contains(told) && done.messages.contains("no [[obstacles]]"), "{}", done.messages);
     }
 }
 

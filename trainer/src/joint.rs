@@ -6,6 +6,7 @@ mod columns;
 mod drive;
 mod in_recording;
 mod keys;
+mod surroundings;
 mod urdf;
 
 use std::path::Path;
@@ -16,6 +17,7 @@ pub use actuator::{ActuatorTable, OfRecording, OfRecordings, Payload};
 pub use arm::ArmFile;
 pub use columns::{ColumnMapping, Columns, Side, Simulation};
 pub use drive::{Drive, Limits};
+pub use surroundings::{Obstacle, Surroundings};
 
 use crate::error::{Error, Result, codes};
 use crate::files;

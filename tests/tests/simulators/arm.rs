@@ -1,6 +1,7 @@
-//! The dynamics of an arm are Pinocchio's.
+//! The dynamics of an arm are Pinocchio's, and its distances Coal's.
 
-use frikan_tests::arm::SIX_AXES;
+use frikan_tests::arm::{BOXES, LIMITS, NEIGHBOURS, SIX_AXES, obstacles, solid_robot};
+use frikan_tests::command::run;
 use frikan_trainer::arm::chain::{Chain, INERTIAL};
 use frikan_trainer::arm::dynamics::{NUMBERS, State, regressor, torques};
 use serde_json::json;
@@ -75,5 +76,47 @@ fn a_robot_that_mujoco_wrote_out_is_the_same() {
     for (ours, theirs) in ours.iter().zip(&theirs) {
         // It writes six digits.
         assert!((ours - theirs).abs() < 1e-3 * ours.abs().max(1.0), "{ours} {theirs}");
+    }
+}
+
+#[test]
+fn a_planned_motion_keeps_clear_of_all_by_coals_distances() {
+    let Some(python) = python("coal") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(at.join(name), text).unwrap();
+    write("arm.urdf", &solid_robot());
+    write("free.toml", LIMITS);
+    write("boxes.toml", &format!("{LIMITS}{}", obstacles()));
+    let boxes = BOXES.map(|(name, centre, size, yaw)| {
+        json!({"name": name, "centre_m": centre, "size_m": size, "rpy_rad": [0.0, 0.0, yaw]})
+    });
+    write("boxes.json", &json!(boxes).to_string());
+    write("touching.json", &json!(NEIGHBOURS).to_string());
+    // The least of Coal's distances from a box, and of links from each other.
+    let distances = |surroundings: &str| {
+        let told = run(at, &["arm", "--urdf", "arm.urdf", "--joint", surroundings, "--advise", "motion.csv"]);
+        assert_eq!(told.status, 0, "{}", told.messages);
+        let files = ["arm.urdf", "boxes.json", "motion.csv", "touching.json"].map(|name| at.join(name));
+        let words: Vec<&str> =
+            ["arm_distances.py"].into_iter().chain(files.iter().map(|path| path.to_str().unwrap())).collect();
+        let found = parsed(&script(&python, &words));
+        let least = |of_boxes: bool| {
+            let of = |pair: &&serde_json::Value| of_boxes == boxes.iter().any(|known| known["name"] == pair[1]);
+            let pairs = found.as_array().unwrap().iter().filter(of);
+            pairs.map(|pair| pair[2].as_f64().unwrap()).fold(f64::INFINITY, f64::min)
+        };
+        ([least(true), least(false)], told.output)
+    };
+    let ([to_boxes, to_links], _) = distances("free.toml");
+    assert!(to_boxes < -0.05, "the motion without boxes would miss them: {to_boxes} m");
+    assert!(to_links >= 0.02, "{to_links}");
+    let (least, text) = distances("boxes.toml");
+    for least in least {
+        assert!(least >= 0.02, "{least} m: {text}");
+        // Told within half a millimetre, of a motion that Coal looks at every 2.5 ms.
+        let told = text.split(' ').zip(text.split(' ').skip(1)).filter(|(_, unit)| *unit == "m");
+        let closest = told.filter_map(|(number, _)| number.parse::<f64>().ok()).map(|told| (told - least).abs());
+        assert!(closest.fold(f64::INFINITY, f64::min) < 7e-4, "{least} m: {text}");
     }
 }

@@ -5,15 +5,30 @@ use std::collections::BTreeSet;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::error::{Error, Result, codes};
-use crate::robot::{self, Body, Joint, Kind, Link};
+use crate::robot::{self, Body, Joint, Kind, Link, Robot};
 
 /// A tree of joints on a fixed base; every joint stands behind the one that carries it.
 #[derive(Clone, Debug)]
 pub struct Chain {
     /// The joints, from the base outwards.
     pub joints: Vec<ChainJoint>,
+    /// All links of the robot, each behind the one that it hangs on.
+    pub links: Vec<ChainLink>,
     /// Acceleration of gravity in the frame of the base, m/s2.
     pub gravity: Vector3<f64>,
+}
+
+/// Where a link of the robot is.
+#[derive(Clone, Debug)]
+pub struct ChainLink {
+    /// Its name.
+    pub name: String,
+    /// The link that it hangs on; `None` for a root.
+    pub parent: Option<usize>,
+    /// The joint that it moves with; `None` on the base.
+    pub carrier: Option<usize>,
+    /// Pose of its frame in that of the link of its carrier, or of the base.
+    pub pose: Isometry3<f64>,
 }
 
 /// A joint with the link that it moves.
@@ -65,7 +80,11 @@ impl Chain {
     /// # Errors
     /// `FRK-D021` when the text describes no robot, has no moving joint, lacks one of those held, or is no tree.
     pub fn parse(text: &str, held: &[String]) -> Result<Self> {
-        let robot = robot::parse(text)?;
+        Self::of(&robot::parse(text)?, held)
+    }
+
+    /// As [`parse`](Self::parse), of what a file describes.
+    pub(crate) fn of(robot: &Robot, held: &[String]) -> Result<Self> {
         let can_move = |joint: &&Joint| joint.kind != Kind::Fixed && !joint.is_mimic;
         let movable: Vec<&str> = robot.joints.iter().filter(can_move).map(|joint| joint.name.as_str()).collect();
         if movable.is_empty() {
@@ -76,17 +95,20 @@ impl Chain {
             return Err(Error::new(&codes::BAD_URDF, message).with_value(unknown));
         }
         let moves = |joint: &Joint| movable.contains(&joint.name.as_str()) && !held.contains(&joint.name);
-        let mut chain = Self { joints: Vec::new(), gravity: robot.gravity };
+        let mut chain = Self { joints: Vec::new(), links: Vec::new(), gravity: robot.gravity };
         let mut seen = BTreeSet::new();
         let is_root = |link: &&Link| robot.joints.iter().all(|joint| joint.child != link.name);
         for root in robot.links.iter().filter(is_root) {
-            // Joints that are still to be passed, the next one last: carried by which joint, and the pose of their parent link there.
-            let beyond = |link: &str, carrier: Option<usize>, pose: Isometry3<f64>| {
+            // Joints that are still to be passed, the next one last, each with the place of its parent link.
+            let beyond = |link: &str, place: usize| {
                 let next: Vec<&Joint> = robot.joints.iter().filter(|joint| joint.parent == link).collect();
-                next.into_iter().rev().map(move |joint| (joint, carrier, pose))
+                next.into_iter().rev().map(move |joint| (joint, place))
             };
-            let mut open: Vec<_> = beyond(&root.name, None, Isometry3::identity()).collect();
-            while let Some((joint, carrier, pose)) = open.pop() {
+            let name = root.name.clone();
+            chain.links.push(ChainLink { name, parent: None, carrier: None, pose: Isometry3::identity() });
+            let mut open: Vec<_> = beyond(&root.name, chain.links.len() - 1).collect();
+            while let Some((joint, parent)) = open.pop() {
+                let ChainLink { carrier, pose, .. } = chain.links[parent];
                 if !seen.insert(joint.child.as_str()) {
                     return Err(joint.error("two joints carry the link of this one"));
                 }
@@ -108,7 +130,9 @@ impl Chain {
                     let body = numbers_of(&robot.body(&joint.child).seen_from(&at.1));
                     chain.joints[carrier].nominal.iter_mut().zip(body).for_each(|(sum, own)| *sum += own);
                 }
-                open.extend(beyond(&joint.child, at.0, at.1));
+                let name = joint.child.clone();
+                chain.links.push(ChainLink { name, parent: Some(parent), carrier: at.0, pose: at.1 });
+                open.extend(beyond(&joint.child, chain.links.len() - 1));
             }
         }
         if chain.joints.is_empty() {
@@ -127,6 +151,15 @@ impl Chain {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
+    }
+}
+
+impl ChainJoint {
+    /// Pose of its link's frame in that of the link that carries it, where it stands at `position`, rad or m.
+    #[must_use]
+    pub fn pose_at(&self, position: f64) -> Isometry3<f64> {
+        let by = self.axis * position;
+        self.pose * if self.is_prismatic { Isometry3::translation(by.x, by.y, by.z) } else { Isometry3::rotation(by) }
     }
 }
 

@@ -1,5 +1,5 @@
 //! A motion of all joints that tells the base inertial parameters and friction apart: Fourier series of one period, which start again where they end
-//! (Swevers, Ganseman, Tukel, De Schutter & Van Brussel 1997), within the limits of the joints.
+//! (Swevers, Ganseman, Tukel, De Schutter & Van Brussel 1997), within the limits of the joints and clear of what the arm may not touch.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,9 @@ use rayon::prelude::*;
 
 use super::base::Base;
 use super::chain::Chain;
+use super::clearance::{Nearest, Path, Room};
 use super::dynamics::{NUMBERS, State, regressor};
+use crate::error::Result;
 use crate::numerics::random::normal;
 
 /// Time after which the motion starts again, s: a joint at 1 rad/s passes its range several times.
@@ -24,6 +26,9 @@ const DRAWN: u64 = 200;
 const CHANGED: u64 = 300;
 /// Size of a change over that of a coefficient, at first and at last.
 const CHANGE: [f64; 2] = [0.5, 0.05];
+/// What the motion of all joints is made smaller by where it is not clear, and how often at most: to a fiftieth, of which a recording shows little.
+const SMALLER: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const TIMES_SMALLER: i32 = 11;
 /// Speed over the largest within which the sign of friction turns.
 const TURNING_SHARE: f64 = 0.02;
 
@@ -73,54 +78,135 @@ impl Series {
         motion
     }
 
-    /// The waves as large as the limits allow, in the middle of the range.
-    fn within(waves: [[f64; 2]; TERMS], limits: &Limits) -> Self {
-        let mut series = Self { centre: 0.0, amplitude: 1.0, waves };
-        // The sum of all sizes is never exceeded, between instants either.
-        let size = |k: usize, power: i32| {
-            let [sine, cosine] = waves[k];
-            (TAU * (k + 1) as f64 / PERIOD_S).powi(power) * sine.hypot(cosine)
-        };
-        let [travel, speed, acceleration] = [0, 1, 2].map(|power| (0..TERMS).map(|k| size(k, power)).sum::<f64>());
+    /// A share of the waves as large as the limits allow about a centre.
+    fn within(part: &Part, limits: &Limits) -> Self {
+        let mut series = Self { centre: part.centre, amplitude: 1.0, waves: part.waves };
+        let [travel, speed, acceleration] = [0, 1, 2].map(|order| series.most(order));
         let [low, high] = limits.position;
-        series.centre = 0.5 * (low + high);
+        let room = (high - part.centre).min(part.centre - low);
         series.amplitude =
-            (0.5 * (high - low) / travel).min(limits.velocity / speed).min(limits.acceleration / acceleration);
+            part.share * (room / travel).min(limits.velocity / speed).min(limits.acceleration / acceleration);
         series
+    }
+
+    /// What a derivative of this order does not exceed, between instants either: the sum of the sizes of all terms.
+    fn most(&self, order: i32) -> f64 {
+        let size = |(k, [sine, cosine]): (usize, &[f64; 2])| {
+            (TAU * (k + 1) as f64 / PERIOD_S).powi(order) * sine.hypot(*cosine)
+        };
+        self.amplitude * self.waves.iter().enumerate().map(size).sum::<f64>()
     }
 }
 
+/// What a series is made of.
+#[derive(Clone, Debug)]
+struct Part {
+    waves: [[f64; 2]; TERMS],
+    centre: f64,
+    /// Of the amplitude that the limits allow, above 0 to 1.
+    share: f64,
+}
+
+impl Part {
+    /// Another centre and share, where the motion has to keep clear of something.
+    fn moved(&mut self, limits: &Limits, by: [f64; 2]) {
+        let [low, high] = limits.position;
+        self.centre = (self.centre + 0.5 * (high - low) * by[0]).clamp(low, high);
+        self.share = (self.share * by[1].exp()).min(1.0);
+    }
+}
+
+/// A motion on the way to the best.
+struct Trial {
+    parts: Vec<Part>,
+    motion: Excitation,
+    /// Condition number over the size of the motion: whatever is told by a motion of half the size is told half as well.
+    cost: f64,
+}
+
 impl Excitation {
-    /// The best motion that was found; one seed, one motion.
-    #[must_use]
-    pub fn of(chain: &Chain, base: &Base, limits: &[Limits], seed: u64) -> Self {
-        let draw = |number: u64| {
-            let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(DRAWN + CHANGED).wrapping_add(number));
-            std::array::from_fn::<_, TERMS, _>(|_| [normal(&mut random), normal(&mut random)])
-        };
+    /// The best motion that was found among those that keep clear; one seed, one motion.
+    ///
+    /// # Errors
+    /// `FRK-D047` where none keeps clear.
+    pub fn of(chain: &Chain, base: &Base, limits: &[Limits], room: &Room<'_>, seed: u64) -> Result<Self> {
+        let random = |number: u64| ChaCha8Rng::seed_from_u64(seed.wrapping_mul(DRAWN + CHANGED).wrapping_add(number));
+        let waves = |random: &mut ChaCha8Rng| std::array::from_fn(|_| [normal(random), normal(random)]);
         let joints = limits.len() as u64;
-        let judged = |waves: Vec<[[f64; 2]; TERMS]>| {
-            let series: Vec<Series> =
-                waves.iter().zip(limits).map(|(waves, limits)| Series::within(*waves, limits)).collect();
-            Self { period_s: PERIOD_S, condition: condition(chain, base, &series), series }
+        let drawn = |number: u64| {
+            let start = &room.starts()[number as usize % room.starts().len()];
+            let part = |(joint, centre): (u64, &f64)| Part {
+                waves: waves(&mut random(number * joints + joint)),
+                centre: *centre,
+                share: 1.0,
+            };
+            let mut parts: Vec<Part> = (0..joints).zip(start).map(part).collect();
+            for _ in 0..TIMES_SMALLER {
+                let motion = Self::made(&parts, limits);
+                if motion.is_clear(room) {
+                    return Some(motion.judged(parts, chain, base, limits));
+                }
+                parts.iter_mut().for_each(|part| part.share *= SMALLER);
+            }
+            None
         };
-        let drawn = (0..DRAWN).into_par_iter();
-        let drawn = drawn.map(|number| judged((0..joints).map(|joint| draw(number * joints + joint)).collect()));
-        let first = || judged((0..joints).map(draw).collect());
-        let mut best = drawn.min_by(|a, b| a.condition.total_cmp(&b.condition)).unwrap_or_else(first);
+        let drawn = (0..DRAWN).into_par_iter().filter_map(drawn);
+        let best = drawn.min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best = best.ok_or_else(|| room.no_motion())?;
         for number in 0..CHANGED {
             let share = number as f64 / CHANGED as f64;
             let change = CHANGE[0].powf(1.0 - share) * CHANGE[1].powf(share);
             let joint = (number % joints) as usize;
-            let mut waves: Vec<_> = best.series.iter().map(|series| series.waves).collect();
-            let by = draw((DRAWN + number) * joints);
-            waves[joint].iter_mut().flatten().zip(by.iter().flatten()).for_each(|(wave, by)| *wave += change * by);
-            let tried = judged(waves);
-            if tried.condition < best.condition {
+            let mut parts = best.parts.clone();
+            let mut random = random((DRAWN + number) * joints);
+            let by: [[f64; 2]; TERMS] = waves(&mut random);
+            parts[joint]
+                .waves
+                .iter_mut()
+                .flatten()
+                .zip(by.iter().flatten())
+                .for_each(|(wave, by)| *wave += change * by);
+            if !room.is_open() {
+                parts[joint].moved(&limits[joint], [change * normal(&mut random), change * normal(&mut random)]);
+            }
+            let tried = Self::made(&parts, limits).judged(parts, chain, base, limits);
+            if tried.cost < best.cost && tried.motion.is_clear(room) {
                 best = tried;
             }
         }
-        best
+        Ok(best.motion)
+    }
+
+    fn made(parts: &[Part], limits: &[Limits]) -> Self {
+        let series = parts.iter().zip(limits).map(|(part, limits)| Series::within(part, limits)).collect();
+        Self { period_s: PERIOD_S, condition: f64::INFINITY, series }
+    }
+
+    fn judged(self, parts: Vec<Part>, chain: &Chain, base: &Base, limits: &[Limits]) -> Trial {
+        let condition = condition(chain, base, &self.series);
+        let size = parts.iter().zip(&self.series).zip(limits).map(|((part, series), limits)| {
+            let [low, high] = limits.position;
+            let full = Series::within(&Part { centre: 0.5 * (low + high), share: 1.0, ..part.clone() }, limits);
+            (series.amplitude / full.amplitude).ln()
+        });
+        let size = (size.sum::<f64>() / limits.len() as f64).exp();
+        Trial { parts, motion: Self { condition, ..self }, cost: condition / size }
+    }
+
+    fn is_clear(&self, room: &Room<'_>) -> bool {
+        self.along(|path| room.is_clear(path))
+    }
+
+    /// The closest that a link comes to obstacles (or, where `to_obstacles` is false, to other links); `None` where nothing is looked at.
+    #[must_use]
+    pub fn nearest(&self, room: &Room<'_>, to_obstacles: bool) -> Option<Nearest> {
+        self.along(|path| room.nearest(path, to_obstacles))
+    }
+
+    fn along<T>(&self, with: impl FnOnce(&Path<'_>) -> T) -> T {
+        let position = |time: f64| self.at(time).map(|[position, ..]| position).collect();
+        let speeds: Vec<f64> = self.series.iter().map(|series| series.most(1)).collect();
+        with(&Path { position: &position, speeds: &speeds, period_s: self.period_s })
     }
 
     /// Position, velocity and acceleration of each joint at a time, s.
@@ -131,6 +217,9 @@ impl Excitation {
 
 /// Condition number of the columns of base parameters, Coulomb and viscous friction, each of length one; infinite where they depend on each other.
 fn condition(chain: &Chain, base: &Base, series: &[Series]) -> f64 {
+    if series.iter().any(|series| series.amplitude == 0.0) {
+        return f64::INFINITY;
+    }
     let (joints, parameters) = (chain.len(), base.len());
     let mut rows = vec![0.0; joints * joints * NUMBERS];
     let mut table = DMatrix::zeros(INSTANTS * joints, parameters + 2 * joints);
@@ -166,6 +255,8 @@ fn condition(chain: &Chain, base: &Base, series: &[Series]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::joint::Surroundings;
+    use crate::robot::parse;
 
     const ARM: &str = r#"<robot name="r"><link name="base"/>
         <link name="upper"><inertial><origin xyz="0 0 0.2"/><mass value="2"/><inertia ixx="0.03" iyy="0.03" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -179,7 +270,10 @@ mod tests {
         let base = Base::of(&chain);
         let limits = [([-2.0, 1.0], 2.0, 4.0), ([-1.0, 1.0], 0.5, 4.0)];
         let limits = limits.map(|(position, velocity, acceleration)| Limits { position, velocity, acceleration });
-        let planned = Excitation::of(&chain, &base, &limits, 1);
+        let robot = parse(ARM).unwrap();
+        let ranges = limits.map(|limits| limits.position);
+        let room = Room::of(&robot, &chain, &ranges, &Surroundings::default(), 1).unwrap();
+        let planned = Excitation::of(&chain, &base, &limits, &room, 1).unwrap();
         assert!(planned.condition < 60.0, "{}", planned.condition);
         for step in 0..2000 {
             for ([q, v, a], limits) in planned.at(0.01 * f64::from(step)).zip(&limits) {
@@ -192,6 +286,7 @@ mod tests {
         assert!(planned.at(0.0).zip(again).all(|(a, b)| (a[0] - b[0]).abs() < 1e-9));
         // A second joint that hardly moves is told by nothing as well.
         let still = Limits { velocity: 1e-6, acceleration: 1e-6, ..limits[1] };
-        assert!(Excitation::of(&chain, &base, &[limits[0], still], 1).condition > 5.0 * planned.condition);
+        let narrow = Excitation::of(&chain, &base, &[limits[0], still], &room, 1).unwrap();
+        assert!(narrow.condition > 5.0 * planned.condition);
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod base;
 pub mod chain;
+pub mod clearance;
 pub mod dynamics;
 pub mod excitation;
 pub mod fit;

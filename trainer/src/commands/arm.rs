@@ -30,13 +30,13 @@ pub struct Arm {
     /// The robot as URDF or MJCF: joints, and the masses that are known of its links
     #[arg(long, visible_alias = "mjcf", value_name = "ARM.urdf")]
     pub urdf: PathBuf,
-    /// arm.toml: column names, drives, gravity, joints that are held
+    /// arm.toml: column names, drives, gravity, joints that are held; limits and obstacles of `--advise`
     #[arg(long, value_name = "ARM.toml")]
     pub joint: Option<PathBuf>,
     /// Folder for an image of each joint, arm.json and the robot's file with their friction; made where it does not exist
     #[arg(short, long, required_unless_present = "advise", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Plan a motion that tells everything apart, within `[limits]` of arm.toml, instead of fitting; as CSV, `-` for standard output
+    /// Plan a motion that tells everything apart, within `[limits]` of arm.toml and clear of its `[[obstacles]]` and of the arm itself, instead of fitting; as CSV, `-` for standard output
     #[arg(long, conflicts_with_all = ["recordings", "tests", "output", "split", "json"], value_name = "FILE")]
     pub advise: Option<PathBuf>,
     /// Also write the recordings of each joint with the torque of the bodies, and a joint.toml for `fit` and `diagnose`
@@ -90,6 +90,9 @@ pub fn run(arguments: &Arm) -> Result<u8> {
         None => ArmFile::default(),
         Some(path) => ArmFile::parse(&text(path)?).map_err(in_file(path))?,
     };
+    if !arguments.quiet {
+        file.unknown_keys().iter().for_each(|sentence| say(&format!("{} {sentence}", codes::UNKNOWN_KEY.id)));
+    }
     if let Some(path) = &arguments.advise {
         return plan(arguments, path, &robot, &file);
     }
@@ -128,13 +131,15 @@ fn folder(arguments: &Arm) -> PathBuf {
 
 /// Writes a planned motion.
 fn plan(arguments: &Arm, path: &Path, robot: &str, file: &ArmFile) -> Result<u8> {
-    let advised = advise(robot, file, arguments.seed)?;
+    let advised = in_pool(arguments.threads, || advise(robot, file, arguments.seed))??;
     let mut outputs = Outputs::default();
     outputs.add(path, advised.trajectory);
     outputs.refuse_overwriting(&arguments.inputs())?;
     outputs.write()?;
     if path != Path::new("-") {
         print(&advised.text)?;
+    } else if !arguments.quiet {
+        say(advised.text.trim_end());
     }
     Ok(0)
 }

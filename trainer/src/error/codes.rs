@@ -183,6 +183,10 @@ registry! {
         "The JSON is no parameter file of Rhoban's BAM, or it lacks a parameter of its friction model or has one that no servo can have.",
         "Another JSON file, a file of another version of BAM, or one that was edited by hand.",
         "Take a file as BAM writes it (`params/ACTUATOR/m1.json` to `m6.json`); the message names the parameter.";
+    NO_CLEAR_MOTION = "FRK-D047" Data "no motion keeps clear",
+        "No posture or no motion of the arm within its limits was found in which its links keep the distance `clearance_m` from the obstacles of arm.toml, from what is fixed to the base and from each other. The message names the two that are too close most often.",
+        "An obstacle in another frame than that of the robot's base, its whole edges given as halves or the other way round, narrow limits, a table that reaches into the mount of the arm, or a `link_radius_m` that is too large.",
+        "Compare `centre_m` and `size_m` of the obstacle with the robot, widen `[limits]`, or lower `clearance_m` or `link_radius_m`.";
     NOT_IDENTIFIABLE = "FRK-N001" NotIdentifiable "not identifiable",
         "Two or more parameters change the prediction in the same way on this recording, or the law is worth no more on rows that it has not seen than a constant torque, a spring or Coulomb friction alone. No image is written; `--force` writes it all the same.",
         "One speed, one acceleration, a small range of positions, a single frequency, or a joint that does not slide.",

@@ -3,8 +3,14 @@
 use toml::{Table, Value};
 
 use super::columns::ColumnMapping;
+use super::keys::unread;
+use super::surroundings::Surroundings;
 use super::{Joint, row_of};
 use crate::error::{Error, Result, codes};
+
+/// Names at the top of `arm.toml` that a `joint.toml` has not, and in a table of a single joint.
+const OF_ALL: [&str; 6] = ["gravity_m_s2", "held", "joints", "obstacles", "clearance_m", "link_radius_m"];
+const OF_ONE: [&str; 1] = ["link_radius_m"];
 
 /// What is known of an arm before a recording is read. Every key is optional.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +19,8 @@ pub struct ArmFile {
     pub gravity_m_s2: Option<[f64; 3]>,
     /// Joints that stand at zero and are not recorded, such as those of a gripper.
     pub held: Vec<String>,
+    /// What a planned motion keeps clear of.
+    pub surroundings: Surroundings,
     of_all: Table,
     of_one: Table,
 }
@@ -21,7 +29,7 @@ impl ArmFile {
     /// Parses the text of an `arm.toml`.
     ///
     /// # Errors
-    /// `FRK-D015` with its row when it is no TOML or gravity is no vector.
+    /// `FRK-D015` with its row when it is no TOML, gravity is no vector, or an obstacle no box.
     pub fn parse(text: &str) -> Result<Self> {
         let mut of_all: Table = toml::from_str(text).map_err(|error: toml::de::Error| {
             let report = Error::new(&codes::BAD_JOINT_FILE, error.message().replace('\n', "; "));
@@ -38,12 +46,24 @@ impl ArmFile {
             Some(Ok(held)) => held,
             Some(Err(_)) => return bad("held", "this has to be a list of names of joints"),
         };
-        let of_one = match of_all.remove("joints") {
+        let mut of_one = match of_all.remove("joints") {
             None => Table::new(),
             Some(Value::Table(of_one)) if of_one.values().all(Value::is_table) => of_one,
             Some(_) => return bad("joints", "this has to hold a table for each joint, as in [joints.elbow.drive]"),
         };
-        Ok(Self { gravity_m_s2, held, of_all, of_one })
+        let surroundings = Surroundings::take(text, &mut of_all, &mut of_one)?;
+        Ok(Self { gravity_m_s2, held, surroundings, of_all, of_one })
+    }
+
+    /// What stands in the file and is read by nothing, a sentence each with the name that may have been meant.
+    #[must_use]
+    pub fn unknown_keys(&self) -> Vec<String> {
+        let mut unknown = unread(self.of_all.keys(), "arm.toml", &OF_ALL);
+        for (joint, table) in &self.of_one {
+            let keys = table.as_table().into_iter().flat_map(Table::keys);
+            unknown.extend(unread(keys, &format!("[joints.{joint}] of arm.toml"), &OF_ONE));
+        }
+        unknown
     }
 
     /// What is known of each of these joints. In the names of columns for all, `{joint}` stands for the name of the joint, `{index}` for its
@@ -133,6 +153,14 @@ mod tests {
         assert_eq!(elbow.columns["position"].name, "actual_q_1");
         assert_eq!(elbow.name.as_deref(), Some("elbow"));
         assert_eq!(ArmFile::default().joints(&names()).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn what_nothing_reads_is_told() {
+        let file = ArmFile::parse("[[obstacle]]\nsize_m = 1\n[drive]\n[joints.elbow]\nlink_radius = 1").unwrap();
+        let [obstacle, radius] = &file.unknown_keys()[..] else { panic!("{:?}", file.unknown_keys()) };
+        assert_eq!(obstacle, "nothing reads `obstacle` of arm.toml; did you mean `obstacles`?");
+        assert_eq!(radius, "nothing reads `link_radius` of [joints.elbow] of arm.toml; did you mean `link_radius_m`?");
     }
 
     #[test]

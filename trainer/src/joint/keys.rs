@@ -1,4 +1,4 @@
-//! Keys of `joint.toml` that nothing reads.
+//! Keys of `joint.toml` and `arm.toml` that nothing reads.
 
 use super::Joint;
 use crate::did_you_mean::hint;
@@ -14,13 +14,15 @@ impl Joint {
     /// What stands in the file and is read by nothing, a sentence each with the name that may have been meant.
     #[must_use]
     pub fn unknown_keys(&self) -> Vec<String> {
-        let unknown = self.other.keys().filter(|key| !READ_ELSEWHERE.contains(&key.as_str()));
-        let sentence = |key: &String| {
-            let names = TABLES.iter().chain(&READ_ELSEWHERE).copied();
-            format!("nothing reads `{key}` of joint.toml{}", hint(key, names))
-        };
-        unknown.map(sentence).collect()
+        unread(self.other.keys(), "joint.toml", &[])
     }
+}
+
+/// A sentence for each of the keys at the top of a file that nothing reads; `more` are read there beside those of joint.toml.
+pub(super) fn unread<'a>(keys: impl Iterator<Item = &'a String>, file: &str, more: &[&str]) -> Vec<String> {
+    let names = || TABLES.iter().chain(&READ_ELSEWHERE).chain(more).copied();
+    let unknown = keys.filter(|key| names().all(|name| name != key.as_str()));
+    unknown.map(|key| format!("nothing reads `{key}` of {file}{}", hint(key, names()))).collect()
 }
 
 #[cfg(test)]

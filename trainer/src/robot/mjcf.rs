@@ -1,10 +1,12 @@
 //! MJCF, the format of MuJoCo: bodies within bodies, each with the joints that move it. Frames, default classes and inertias that the file gives in
 //! numbers are understood; what has to be worked out from geometries or other files is not, and such bodies have no known mass.
 
+mod geoms;
+
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::model::{Body, Joint, Kind, Link, Robot, at, row};
+use super::model::{Beside, Body, Joint, Kind, Link, OF_FRAME, Robot, at, row};
 use crate::error::Result;
 
 /// Elements whose bodies stand elsewhere.
@@ -37,12 +39,17 @@ pub(super) fn parse(document: &Document) -> Result<Robot> {
     let option = document.root_element().children().find(|node| node.has_tag_name("option"));
     let gravity = option.map(|option| file.vector(option, None, "gravity")).transpose()?.flatten();
     let gravity = gravity.unwrap_or(Vector3::new(0.0, 0.0, -GRAVITY_M_S2));
-    let mut robot =
-        Robot { links: vec![Link { name: world.clone(), body: Body::default() }], joints: Vec::new(), gravity };
+    let mut robot = Robot { links: vec![Link::frame(&world)], joints: Vec::new(), gravity };
     let worlds = document.root_element().children().filter(|node| node.has_tag_name("worldbody"));
     // Bodies that are still to be read, the next one last: in which link, and the default class of joints there.
     let mut open: Vec<(Node, String, Option<String>)> = Vec::new();
     for node in worlds {
+        let (solids, is_all) = file.solids(node, None)?;
+        let fixed = &mut robot.links[0];
+        fixed.solids.extend(solids);
+        if !is_all {
+            fixed.beside = Beside::Unread;
+        }
         push_inner(&mut open, node, &world, None)?;
     }
     while let Some((body, parent, class)) = open.pop() {
@@ -80,7 +87,7 @@ impl File<'_, '_> {
     ) -> Result<String> {
         let moving = body.children().filter(|node| node.has_tag_name("joint") || node.has_tag_name("freejoint"));
         let moving: Vec<Node> = moving.collect();
-        let (mut parent, mut pose) = (parent, self.frame(body)?);
+        let (mut parent, mut pose) = (parent, self.frame(body, None)?);
         for (index, &node) in moving.iter().enumerate() {
             let kind = match self.attribute(node, class, "type").unwrap_or("hinge") {
                 "hinge" if !node.has_tag_name("freejoint") => Kind::Revolute,
@@ -108,10 +115,10 @@ impl File<'_, '_> {
                 is_mimic: false,
                 row: row(node),
             });
-            robot.links.push(Link { name: link.clone(), body: Body::default() });
+            robot.links.push(Link::frame(&link));
             (parent, pose) = (link, Isometry3::from(Translation3::from(-anchor)));
         }
-        let frame = if moving.is_empty() { name.to_owned() } else { format!("{name}, frame") };
+        let frame = if moving.is_empty() { name.to_owned() } else { format!("{name}{OF_FRAME}") };
         robot.joints.push(Joint {
             name: String::new(),
             kind: Kind::Fixed,
@@ -125,7 +132,13 @@ impl File<'_, '_> {
         });
         let inertial = body.children().find(|node| node.has_tag_name("inertial"));
         let own = inertial.map(|inertial| self.inertial(inertial)).transpose()?;
-        robot.links.push(Link { name: frame.clone(), body: own.unwrap_or_default() });
+        let (solids, is_all) = self.solids(body, class)?;
+        let beside = match (is_all, solids.is_empty()) {
+            (false, _) => Beside::Unread,
+            (true, true) => Beside::Unsaid,
+            (true, false) => Beside::Nothing,
+        };
+        robot.links.push(Link { name: frame.clone(), body: own.unwrap_or_default(), solids, beside });
         Ok(frame)
     }
 
@@ -137,21 +150,21 @@ impl File<'_, '_> {
                 (None, Some([xx, yy, zz, xy, xz, yz])) => Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
                 (None, None) => Matrix3::zeros(),
             };
-        Ok(Body { mass, centre: Vector3::zeros(), inertia }.seen_from(&self.frame(node)?))
+        Ok(Body { mass, centre: Vector3::zeros(), inertia }.seen_from(&self.frame(node, None)?))
     }
 
     /// Position and turn of a frame, in any of the ways that MJCF knows.
-    fn frame(&self, node: Node) -> Result<Isometry3<f64>> {
-        let place = self.vector(node, None, "pos")?.unwrap_or_default();
+    fn frame(&self, node: Node, class: Option<&str>) -> Result<Isometry3<f64>> {
+        let place = self.vector(node, class, "pos")?.unwrap_or_default();
         let angle = |value: f64| if self.in_degrees { value.to_radians() } else { value };
         let unit = |direction: Vector3<f64>| {
             direction.try_normalize(1e-9).ok_or_else(|| at(node, "this direction has no length"))
         };
-        let turn = if let Some([w, x, y, z]) = self.numbers::<4>(node, None, "quat")? {
+        let turn = if let Some([w, x, y, z]) = self.numbers::<4>(node, class, "quat")? {
             UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
-        } else if let Some([x, y, z, by]) = self.numbers::<4>(node, None, "axisangle")? {
+        } else if let Some([x, y, z, by]) = self.numbers::<4>(node, class, "axisangle")? {
             UnitQuaternion::new(unit(Vector3::new(x, y, z))? * angle(by))
-        } else if let Some(angles) = self.numbers::<3>(node, None, "euler")? {
+        } else if let Some(angles) = self.numbers::<3>(node, class, "euler")? {
             let mut turn = UnitQuaternion::identity();
             for (letter, by) in self.order.chars().zip(angles) {
                 let about = match letter.to_ascii_lowercase() {
@@ -164,12 +177,12 @@ impl File<'_, '_> {
                 turn = if letter.is_ascii_lowercase() { turn * step } else { step * turn };
             }
             turn
-        } else if let Some([ax, ay, az, bx, by, bz]) = self.numbers::<6>(node, None, "xyaxes")? {
+        } else if let Some([ax, ay, az, bx, by, bz]) = self.numbers::<6>(node, class, "xyaxes")? {
             let x = unit(Vector3::new(ax, ay, az))?;
             let y = unit(Vector3::new(bx, by, bz) - x * x.dot(&Vector3::new(bx, by, bz)))?;
             let columns = Matrix3::from_columns(&[x, y, x.cross(&y)]);
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(columns))
-        } else if let Some(z) = self.vector(node, None, "zaxis")? {
+        } else if let Some(z) = self.vector(node, class, "zaxis")? {
             let z = unit(z)?;
             UnitQuaternion::rotation_between(&Vector3::z(), &z)
                 .unwrap_or_else(|| UnitQuaternion::new(Vector3::x() * std::f64::consts::PI))

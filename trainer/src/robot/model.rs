@@ -22,6 +22,51 @@ pub(crate) struct Robot {
 pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) body: Body,
+    /// What may not be run into.
+    pub(crate) solids: Vec<Solid>,
+    pub(crate) beside: Beside,
+}
+
+/// What there is of a link beside its solids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beside {
+    /// Nothing: the solids are all of it, and without any it is a frame.
+    Nothing,
+    /// Shapes of the file that are no solids here, such as meshes.
+    Unread,
+    /// The file shows no shape of this link.
+    Unsaid,
+}
+
+/// A solid in the frame of its link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Solid {
+    pub(crate) pose: Isometry3<f64>,
+    pub(crate) form: Form,
+}
+
+/// Shapes of solids about their middle, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Form {
+    /// Half of its edges.
+    Box {
+        half: Vector3<f64>,
+    },
+    Sphere {
+        radius: f64,
+    },
+    /// Along z.
+    Cylinder {
+        radius: f64,
+        half_length: f64,
+    },
+    /// Along z, with half spheres beyond its length.
+    Capsule {
+        radius: f64,
+        half_length: f64,
+    },
+    /// All below the plane through its origin, z its normal.
+    HalfSpace,
 }
 
 /// Mass and its distribution, in the frame of the link or of whatever the body was moved to.
@@ -72,6 +117,35 @@ pub(crate) struct Joint {
     pub(crate) is_mimic: bool,
     /// Row of the file.
     pub(crate) row: u64,
+}
+
+impl Form {
+    /// Whether no side of it is zero or less.
+    pub(super) fn has_extent(&self) -> bool {
+        match *self {
+            Self::Box { half } => half.min() > 0.0,
+            Self::Sphere { radius } => radius > 0.0,
+            Self::Cylinder { radius, half_length } | Self::Capsule { radius, half_length } => {
+                radius > 0.0 && half_length > 0.0
+            }
+            Self::HalfSpace => true,
+        }
+    }
+}
+
+/// What the name of the frame of a body that joints move ends with in MJCF.
+pub(super) const OF_FRAME: &str = ", frame";
+
+impl Link {
+    /// A frame without body and shape.
+    pub(super) fn frame(name: &str) -> Self {
+        Self { name: name.to_owned(), body: Body::default(), solids: Vec::new(), beside: Beside::Nothing }
+    }
+
+    /// Its name as its file has it.
+    pub(crate) fn name_in_file(&self) -> &str {
+        self.name.strip_suffix(OF_FRAME).unwrap_or(&self.name)
+    }
 }
 
 impl Robot {

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::model::{Body, GRAVITY_M_S2, Joint, Kind, Link, Robot, at, row};
+use super::model::{Beside, Body, Form, GRAVITY_M_S2, Joint, Kind, Link, Robot, Solid, at, row};
 use crate::error::Result;
 
 /// # Errors
@@ -20,7 +20,37 @@ pub(super) fn parse(document: &Document) -> Result<Robot> {
 
 fn link(node: Node) -> Result<Link> {
     let name = node.attribute("name").unwrap_or_default().to_owned();
-    let Some(inertial) = child(node, "inertial") else { return Ok(Link { name, body: Body::default() }) };
+    let body = child(node, "inertial").map_or(Ok(Body::default()), body)?;
+    let collisions = || node.children().filter(|inner| inner.has_tag_name("collision"));
+    let solids: Vec<Option<Solid>> = collisions().map(solid).collect::<Result<_>>()?;
+    let beside = if solids.iter().any(Option::is_none) || (solids.is_empty() && child(node, "visual").is_some()) {
+        Beside::Unread
+    } else if solids.is_empty() {
+        Beside::Unsaid
+    } else {
+        Beside::Nothing
+    };
+    Ok(Link { name, body, solids: solids.into_iter().flatten().collect(), beside })
+}
+
+/// What may not be run into of a link; `None` where that is no solid, such as a mesh or what has no extent.
+fn solid(collision: Node) -> Result<Option<Solid>> {
+    let of = |tag: &str| child(collision, "geometry").and_then(|geometry| child(geometry, tag));
+    let form = if let Some(node) = of("box") {
+        Form::Box { half: 0.5 * vector(node, "size", [0.0; 3])? }
+    } else if let Some(node) = of("sphere") {
+        Form::Sphere { radius: number(node, "radius", 0.0)? }
+    } else if let Some(node) = of("cylinder") {
+        Form::Cylinder { radius: number(node, "radius", 0.0)?, half_length: 0.5 * number(node, "length", 0.0)? }
+    } else if let Some(node) = of("capsule") {
+        Form::Capsule { radius: number(node, "radius", 0.0)?, half_length: 0.5 * number(node, "length", 0.0)? }
+    } else {
+        return Ok(None);
+    };
+    Ok(form.has_extent().then_some(Solid { pose: origin(collision)?, form }))
+}
+
+fn body(inertial: Node) -> Result<Body> {
     let mass = child(inertial, "mass").map_or(Ok(0.0), |node| number(node, "value", 0.0))?;
     let inertia = match child(inertial, "inertia") {
         None => Matrix3::zeros(),
@@ -31,7 +61,7 @@ fn link(node: Node) -> Result<Link> {
         }
     };
     let in_own_frame = Body { mass, centre: Vector3::zeros(), inertia };
-    Ok(Link { name, body: in_own_frame.seen_from(&origin(inertial)?) })
+    Ok(in_own_frame.seen_from(&origin(inertial)?))
 }
 
 fn joint(node: Node) -> Result<Joint> {
@@ -92,5 +122,36 @@ fn vector(node: Node, attribute: &str, absent: [f64; 3]) -> Result<Vector3<f64>>
     match numbers[..] {
         [x, y, z] if numbers.iter().all(|value: &f64| value.is_finite()) => Ok(Vector3::new(x, y, z)),
         _ => Err(at(node, "three finite numbers are needed here").in_column(attribute).with_value(text)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::{Beside, Form};
+
+    const LINKS: &str = r#"<robot name="r"><link name="a"><collision><origin xyz="0 0 1" rpy="0 1.5 0"/><geometry><box size="0.2 0.4 0.6"/></geometry></collision>
+        <collision><geometry><cylinder radius="0.1" length="0.5"/></geometry></collision></link>
+        <link name="b"><collision><geometry><mesh filename="b.stl"/></geometry></collision><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+        <link name="c"><visual><geometry><box size="1 1 1"/></geometry></visual></link><link name="d"/></robot>"#;
+
+    #[test]
+    fn solids_of_links_are_read() {
+        let links = parse(LINKS).unwrap().links;
+        let [first, second] = links[0].solids[..] else { panic!("{:?}", links[0]) };
+        assert_eq!(first.form, Form::Box { half: [0.1, 0.2, 0.3].into() });
+        assert!(first.pose.translation.z == 1.0 && (first.pose.rotation.angle() - 1.5).abs() < 1e-12);
+        assert_eq!(second.form, Form::Cylinder { radius: 0.1, half_length: 0.25 });
+        let beside: Vec<Beside> = links.iter().map(|link| link.beside).collect();
+        assert_eq!(beside, [Beside::Nothing, Beside::Unread, Beside::Unread, Beside::Unsaid]);
+        assert_eq!(links[1].solids[0].form, Form::Sphere { radius: 0.1 });
+    }
+
+    #[test]
+    fn shapes_without_extent_are_none_and_without_numbers_refused() {
+        let flat = parse(&LINKS.replace("0.2 0.4 0.6", "0.2 0 0.6")).unwrap();
+        assert_eq!((flat.links[0].beside, flat.links[0].solids.len()), (Beside::Unread, 1));
+        let error = parse(&LINKS.replace("0.2 0.4 0.6", "0.2 0.6")).unwrap_err();
+        assert!(error.code().id == "FRK-D021" && error.row().is_some() && error.column() == Some("size"));
     }
 }

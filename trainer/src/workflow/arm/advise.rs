@@ -2,11 +2,14 @@
 
 use std::fmt::Write;
 
+use super::clearance;
 use crate::arm::base::Base;
+use crate::arm::clearance::{Nearest, Room};
 use crate::arm::excitation::{Excitation, Limits};
 use crate::error::{Error, Result, codes};
 use crate::figures::digits;
 use crate::joint::{ArmFile, Joint};
+use crate::robot::parse;
 
 /// Rate of the planned motion, Hz.
 const RATE_HZ: f64 = 100.0;
@@ -16,21 +19,31 @@ const RATE_HZ: f64 = 100.0;
 pub struct Advised {
     /// Time, and position, velocity and acceleration of every joint, as CSV: one period, after which it starts again.
     pub trajectory: String,
-    /// What it is worth, one sentence with its full stop.
+    /// What it is worth, how close it comes to what, and what was not looked at.
     pub text: String,
     /// Condition number of what it tells; infinite where it cannot tell everything.
     pub condition: f64,
+    /// Where a link comes closest to an obstacle and to another link, as far as there are any.
+    pub nearest: Vec<Nearest>,
 }
 
-/// Plans a motion of the arm of a URDF or MJCF file within the limits of `arm.toml`; positions that it does not limit are limited by the file.
+/// Plans a motion of the arm of a URDF or MJCF file within the limits of `arm.toml`, clear of its obstacles and of the arm itself; positions that it
+/// does not limit are limited by the robot's file.
 ///
 /// # Errors
-/// As [`crate::arm::chain::Chain::parse`] and [`ArmFile::joints`]; `FRK-D014` where a limit of a joint is not known.
+/// As [`crate::arm::chain::Chain::parse`] and [`ArmFile::joints`]; `FRK-D014` where a limit of a joint is not known, or there are
+/// obstacles and no shape of any link; `FRK-D047` where no motion keeps clear.
 pub fn advise(robot: &str, file: &ArmFile, seed: u64) -> Result<Advised> {
-    let (chain, joints) = super::described(robot, file)?;
+    let robot = parse(robot)?;
+    let (chain, joints) = super::described(&robot, file)?;
     let limits = chain.joints.iter().zip(&joints).map(|(joint, known)| limits(known, joint.limits, &joint.name));
+    let limits = limits.collect::<Result<Vec<_>>>()?;
+    let ranges: Vec<[f64; 2]> = limits.iter().map(|limits| limits.position).collect();
+    let around = &file.surroundings;
+    let room = Room::of(&robot, &chain, &ranges, around, seed)?;
+    clearance::require_shapes(&room, around)?;
     let base = Base::of(&chain);
-    let planned = Excitation::of(&chain, &base, &limits.collect::<Result<Vec<_>>>()?, seed);
+    let planned = Excitation::of(&chain, &base, &limits, &room, seed)?;
     let mut trajectory = String::from("time_s");
     for joint in &chain.joints {
         let (name, unit) = (&joint.name, if joint.is_prismatic { "m" } else { "rad" });
@@ -53,13 +66,18 @@ pub fn advise(robot: &str, file: &ArmFile, seed: u64) -> Result<Advised> {
             digits(planned.condition)
         )
     } else {
-        "leaves some base parameters untold: the limits are too narrow".to_owned()
+        format!(
+            "leaves some base parameters untold: {} too narrow",
+            if room.is_open() { "the limits are" } else { "limits or surroundings are" }
+        )
     };
+    let nearest: Vec<Nearest> = [true, false].into_iter().filter_map(|of| planned.nearest(&room, of)).collect();
     let text = format!(
-        "A motion of {} s, to be repeated, {told}. Collisions are not looked at: run it slowly in simulation first.\n",
-        digits(planned.period_s)
+        "A motion of {} s, to be repeated, {told}. {} Run it slowly in simulation first.\n",
+        digits(planned.period_s),
+        clearance::text(&room, around, &nearest)
     );
-    Ok(Advised { trajectory, text, condition: planned.condition })
+    Ok(Advised { trajectory, text, condition: planned.condition, nearest })
 }
 
 fn limits(known: &Joint, of_file: Option<[f64; 2]>, name: &str) -> Result<Limits> {

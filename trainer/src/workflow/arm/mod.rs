@@ -1,6 +1,7 @@
 //! From recordings of a whole arm to a law for each joint, that tell themselves.
 
 mod advise;
+mod clearance;
 mod fitted;
 mod json;
 mod recordings;
@@ -21,7 +22,7 @@ use crate::export::simulator::{ModelFile, Request, Simulator, write};
 use crate::fit::Options;
 use crate::fit::model::from_bytes;
 use crate::joint::{ArmFile, Joint};
-use crate::robot::is_mjcf;
+use crate::robot::{Robot, is_mjcf, parse};
 pub use advise::{Advised, advise};
 pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 
@@ -31,7 +32,7 @@ pub use fitted::{FittedArm, Recorded, file_name, joint_doubt};
 /// As [`crate::arm::fit::fit`], [`Chain::parse`] and [`crate::joint::ArmFile::joints`], and whatever reading a recording reports.
 pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> Result<FittedArm> {
     let start = Instant::now();
-    let (chain, joints) = described(of.robot, of.file)?;
+    let (chain, joints) = described(&parse(of.robot)?, of.file)?;
     let mut warnings = Vec::new();
     let mut load = |sources: &[Source<'_>]| {
         sources.iter().map(|source| run(*source, &joints, &mut warnings)).collect::<Result<Vec<_>>>()
@@ -41,9 +42,9 @@ pub fn arm(of: &Recorded<'_>, options: &Options, progress: ArmProgress<'_>) -> R
     Ok(FittedArm { outcome, warnings, seconds: start.elapsed().as_secs_f64(), seed: options.seed })
 }
 
-/// The chain of a URDF or MJCF file, under the gravity of arm.toml where that gives one, and what arm.toml says of its joints.
-fn described(robot: &str, file: &ArmFile) -> Result<(Chain, Vec<Joint>)> {
-    let mut chain = Chain::parse(robot, &file.held)?;
+/// The chain of a robot, under the gravity of arm.toml where that gives one, and what arm.toml says of its joints.
+fn described(robot: &Robot, file: &ArmFile) -> Result<(Chain, Vec<Joint>)> {
+    let mut chain = Chain::of(robot, &file.held)?;
     if let Some(gravity) = file.gravity_m_s2 {
         chain.gravity = Vector3::from(gravity);
     }
