@@ -15,6 +15,7 @@ pub mod model;
 mod options;
 pub mod outcome;
 pub mod predict;
+mod preparation_error;
 mod rigid_body_error;
 mod run;
 pub mod score;

@@ -24,6 +24,7 @@ use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{
     CURVE_POINTS, Form, InputRange, Outcome, Representation, Score, Soundness, SplitScore, uncertain_share,
 };
+use super::preparation_error::allow_for;
 use super::rigid_body_error::rigid_body_error;
 use super::score::trace_delayed;
 use crate::error::{Error, Result, codes};
@@ -220,6 +221,7 @@ fn parameters(
     let coefficients: Vec<(f64, f64)> = nuisance.iter().enumerate().map(in_image).collect();
     let mut parameters = law_parameters(&fit.law.parameters);
     parameters.extend(rigid::parameters(material, &coefficients));
+    allow_for(&mut parameters, material);
     // Of what the motion does not tell apart there is no interval.
     let unknown = identified.unknown();
     for parameter in parameters.iter_mut().filter(|p| unknown.iter().any(|constant| constant.is_named(&p.name))) {

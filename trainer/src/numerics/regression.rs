@@ -92,7 +92,7 @@ impl<'a> Columns<'a> {
         Self { columns, scales, inverse, rank_deficiency }
     }
 
-    fn coefficients(&self, target: &[f64]) -> Vec<f64> {
+    pub(crate) fn coefficients(&self, target: &[f64]) -> Vec<f64> {
         let moment = DVector::from_fn(self.columns.len(), |i, _| dot(&self.columns[i], target) / self.scales[i]);
         let solution = &self.inverse * moment;
         solution.iter().zip(&self.scales).map(|(x, scale)| x / scale).collect()

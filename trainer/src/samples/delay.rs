@@ -18,6 +18,8 @@ use crate::recording::Recording;
 /// Delay in samples up to which it is the sampling's own: a torque held over a sample against a position read at either edge of it makes
 /// up to one, and a quarter is left for the error of the estimate. A longer one is no matter of the sampling and stays: `diagnose` names it.
 pub(crate) const LONGEST_SAMPLING_DELAY: f64 = 1.25;
+/// Precision, per square of a sample, of the delay that sampling makes: it lies anywhere up to one sample to either side.
+const SAMPLING_PRECISION: f64 = 3.0;
 /// Parts of the samples whose gains are compared. Chosen by judgement: noise is independent between parts of a second and more.
 const PARTS: usize = 20;
 /// Gauss-Newton steps. The second corrects what a filter and a law that bends make of the first.
@@ -25,14 +27,23 @@ const STEPS: usize = 2;
 /// Mean gain of the parts over its standard error above which a delay is put back: 99 % one-sided (2.33).
 const LEAST_T_STATISTIC: f64 = 2.33;
 
-/// The delay with which rigid body and friction, identified anew, leave least of the torque where the joint slides, s; 0 where the samples do not
-/// show one, or one longer than the sampling's own. Friction that was separated before has no rigid body that tells it.
-pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> f64 {
+/// By how much a torque was recorded late.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct TorqueDelay {
+    /// What is put back, s; negative where early, 0 where the samples do not show one.
+    pub put_back_s: f64,
+    /// Root mean square of what may be left in where nothing is put back, s: by the samples and by what sampling makes.
+    pub unknown_s: f64,
+}
+
+/// The delay with which rigid body and friction, identified anew, leave least of the torque where the joint slides; nothing is put back where the
+/// samples do not show one, or one longer than the sampling's own. Friction that was separated before has no rigid body that tells it.
+pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> TorqueDelay {
     let periods = recordings.iter().filter_map(|recording| recording.health.period_s);
     let period = periods.fold(f64::INFINITY, f64::min);
     let is_separated = recordings.iter().any(|recording| recording.separated_friction().is_some());
     if is_separated || preparation.sigma_s.is_none() || !period.is_finite() {
-        return 0.0;
+        return TorqueDelay::default();
     }
     let in_samples = |sliding: &Sliding| {
         let columns = Columns::of(&sliding.columns);
@@ -41,22 +52,50 @@ pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation
                 sliding.torque(recordings, &Preparation { torque_delay_s: samples * period, ..*preparation })?;
             Ok(columns.residuals(&torque))
         };
-        put_back(&left)
+        estimated(&left)
     };
     let sliding = Sliding::of(recordings, joint, preparation).ok();
-    sliding.as_ref().and_then(in_samples).map_or(0.0, |samples| samples * period)
+    match sliding.as_ref().and_then(in_samples) {
+        Some(Estimated { samples, is_shown: true, .. }) => TorqueDelay { put_back_s: samples * period, unknown_s: 0.0 },
+        Some(estimated) => TorqueDelay { put_back_s: 0.0, unknown_s: estimated.unknown() * period },
+        None => TorqueDelay { put_back_s: 0.0, unknown_s: period / SAMPLING_PRECISION.sqrt() },
+    }
 }
 
-/// The delay in samples, where the parts of what is left show one of the sampling.
-fn put_back(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<f64> {
+/// A delay in samples.
+struct Estimated {
+    samples: f64,
+    /// Its standard error.
+    error: f64,
+    /// Whether the parts of what is left show it.
+    is_shown: bool,
+}
+
+impl Estimated {
+    /// Root mean square of the delay, by the estimate and by what sampling makes.
+    fn unknown(&self) -> f64 {
+        let (data, sampling) = ((self.error * self.error).recip(), SAMPLING_PRECISION);
+        let mean = data / (data + sampling) * self.samples;
+        (mean * mean + (data + sampling).recip()).sqrt()
+    }
+}
+
+/// The delay in samples, where it is one of the sampling.
+fn estimated(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<Estimated> {
     let as_recorded = left(0.0).ok()?;
     let mut samples = 0.0;
+    let mut error = f64::INFINITY;
     let mut least = as_recorded.clone();
     for _ in 0..STEPS {
         // What is left is nearly linear in the delay, so that its energy is a parabola.
         let [early, late] = [left(samples - 1.0).ok()?, left(samples + 1.0).ok()?];
         let slope: Vec<f64> = late.iter().zip(&early).map(|(late, early)| 0.5 * (late - early)).collect();
-        samples -= dot(&slope, &least) / dot(&slope, &slope).max(f64::MIN_POSITIVE);
+        let bend = dot(&slope, &slope).max(f64::MIN_POSITIVE);
+        let of_part = |part: Range<usize>| dot(&slope[part.clone()], &least[part]);
+        let scores: Vec<f64> = even_blocks(least.len(), PARTS).into_iter().map(of_part).collect();
+        let mean = dot(&slope, &least) / scores.len().max(1) as f64;
+        samples -= dot(&slope, &least) / bend;
+        error = scores.iter().map(|score| (score - mean).powi(2)).sum::<f64>().sqrt() / bend;
         if samples.abs() > LONGEST_SAMPLING_DELAY {
             return None;
         }
@@ -67,7 +106,7 @@ fn put_back(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<f64> {
         before - after
     };
     let gains: Vec<f64> = even_blocks(least.len(), PARTS).into_iter().map(gain).collect();
-    (t_statistic(&gains) > LEAST_T_STATISTIC).then_some(samples)
+    Some(Estimated { samples, error, is_shown: t_statistic(&gains) > LEAST_T_STATISTIC })
 }
 
 /// The samples at which the joint slides, with what does not depend on the delay of the torque.
@@ -142,7 +181,7 @@ mod tests {
         for delay_s in [-0.5 * PERIOD_S, 0.8 * PERIOD_S] {
             let recording = recorded(delay_s, 0.25);
             let planned = planned(&recording);
-            let found = torque_delay(&[&recording], &Joint::default(), &planned);
+            let found = torque_delay(&[&recording], &Joint::default(), &planned).put_back_s;
             assert!((found - delay_s).abs() < 0.05 * PERIOD_S, "{found} s, and {delay_s} s is true");
             // Friction at 1 and 2 rad/s, from what the rigid body leaves.
             let viscous = |torque_delay_s: f64| {
@@ -172,14 +211,16 @@ mod tests {
             text += &format!("{t},{},{velocity},{}\n", (2.3 * t).sin() / 2.3, 2.0 * velocity.signum() + 1.2 * velocity);
         }
         let recording = parse("separated.csv", text.as_bytes(), &Joint::default()).unwrap();
-        assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), 0.0);
+        assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), TorqueDelay::default());
     }
 
     #[test]
     fn no_delay_is_put_back_where_the_motion_shows_none_or_a_long_one() {
         for (delay_s, fast_rad) in [(0.0, 0.25), (3.0 * PERIOD_S, 0.25), (0.5 * PERIOD_S, 0.0)] {
             let recording = recorded(delay_s, fast_rad);
-            assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), 0.0, "{delay_s} s");
+            let delay = torque_delay(&[&recording], &Joint::default(), &planned(&recording));
+            assert_eq!(delay.put_back_s, 0.0, "{delay_s} s");
+            assert!(delay_s > PERIOD_S || delay.unknown_s >= 0.9 * delay_s, "{delay_s} s: {delay:?}");
         }
     }
 }

@@ -69,6 +69,8 @@ pub(in crate::fit) struct Material {
     pub(in crate::fit) sigma_s: Option<f64>,
     /// Time by which the torque was recorded late, s, negative where early; it is put back in the samples.
     pub(in crate::fit) torque_delay_s: f64,
+    /// Root mean square of what of it may be left in the samples, s.
+    pub(in crate::fit) unknown_delay_s: f64,
     /// Whether the joint accelerates by no more than the noise, so that its inertia is left at zero.
     pub(in crate::fit) is_without_acceleration: bool,
     /// Why nothing can be locked; `None` where something is.
@@ -85,7 +87,8 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
     let request = Request { rate_hz: options.rate_hz, ..Request::default() };
     let planned = Preparation::plan(&borrowed, joint, &request)?;
     let planned = thinned(&borrowed, &planned, MOST_SAMPLES);
-    let preparation = Preparation { torque_delay_s: torque_delay(&borrowed, joint, &planned), ..planned };
+    let delay = torque_delay(&borrowed, joint, &planned);
+    let preparation = Preparation { torque_delay_s: delay.put_back_s, ..planned };
     let parts = recordings.iter().map(|recording| prepare(recording, &preparation)).collect::<Result<Vec<_>>>()?;
     let samples = Samples::join(parts)?;
     let velocity = samples.require_velocity()?.to_vec();
@@ -152,7 +155,8 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &
         acceleration_noise,
         velocity_noise: preparation.velocity_noise(),
         sigma_s: preparation.sigma_s,
-        torque_delay_s: preparation.torque_delay_s,
+        torque_delay_s: delay.put_back_s,
+        unknown_delay_s: delay.unknown_s,
         is_without_acceleration,
         repeats,
     })
@@ -210,10 +214,8 @@ impl Material {
     pub(in crate::fit) fn artefacts(&self) -> Vec<(&'static str, String, Vec<f64>)> {
         let unit = self.samples.actuator_unit;
         let mut artefacts = Vec::new();
-        if let Some(separation) = self.separation.as_ref().filter(|_| self.torque_delay_s != 0.0) {
-            let period_s = self.samples.rate_hz.map_or(1.0, |rate| 1.0 / rate);
-            let rate = first_derivative(&separation.rigid_body, &self.samples.segments, period_s);
-            artefacts.push(("torque_advance", "s".to_owned(), self.pick(&rate)));
+        if let Some(rate) = self.rate_of_rigid_body().filter(|_| self.torque_delay_s != 0.0) {
+            artefacts.push(("torque_advance", "s".to_owned(), rate));
         }
         if let Some((states, acceleration)) = self.states.as_ref().zip(self.samples.acceleration.as_deref()) {
             let held = states.turning.iter().zip(self.pick(acceleration)).map(|(turning, a)| turning * a).collect();
@@ -221,5 +223,12 @@ impl Material {
         }
         artefacts.retain(|(_, _, column): &(_, _, Vec<f64>)| column.iter().any(|value| *value != 0.0));
         artefacts
+    }
+
+    /// How fast the torque of the rigid body changes at each row: what an advance of it would add. `None` of friction that was separated before.
+    pub(in crate::fit) fn rate_of_rigid_body(&self) -> Option<Vec<f64>> {
+        let separation = self.separation.as_ref()?;
+        let period_s = self.samples.rate_hz.map_or(1.0, |rate| 1.0 / rate);
+        Some(self.pick(&first_derivative(&separation.rigid_body, &self.samples.segments, period_s)))
     }
 }

@@ -92,7 +92,8 @@ pub(in crate::fit) fn is_inertia(name: &str) -> bool {
     name == TermKind::Inertia.name()
 }
 
-fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
+/// Name and symbol of a constant.
+pub(in crate::fit) fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
     match (kind, axis) {
         (TermKind::Inertia, Axis::Rotary) => ("inertia", "J"),
         (TermKind::Inertia, Axis::Linear) => ("mass", "M"),
