@@ -95,7 +95,10 @@ fn estimated(left: &dyn Fn(f64) -> Result<Vec<f64>>) -> Option<Estimated> {
         let scores: Vec<f64> = even_blocks(least.len(), PARTS).into_iter().map(of_part).collect();
         let mean = dot(&slope, &least) / scores.len().max(1) as f64;
         samples -= dot(&slope, &least) / bend;
-        error = scores.iter().map(|score| (score - mean).powi(2)).sum::<f64>().sqrt() / bend;
+        // What noise alone changes by from sample to sample tells no delay.
+        let of_noise: f64 = least.windows(3).map(|noise| (0.5 * (noise[2] - noise[0])).powi(2)).sum();
+        let told = (bend - of_noise).max(f64::MIN_POSITIVE);
+        error = scores.iter().map(|score| (score - mean).powi(2)).sum::<f64>().sqrt() / told;
         if samples.abs() > LONGEST_SAMPLING_DELAY {
             return None;
         }
