@@ -226,6 +226,11 @@ mod bags {
         let cut = parse("a.mcap", &bytes[..bytes.len() * 2 / 3], &elbow).unwrap();
         assert!((20..ROWS).contains(&cut.len()) && cut.health.notes.iter().any(|note| note.contains("cut short")));
         assert_eq!(parse("a.mcap", &bytes[..40], &elbow).unwrap_err().exit_status(), 3);
+        // A length that no file has, found by a fuzzer.
+        for length in [u64::MAX, u64::MAX - 8, 1 << 40] {
+            let long = [b"\x89MCAP0\r\n\x01", &length.to_le_bytes()[..], b"\x8e\xb6"].concat();
+            assert_eq!(parse("a.mcap", &long[..], &elbow).unwrap_err().exit_status(), 3);
+        }
     }
 
     proptest! {
