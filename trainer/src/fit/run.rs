@@ -248,7 +248,7 @@ fn remarks(
     let attenuation = rigid::attenuation(material);
     if attenuation > TOLD_ATTENUATION {
         remarks.push(format!(
-            "Noise of the acceleration may have taken up to {:.0} % of the inertia; its interval allows for that.",
+            "Noise of the acceleration may have taken up to {:.0} % of the inertia; the intervals of all constants allow for that.",
             100.0 * attenuation
         ));
     }
