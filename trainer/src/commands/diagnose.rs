@@ -6,7 +6,7 @@ use crate::commands::measurement::{self, Source, profile, rehearse};
 use crate::commands::output::{Outputs, command_line, print, refuse_unwritable, say};
 use crate::commands::progress::{Reporter, peak_memory_mb};
 use crate::compile::profile::Profile;
-use crate::diagnose::answer::outcome::Verdict;
+use crate::diagnose::answer::outcome::{Finding, Verdict};
 use crate::diagnose::answer::sealed::SealedScore;
 use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::preparation::rows::Lock;
@@ -139,7 +139,9 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
         (None, _) => {}
     }
     let is_worse = found.sealed().is_some_and(SealedScore::is_worse);
-    if arguments.simulation.is_some() && found.diagnosis.verdict == Verdict::MissingPhysics && !is_worse {
+    let is_missing = found.diagnosis.verdict == Verdict::MissingPhysics;
+    let is_improved = is_missing && found.diagnosis.findings.iter().any(Finding::is_of_the_image) && !is_worse;
+    if arguments.simulation.is_some() && is_improved {
         remarks.push(put_right::command(arguments.output.as_deref(), joint.name.as_deref()));
     }
     if let Some(path) = &arguments.report {

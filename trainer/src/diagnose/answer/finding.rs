@@ -102,6 +102,12 @@ pub(crate) fn base_parameters(base: &Base, refit: &Refit) -> Vec<Estimate> {
 }
 
 impl Finding {
+    /// Whether an improved image holds it: neither a fault nor a constant of the actuator.
+    #[must_use]
+    pub(crate) fn is_of_the_image(&self) -> bool {
+        matches!(self.action, Action::FeedForward | Action::Parameter) && !self.effect.is_of_actuator()
+    }
+
     /// The finding where held-out rows do not show by their interval that the error falls with it: less certain, but for an event, which lies
     /// in rows that no others can speak for.
     #[must_use]

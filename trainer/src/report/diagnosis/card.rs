@@ -38,10 +38,7 @@ pub(super) fn card(page: &mut Page, content: &DiagnosisPage<'_>, index: usize) {
     answer(page, "How sure", &certainty(found));
     answer(page, "What to do", &what_to_do(found, content));
     // Said once, of the first effect that an image holds.
-    let is_held = |found: &Finding| {
-        matches!(found.action, Action::FeedForward | Action::Parameter) && !found.effect.is_of_actuator()
-    };
-    let first = diagnosis.findings.iter().position(is_held);
+    let first = diagnosis.findings.iter().position(Finding::is_of_the_image);
     if let Some(command) = content.put_right.filter(|_| first == Some(index)) {
         // Lines break between words, not within an option.
         let words: Vec<String> = command.split(' ').map(|word| format!("<span>{}</span>", escape(word))).collect();
