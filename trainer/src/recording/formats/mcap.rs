@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mcap::records::{Channel, Record};
+use mcap::records::{Channel, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
 
@@ -18,68 +18,8 @@ const FIELDS: [&str; 3] = ["position", "velocity", "effort"];
 
 /// Longest record of a bag that is read, bytes: a chunk of a megabyte is usual, and a length that is wrong asks for no more memory than this.
 const LONGEST_RECORD: usize = 1 << 30;
-
-/// The messages of a bag that may be cut short, one after the other.
-struct Messages<'a> {
-    reader: LinearReader,
-    left: &'a [u8],
-    /// Names of schemas by their number.
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, Channel>,
-}
-
-/// A message with what its bag says of it.
-struct Message {
-    topic: String,
-    schema: String,
-    encoding: String,
-    log_time: u64,
-    data: Vec<u8>,
-}
-
-impl<'a> Messages<'a> {
-    fn of(bytes: &'a [u8]) -> Self {
-        let options = LinearReaderOptions::default().with_skip_end_magic(true).with_record_length_limit(LONGEST_RECORD);
-        let reader = LinearReader::new_with_options(options);
-        Self { reader, left: bytes, schemas: BTreeMap::new(), channels: BTreeMap::new() }
-    }
-
-    fn next(&mut self) -> Result<Option<Message>, McapError> {
-        while let Some(event) = self.reader.next_event() {
-            let (opcode, data) = match event? {
-                LinearReadEvent::ReadRequest(asked) => {
-                    let (now, later) = self.left.split_at(asked.min(self.left.len()));
-                    self.reader.insert(now.len()).copy_from_slice(now);
-                    self.reader.notify_read(now.len());
-                    self.left = later;
-                    continue;
-                }
-                LinearReadEvent::Record { opcode, data } => (opcode, data),
-            };
-            match parse_record(opcode, data)? {
-                Record::Schema { header, .. } => {
-                    self.schemas.insert(header.id, header.name);
-                }
-                Record::Channel(channel) => {
-                    self.channels.insert(channel.id, channel);
-                }
-                Record::Message { header, data } => {
-                    let channel = self.channels.get(&header.channel_id);
-                    let channel = channel.ok_or(McapError::UnknownChannel(header.sequence, header.channel_id))?;
-                    return Ok(Some(Message {
-                        topic: channel.topic.clone(),
-                        schema: self.schemas.get(&channel.schema_id).cloned().unwrap_or_default(),
-                        encoding: channel.message_encoding.clone(),
-                        log_time: header.log_time,
-                        data: data.into_owned(),
-                    }));
-                }
-                _ => {}
-            }
-        }
-        Ok(None)
-    }
-}
+/// Topics without joint states that are told, at most.
+const MOST_OTHERS: usize = 20;
 
 /// Joint states in the order of their stamps.
 #[derive(Default)]
@@ -88,40 +28,116 @@ struct States {
     rows: Vec<(i128, Vec<(usize, f64)>)>,
 }
 
+/// How a bag is read that may be cut short.
+fn bounded() -> LinearReaderOptions {
+    LinearReaderOptions::default().with_skip_end_magic(true).with_record_length_limit(LONGEST_RECORD)
+}
+
+/// What was read of a bag.
+#[derive(Default)]
+struct Bag {
+    /// Names of schemas by their number.
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, Channel>,
+    states: States,
+    /// Topics with other messages.
+    others: Vec<String>,
+    /// Joint states that cannot be decoded.
+    broken: usize,
+}
+
+impl Bag {
+    /// Reads the records of a bag, or those of a chunk of one.
+    fn stream(&mut self, mut reader: LinearReader, bytes: &[u8], is_chunk: bool) -> Result<(), McapError> {
+        let mut left = bytes;
+        while let Some(event) = reader.next_event() {
+            match event? {
+                LinearReadEvent::ReadRequest(asked) => {
+                    let (now, later) = left.split_at(asked.min(left.len()));
+                    reader.insert(now.len()).copy_from_slice(now);
+                    reader.notify_read(now.len());
+                    left = later;
+                }
+                LinearReadEvent::Record { opcode, data } => self.record(opcode, data, is_chunk)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the records of a chunk that is not compressed, none of which is longer than what is left of it.
+    fn plain(&mut self, mut bytes: &[u8]) -> Result<(), McapError> {
+        while let Some((&opcode, rest)) = bytes.split_first() {
+            let (length, rest) = rest.split_first_chunk().ok_or(McapError::UnexpectedEoc)?;
+            let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| McapError::UnexpectedEoc)?;
+            let (data, later) = rest.split_at_checked(length).ok_or(McapError::UnexpectedEoc)?;
+            self.record(opcode, data, true)?;
+            bytes = later;
+        }
+        Ok(())
+    }
+
+    /// Reads the records of a compressed chunk, as those of a bag that holds it alone.
+    fn compressed(&mut self, chunk: &[u8]) -> Result<(), McapError> {
+        let no_checksum = [0; 4];
+        let framed = |opcode: u8, record: &[u8]| [&[opcode], &(record.len() as u64).to_le_bytes()[..], record].concat();
+        let alone = [framed(op::CHUNK, chunk), framed(op::DATA_END, &no_checksum)].concat();
+        self.stream(LinearReader::new_with_options(bounded().with_skip_start_magic(true)), &alone, true)
+    }
+
+    fn record(&mut self, opcode: u8, record: &[u8], is_in_chunk: bool) -> Result<(), McapError> {
+        match parse_record(opcode, record)? {
+            Record::Schema { header, .. } => {
+                self.schemas.insert(header.id, header.name);
+            }
+            Record::Channel(channel) => {
+                self.channels.insert(channel.id, channel);
+            }
+            Record::Message { header, data } => {
+                let unknown = McapError::UnknownChannel(header.sequence, header.channel_id);
+                let channel = self.channels.get(&header.channel_id).ok_or(unknown)?;
+                let schema = self.schemas.get(&channel.schema_id).map_or("", String::as_str);
+                let decode = match (schema, channel.message_encoding.as_str()) {
+                    ("sensor_msgs/msg/JointState", "cdr") => of_ros2,
+                    ("sensor_msgs/JointState", "ros1") => of_ros1,
+                    (kind, _) => {
+                        let other = format!("{} ({kind})", channel.topic);
+                        if self.others.len() < MOST_OTHERS && !self.others.contains(&other) {
+                            self.others.push(other);
+                        }
+                        return Ok(());
+                    }
+                };
+                match decode(&data) {
+                    Some(state) => self.states.push(&channel.topic, state, header.log_time),
+                    None => self.broken += 1,
+                }
+            }
+            // A chunk holds no chunks.
+            Record::Chunk { header, data } if !is_in_chunk => {
+                if header.compression.is_empty() {
+                    self.plain(&data)?;
+                } else {
+                    self.compressed(record)?;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
 /// Reads the joint states of a bag; of a bag that is cut short those that are whole.
 pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
-    let mut messages = Messages::of(bytes);
-    let (mut states, mut others, mut notes, mut broken) = (States::default(), Vec::new(), Vec::new(), 0);
-    loop {
-        let message = match messages.next() {
-            Ok(Some(message)) => message,
-            Ok(None) => break,
-            Err(error) if states.rows.is_empty() => {
-                return Err(Error::new(
-                    &codes::CUT_SHORT,
-                    format!("the bag ends before a joint state is whole: {error}"),
-                ));
-            }
-            Err(error) => {
-                notes.push(format!("the bag is cut short behind {} joint states ({error})", states.rows.len()));
-                break;
-            }
-        };
-        let decode = match (message.schema.as_str(), message.encoding.as_str()) {
-            ("sensor_msgs/msg/JointState", "cdr") => of_ros2,
-            ("sensor_msgs/JointState", "ros1") => of_ros1,
-            (kind, _) => {
-                let other = format!("{} ({kind})", message.topic);
-                if others.len() < 20 && !others.contains(&other) {
-                    others.push(other);
-                }
-                continue;
-            }
-        };
-        match decode(&message.data) {
-            Some(state) => states.push(&message.topic, state, message.log_time),
-            None => broken += 1,
+    let mut bag = Bag::default();
+    let ended = bag.stream(LinearReader::new_with_options(bounded().with_emit_chunks(true)), bytes, false);
+    let Bag { states, others, broken, .. } = bag;
+    let mut notes = Vec::new();
+    if let Err(error) = ended {
+        if states.rows.is_empty() {
+            let message = format!("the bag ends before a joint state is whole: {error}");
+            return Err(Error::new(&codes::CUT_SHORT, message));
         }
+        notes.push(format!("the bag is cut short behind {} joint states ({error})", states.rows.len()));
     }
     if states.rows.is_empty() {
         let message = format!("no joint state (sensor_msgs/msg/JointState) among its topics: {}", others.join(", "));

@@ -185,8 +185,12 @@ mod bags {
     }
 
     fn bag() -> Vec<u8> {
+        packed(None)
+    }
+
+    fn packed(compression: Option<mcap::Compression>) -> Vec<u8> {
         let mut file = std::io::Cursor::new(Vec::new());
-        let options = mcap::WriteOptions::new().compression(None).chunk_size(Some(2000));
+        let options = mcap::WriteOptions::new().compression(compression).chunk_size(Some(2000));
         let mut writer = options.create(&mut file).unwrap();
         let schema = |name: &str| {
             Some(Arc::new(mcap::Schema {
@@ -217,6 +221,16 @@ mod bags {
     }
 
     #[test]
+    fn a_compressed_bag_holds_the_same() {
+        for compression in [mcap::Compression::Lz4, mcap::Compression::Zstd] {
+            assert_eq!(
+                holds(&packed(Some(compression))).values(Quantity::Position),
+                holds(&bag()).values(Quantity::Position)
+            );
+        }
+    }
+
+    #[test]
     fn joint_states_of_a_bag_are_columns() {
         let bytes = bag();
         let recording = holds(&bytes);
@@ -226,7 +240,14 @@ mod bags {
         let cut = parse("a.mcap", &bytes[..bytes.len() * 2 / 3], &elbow).unwrap();
         assert!((20..ROWS).contains(&cut.len()) && cut.health.notes.iter().any(|note| note.contains("cut short")));
         assert_eq!(parse("a.mcap", &bytes[..40], &elbow).unwrap_err().exit_status(), 3);
-        // A length that no file has, found by a fuzzer.
+        // A record that ends behind its chunk, which is not compressed: 40 bytes of header, then a record of 100 bytes in a chunk of 20.
+        let mut chunk = [0_u8; 60];
+        chunk[32] = 20;
+        chunk[40] = 5;
+        chunk[41] = 100;
+        let long = [b"\x89MCAP0\r\n\x06", &60_u64.to_le_bytes()[..], &chunk, &[0; 200]].concat();
+        assert_eq!(parse("a.mcap", &long[..], &elbow).unwrap_err().exit_status(), 3);
+        // A length that no file has. Both were found by a fuzzer.
         for length in [u64::MAX, u64::MAX - 8, 1 << 40] {
             let long = [b"\x89MCAP0\r\n\x01", &length.to_le_bytes()[..], b"\x8e\xb6"].concat();
             assert_eq!(parse("a.mcap", &long[..], &elbow).unwrap_err().exit_status(), 3);
