@@ -2,7 +2,7 @@
 
 use frikan_shared::model::RigidBody;
 
-use super::gather::{MOST_ATTENUATION, Material};
+use super::gather::{MOST_ATTENUATION, Material, RigidColumn};
 use crate::joint::Joint;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::NORMAL_95;
@@ -74,14 +74,25 @@ pub(in crate::fit) fn attenuation(material: &Material) -> f64 {
     if power > 0.0 { (material.acceleration_noise.powi(2) / power).min(1.0) } else { 0.0 }
 }
 
+/// Columns of the constants beside one of the rigid body, with what these are called: its others by their names, Coulomb and viscous friction,
+/// whose names have the actuator's quantity, by their symbols.
+pub(in crate::fit) fn beside(material: &Material, index: Option<usize>) -> (Vec<&'static str>, Vec<Vec<f64>>) {
+    let velocity = material.pick(material.samples.velocity.as_deref().unwrap_or_default());
+    let sign = velocity.iter().map(|v| v.signum()).collect();
+    let others = material.columns.iter().enumerate().filter(|(other, _)| Some(*other) != index);
+    let named = |column: &RigidColumn| (name(material, column), material.pick(&column.values));
+    let others = others.map(|(_, column)| named(column));
+    others.chain([("F_c", sign), ("F_v", velocity)]).unzip()
+}
+
+/// Name of the constant of a column.
+pub(in crate::fit) fn name(material: &Material, column: &RigidColumn) -> &'static str {
+    names(column.kind, material.samples.axis).0
+}
+
 /// What the other columns, velocity and its sign leave of a column.
 fn left_by_others(material: &Material, index: usize) -> Vec<f64> {
-    let velocity = material.pick(material.samples.velocity.as_deref().unwrap_or_default());
-    let columns = material.columns.iter().enumerate();
-    let mut others: Vec<Vec<f64>> =
-        columns.filter(|(other, _)| *other != index).map(|(_, column)| material.pick(&column.values)).collect();
-    others.push(velocity.iter().map(|v| v.signum()).collect());
-    others.push(velocity);
+    let (_, others) = beside(material, Some(index));
     let whole: Vec<_> = std::iter::once(0..material.rows.len()).collect();
     least_squares(&others, &material.pick(&material.columns[index].values), &whole).residuals
 }
@@ -93,7 +104,7 @@ pub(in crate::fit) fn is_inertia(name: &str) -> bool {
 }
 
 /// Name and symbol of a constant.
-pub(in crate::fit) fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
+fn names(kind: TermKind, axis: Axis) -> (&'static str, &'static str) {
     match (kind, axis) {
         (TermKind::Inertia, Axis::Rotary) => ("inertia", "J"),
         (TermKind::Inertia, Axis::Linear) => ("mass", "M"),
@@ -135,6 +146,6 @@ pub(in crate::fit) fn collinear(material: &Material) -> Option<String> {
         left_by_others(material, index).iter().map(|x| x * x).sum::<f64>() / power.max(f64::MIN_POSITIVE)
     };
     let lost = (0..material.columns.len()).find(|&index| left_of(index) < COLLINEAR_SHARE);
-    let name = |index: usize| names(material.columns[index].kind, material.samples.axis).0.to_owned();
-    lost.map(name).or_else(|| (separation.rank_deficiency > 0).then(|| "a parameter of the rigid body".to_owned()))
+    lost.map(|index| name(material, &material.columns[index]).to_owned())
+        .or_else(|| (separation.rank_deficiency > 0).then(|| "a parameter of the rigid body".to_owned()))
 }
