@@ -28,6 +28,12 @@ impl Commanded {
         Self { payload, ..self }
     }
 
+    /// What the actuator has to put out, N m a sample, so that a torque is left beside what the payload takes.
+    #[must_use]
+    pub fn needed(&self, torque: &[f64]) -> Vec<f64> {
+        torque.iter().zip(&self.payload).map(|(torque, payload)| torque + payload).collect()
+    }
+
     /// Puts those of a later recording behind these.
     pub fn append(&mut self, next: Self) {
         let count = self.commands.len();

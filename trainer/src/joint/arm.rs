@@ -4,13 +4,13 @@ use toml::{Table, Value};
 
 use super::columns::ColumnMapping;
 use super::keys::unread;
-use super::surroundings::Surroundings;
+use super::surroundings::{self, Surroundings};
 use super::{Joint, row_of};
 use crate::error::{Error, Result, codes};
 
-/// Names at the top of `arm.toml` that a `joint.toml` has not, and in a table of a single joint.
-const OF_ALL: [&str; 6] = ["gravity_m_s2", "held", "joints", "obstacles", "clearance_m", "link_radius_m"];
-const OF_ONE: [&str; 1] = ["link_radius_m"];
+/// Names at the top of `arm.toml` that a `joint.toml` has not, beside those of its surroundings, and in a table of a single joint.
+const OF_ALL: [&str; 3] = ["gravity_m_s2", "held", "joints"];
+const OF_ONE: [&str; 1] = [surroundings::LINK_RADIUS];
 
 /// What is known of an arm before a recording is read. Every key is optional.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +58,7 @@ impl ArmFile {
     /// What stands in the file and is read by nothing, a sentence each with the name that may have been meant.
     #[must_use]
     pub fn unknown_keys(&self) -> Vec<String> {
-        let mut unknown = unread(self.of_all.keys(), "arm.toml", &OF_ALL);
+        let mut unknown = unread(self.of_all.keys(), "arm.toml", &[&OF_ALL[..], &surroundings::KEYS].concat());
         for (joint, table) in &self.of_one {
             let keys = table.as_table().into_iter().flat_map(Table::keys);
             unknown.extend(unread(keys, &format!("[joints.{joint}] of arm.toml"), &OF_ONE));

@@ -17,8 +17,8 @@ const CLEARANCES_M: [f64; 2] = [0.001, 10.0];
 const FURTHEST_M: f64 = 1e3;
 
 /// Keys at the top of arm.toml that are read here.
-const KEYS: [&str; 3] = ["obstacles", "clearance_m", LINK_RADIUS];
-const LINK_RADIUS: &str = "link_radius_m";
+pub(super) const KEYS: [&str; 3] = ["obstacles", "clearance_m", LINK_RADIUS];
+pub(super) const LINK_RADIUS: &str = "link_radius_m";
 
 /// What is around an arm.
 #[derive(Clone, Debug, PartialEq)]

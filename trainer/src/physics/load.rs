@@ -38,7 +38,7 @@ fn carried(state: &JointState, share: f64) -> Option<Vec<f64>> {
 /// What an actuator that reports no torque has to put out by the law compared with: the rigid body, its friction and what a payload takes.
 fn of_actuator(state: &JointState) -> Option<Vec<f64>> {
     let (commanded, known) = (state.commanded.as_ref()?, state.known.as_ref()?);
-    Some(state.map(|i| known[i] + commanded.payload[i]))
+    Some(commanded.needed(known))
 }
 
 impl Hypothesis for LoadFriction {

@@ -6,7 +6,7 @@ mod geoms;
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::model::{Beside, Body, Joint, Kind, Link, OF_FRAME, Robot, at, row};
+use super::model::{Beside, Body, Joint, Kind, Link, OF_FRAME, Robot, at, row, z_along};
 use crate::error::Result;
 
 /// Elements whose bodies stand elsewhere.
@@ -183,9 +183,7 @@ impl File<'_, '_> {
             let columns = Matrix3::from_columns(&[x, y, x.cross(&y)]);
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(columns))
         } else if let Some(z) = self.vector(node, class, "zaxis")? {
-            let z = unit(z)?;
-            UnitQuaternion::rotation_between(&Vector3::z(), &z)
-                .unwrap_or_else(|| UnitQuaternion::new(Vector3::x() * std::f64::consts::PI))
+            z_along(&unit(z)?)
         } else {
             UnitQuaternion::identity()
         };

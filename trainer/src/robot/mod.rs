@@ -4,7 +4,7 @@ mod mjcf;
 mod model;
 mod urdf;
 
-pub(crate) use model::{Beside, Body, Form, Joint, Kind, Link, Robot, Solid};
+pub(crate) use model::{Beside, Body, Form, Joint, Kind, Link, Robot, Solid, z_along};
 use roxmltree::Document;
 
 use crate::error::{Error, Result, codes};

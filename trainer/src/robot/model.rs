@@ -1,6 +1,6 @@
 //! A robot: links with their bodies, and the joints between them.
 
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use crate::error::{Error, codes};
@@ -15,6 +15,12 @@ pub(crate) struct Robot {
     pub(crate) joints: Vec<Joint>,
     /// Acceleration of gravity in the frame of the root, m/s2.
     pub(crate) gravity: Vector3<f64>,
+}
+
+/// A turn that brings z along a direction of any length; half a turn about x where that is against z.
+pub(crate) fn z_along(direction: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let turn = UnitQuaternion::rotation_between(&Vector3::z(), direction);
+    turn.unwrap_or_else(|| UnitQuaternion::new(Vector3::x() * std::f64::consts::PI))
 }
 
 /// A link. Without `<inertial>` it has no mass.

@@ -29,7 +29,7 @@ const LEAST_T_STATISTIC: f64 = 2.33;
 
 /// By how much a torque was recorded late.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct TorqueDelay {
+pub(crate) struct SamplingDelay {
     /// What is put back, s; negative where early, 0 where the samples do not show one.
     pub put_back_s: f64,
     /// Root mean square of what may be left in where nothing is put back, s: by the samples and by what sampling makes.
@@ -38,12 +38,12 @@ pub(crate) struct TorqueDelay {
 
 /// The delay with which rigid body and friction, identified anew, leave least of the torque where the joint slides; nothing is put back where the
 /// samples do not show one, or one longer than the sampling's own. Friction that was separated before has no rigid body that tells it.
-pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> TorqueDelay {
+pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation: &Preparation) -> SamplingDelay {
     let periods = recordings.iter().filter_map(|recording| recording.health.period_s);
     let period = periods.fold(f64::INFINITY, f64::min);
     let is_separated = recordings.iter().any(|recording| recording.separated_friction().is_some());
     if is_separated || preparation.sigma_s.is_none() || !period.is_finite() {
-        return TorqueDelay::default();
+        return SamplingDelay::default();
     }
     let in_samples = |sliding: &Sliding| {
         let columns = Columns::of(&sliding.columns);
@@ -56,9 +56,11 @@ pub(crate) fn torque_delay(recordings: &[&Recording], joint: &Joint, preparation
     };
     let sliding = Sliding::of(recordings, joint, preparation).ok();
     match sliding.as_ref().and_then(in_samples) {
-        Some(Estimated { samples, is_shown: true, .. }) => TorqueDelay { put_back_s: samples * period, unknown_s: 0.0 },
-        Some(estimated) => TorqueDelay { put_back_s: 0.0, unknown_s: estimated.unknown() * period },
-        None => TorqueDelay { put_back_s: 0.0, unknown_s: period / SAMPLING_PRECISION.sqrt() },
+        Some(Estimated { samples, is_shown: true, .. }) => {
+            SamplingDelay { put_back_s: samples * period, unknown_s: 0.0 }
+        }
+        Some(estimated) => SamplingDelay { put_back_s: 0.0, unknown_s: estimated.unknown() * period },
+        None => SamplingDelay { put_back_s: 0.0, unknown_s: period / SAMPLING_PRECISION.sqrt() },
     }
 }
 
@@ -214,7 +216,7 @@ mod tests {
             text += &format!("{t},{},{velocity},{}\n", (2.3 * t).sin() / 2.3, 2.0 * velocity.signum() + 1.2 * velocity);
         }
         let recording = parse("separated.csv", text.as_bytes(), &Joint::default()).unwrap();
-        assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), TorqueDelay::default());
+        assert_eq!(torque_delay(&[&recording], &Joint::default(), &planned(&recording)), SamplingDelay::default());
     }
 
     #[test]

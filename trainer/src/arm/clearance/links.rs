@@ -1,11 +1,11 @@
 //! The solids of an arm: those of its file, and capsules in place of links whose shape is not known.
 
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 
 use super::solid::{Owner, Placed};
 use crate::arm::chain::Chain;
 use crate::joint::Surroundings;
-use crate::robot::{Beside, Body, Form, Link, Robot, Solid};
+use crate::robot::{Beside, Body, Form, Link, Robot, Solid, z_along};
 
 /// Name of a root that is a frame without body, by convention of MJCF and of ROS (REP 105).
 const WORLD: &str = "world";
@@ -115,9 +115,7 @@ fn stand_ins(start: Vector3<f64>, ends: &[Vector3<f64>], radius: f64) -> Vec<Sol
     }
     let capsule = |end: &Vector3<f64>| {
         let way = end - start;
-        let turn = UnitQuaternion::rotation_between(&Vector3::z(), &way)
-            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-        let pose = Isometry3::from_parts(Translation3::from(start + 0.5 * way), turn);
+        let pose = Isometry3::from_parts(Translation3::from(start + 0.5 * way), z_along(&way));
         Solid { pose, form: Form::Capsule { radius, half_length: 0.5 * way.norm() } }
     };
     ends.iter().map(capsule).collect()

@@ -1,6 +1,6 @@
 //! H6: the actuator's gain is not the one compared with, which is larger by a share epsilon of what it is.
 
-use super::{by_gain, motion};
+use super::by_need;
 use crate::actuator::{Actuator, Kind};
 use crate::physics::{Dimension, EffectId, Hypothesis, JointState, Shape, ShapeName};
 
@@ -17,22 +17,12 @@ const TORQUE: f64 = 2.0;
 /// Torque of a part of an actuator, N m a sample, by what the joint needs of it; none where it does not follow its command. That by a velocity error is
 /// taken as recorded: what is left for it holds what the position error made, the noise of the torque with it.
 fn part(state: &JointState, variant: f64) -> Vec<f64> {
-    let Some((commanded, known)) = state.commanded.as_ref().zip(state.known.as_ref()) else {
-        return vec![0.0; state.len()];
-    };
-    commanded.map(|actuator, command, i| {
-        let applied = actuator.apply(command, motion(state, i));
-        if !applied.follows_command() {
-            return 0.0;
-        }
-        let whole = known[i] + commanded.payload[i];
-        let beside_gain = applied.at(state.velocity[i]) - by_gain(actuator, command, &applied);
-        match (actuator.kind, variant) {
-            (Kind::Pd, DAMPING) => applied.by_kd * actuator.kd,
-            (Kind::Pd, TORQUE) => whole,
-            (_, TORQUE) => whole + beside_gain,
-            _ => whole - beside_gain,
-        }
+    let Some(known) = &state.known else { return vec![0.0; state.len()] };
+    by_need(state, known, |actuator, applied, [needed, beside_gain]| match (actuator.kind, variant) {
+        (Kind::Pd, DAMPING) => applied.by_kd * actuator.kd,
+        (Kind::Pd, TORQUE) => needed,
+        (_, TORQUE) => needed + beside_gain,
+        _ => needed - beside_gain,
     })
 }
 

@@ -37,16 +37,23 @@ fn by_gain(actuator: &Actuator, command: &Command, applied: &Applied) -> f64 {
     }
 }
 
-/// Torque that the gain of an actuator has to make at every sample so that `torque`, N m, is left beside what a payload takes; none where it
-/// does not follow its command. What the
-/// recorded commands make of it holds their noise, and would explain the torque, which is made of them, by itself.
-fn asked_of_gain(state: &JointState, torque: &[f64]) -> Vec<f64> {
+/// A torque at every sample, by the actuator's kind, what it has to put out so that `torque` (N m) is left beside what a payload takes, what of
+/// that its gain does not make, and what it applied; none where it does not follow its command. What the recorded commands make of a gain holds
+/// their noise, and would explain the torque, which is made of them, by itself.
+fn by_need(state: &JointState, torque: &[f64], part: impl Fn(&Actuator, &Applied, [f64; 2]) -> f64) -> Vec<f64> {
     let Some(commanded) = &state.commanded else { return vec![0.0; state.len()] };
+    let needed = commanded.needed(torque);
     commanded.map(|actuator, command, i| {
         let applied = actuator.apply(command, motion(state, i));
         if !applied.follows_command() {
             return 0.0;
         }
-        torque[i] + commanded.payload[i] - (applied.at(state.velocity[i]) - by_gain(actuator, command, &applied))
+        let beside_gain = applied.at(state.velocity[i]) - by_gain(actuator, command, &applied);
+        part(actuator, &applied, [needed[i], beside_gain])
     })
+}
+
+/// Torque that the gain of an actuator has to make at every sample, N m, as [`by_need`].
+fn asked_of_gain(state: &JointState, torque: &[f64]) -> Vec<f64> {
+    by_need(state, torque, |_, _, [needed, beside_gain]| needed - beside_gain)
 }

@@ -1,11 +1,11 @@
 //! Geoms of MJCF: what may not be run into. Those that touch nothing (`contype` and `conaffinity` zero) are for the eye only.
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, Vector3};
 use roxmltree::Node;
 
 use super::File;
 use crate::error::Result;
-use crate::robot::model::{Form, Solid, at};
+use crate::robot::model::{Form, Solid, at, z_along};
 
 /// Attributes by which two geoms are told whether they may touch.
 const TOUCHING: [&str; 2] = ["contype", "conaffinity"];
@@ -63,9 +63,7 @@ impl File<'_, '_> {
 
 /// Half way between two points, z along the way from one to the other.
 fn along(from: Vector3<f64>, to: Vector3<f64>) -> Isometry3<f64> {
-    let turn = UnitQuaternion::rotation_between(&Vector3::z(), &(to - from));
-    let turn = turn.unwrap_or_else(|| UnitQuaternion::new(Vector3::x() * std::f64::consts::PI));
-    Isometry3::from_parts(Translation3::from(0.5 * (from + to)), turn)
+    Isometry3::from_parts(Translation3::from(0.5 * (from + to)), z_along(&(to - from)))
 }
 
 #[cfg(test)]
