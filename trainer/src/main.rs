@@ -11,6 +11,7 @@ use frikan_trainer::commands::{
     arm, check, closed_loop, diagnose, explain, export, fit, init, predict, rollout, show, simulate, verify,
 };
 use frikan_trainer::error::Result;
+use frikan_trainer::recording::silence_readers_panics;
 
 /// Learns, explains and diagnoses the friction of a joint from recordings.
 ///
@@ -86,6 +87,7 @@ fn parsed() -> Result<Command> {
 }
 
 fn main() -> ExitCode {
+    silence_readers_panics();
     match parsed().and_then(|command| run(&command)) {
         Ok(status) => ExitCode::from(status),
         Err(error) => {

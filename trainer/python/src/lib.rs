@@ -13,6 +13,7 @@ use frikan_trainer::fit::outcome::Representation;
 use frikan_trainer::fit::{Budget, Options, model};
 use frikan_trainer::law::KnownForm;
 use frikan_trainer::plant;
+use frikan_trainer::recording::silence_readers_panics;
 use frikan_trainer::workflow::arm::{self as fitting_arms, Recorded};
 use frikan_trainer::workflow::diagnose::{Against, BaseKind, Request};
 use frikan_trainer::workflow::{Source, Warning, check as checking, predict as predicting, rollout as rolling_out};
@@ -217,6 +218,7 @@ fn unknown(what: &str, name: &str) -> PyErr {
 /// What the package `frikan` is written on.
 #[pymodule]
 fn _frikan(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    silence_readers_panics();
     module.add("Error", module.py().get_type::<failure::FrikanError>())?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<FittedObject>()?;

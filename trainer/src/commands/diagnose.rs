@@ -97,7 +97,10 @@ pub fn run(arguments: &Diagnose) -> Result<u8> {
     refuse_unwritable(written.into_iter().flatten(), &read.collect::<Vec<_>>())?;
     let reporter = Reporter::new(arguments.quiet);
     reporter.say("reading");
-    let joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
+    let mut joint = measurement::joint(arguments.joint.as_deref(), arguments.quiet)?;
+    if let Some(model) = &arguments.model {
+        joint = measurement::with_identified(joint, model)?;
+    }
     let model = arguments.model.as_deref().map(fit::model::load).transpose()?;
     if arguments.dry_run {
         let recordings: Vec<Source<'_>> = arguments.recordings.iter().map(Source::from).collect();

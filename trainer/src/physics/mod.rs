@@ -214,6 +214,10 @@ pub fn catalogue() -> Vec<Box<dyn Hypothesis + Send>> {
     ]
 }
 
+/// Standard deviation of a coefficient that physics knows, over its value: constants of actuators are good to a tenth, and what a joint does
+/// about a limit is not all in the column.
+pub(crate) const KNOWN_WITHIN_SHARE: f64 = 0.1;
+
 /// `count` values from `low` to `high`, evenly spaced in the logarithm.
 pub(crate) fn geometric_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
     if count < 2 || high <= low {

@@ -25,6 +25,7 @@ mod vectors;
 
 use std::path::Path;
 
+pub use formats::silence_readers_panics;
 pub use guess::{Proposal, Taken};
 pub(crate) use health::GAP_PERIODS;
 pub use health::Health;

@@ -5,7 +5,7 @@ use frikan_shared::pool::Pool;
 use frikan_shared::units::{Quantity, Unit};
 
 use super::commanded::Commanded;
-use super::friction::GearFriction;
+use super::friction::{GearFriction, Terms};
 use super::identified::Identified;
 use super::shooting::{Candidate, Shot, What, moved, place, shoot};
 use super::torque_space::open_constants;
@@ -49,7 +49,7 @@ pub(super) struct ByTrajectory {
     pub(super) mae: f64,
 }
 
-/// Moves actuator, inertia and friction from what `identified` and the image `start` of the joint without payload say.
+/// Moves actuator, inertia and the `terms` of friction from what `identified` and the image `start` of the joint without payload say.
 ///
 /// # Errors
 /// `FRK-N004` where no start can be simulated, `FRK-D020` where the model would be refused.
@@ -58,6 +58,7 @@ pub(super) fn by_trajectory(
     joint: &Joint,
     identified: &Identified,
     start: &HostModel,
+    terms: Terms,
 ) -> Result<ByTrajectory> {
     let commanded = recordings.iter().map(|recording| Commanded::of(recording, joint)).collect::<Result<Vec<_>>>()?;
     let (all, open) = (open_constants(&commanded), identified.open.as_slice());
@@ -73,11 +74,15 @@ pub(super) fn by_trajectory(
     let mut best: Option<Shot> = None;
     let mut failure = None;
     let own = identified.load.clamp(0.0, LOSSY.0);
-    for (load, gain) in [(own, 1.0), LOSSY] {
-        let begin = begin(start, identified, &all, (load, gain), torque);
+    let begins = if terms.load { vec![(own, 1.0), LOSSY] } else { vec![(0.0, 1.0)] };
+    for (load, gain) in begins {
+        let mut begin = begin(start, identified, &all, (load, gain), torque);
+        if !terms.stribeck {
+            begin.friction.stribeck = 0.0;
+        }
         let begin = Candidate { torque_limit: limit.map(|limit| gain * limit), ..begin };
         let delay_is_open = delay_is_open && kind.follows_position();
-        let moved = moved(&begin, open, [torque, speed], identified.has_own_gravity, delay_is_open);
+        let moved = moved(&begin, open, [torque, speed], terms, identified.has_own_gravity, delay_is_open);
         let first = shoot(&commanded, begin, &moved, Some(FIRST_WINDOW_S));
         let whole = first.and_then(|first| match window_s {
             Some(window) if window <= FIRST_WINDOW_S => Ok(first),

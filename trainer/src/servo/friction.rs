@@ -1,6 +1,6 @@
 //! The friction of a joint that is identified by its trajectories: what servo gears have (Duclusaud et al. 2024), each term with a meaning.
 
-use crate::law::{Expr, Unary};
+use crate::law::{Expr, KnownForm, Unary};
 use crate::numerics::dry_friction::DryLevels;
 use crate::rollout::{Instant, Levels, Resistance};
 
@@ -20,6 +20,25 @@ pub struct GearFriction {
     pub viscous: f64,
     /// Share of the torque that the gear carries.
     pub load: f64,
+}
+
+/// Terms beside Coulomb and viscous friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Terms {
+    pub(super) stribeck: bool,
+    pub(super) load: bool,
+}
+
+impl Terms {
+    /// Those of a form that is asked for, all where none is; `None` of a form that this law cannot have.
+    pub(super) fn of(form: Option<KnownForm>) -> Option<Self> {
+        match form {
+            None => Some(Self { stribeck: true, load: true }),
+            Some(KnownForm::CoulombViscous) => Some(Self { stribeck: false, load: false }),
+            Some(KnownForm::StribeckGaussian) => Some(Self { stribeck: true, load: false }),
+            Some(_) => None,
+        }
+    }
 }
 
 impl Resistance for GearFriction {

@@ -3,6 +3,7 @@
 use super::adopt::adopt;
 use super::as_torque::AsTorque;
 use super::by_trajectory::by_trajectory;
+use super::friction::Terms;
 use super::identified::Identified;
 use super::known_torque::{Load, known_torque, without_payload};
 use super::torque_space::identify;
@@ -58,22 +59,33 @@ pub fn fit_servo(
     let scores: Option<Vec<Score>> = train.iter().map(|simulated| simulated.score).collect();
     let in_torque_space = scores.map(|scores| Score::over(&scores).mae);
     let start = from_bytes(&outcome.image)?.model;
-    tell(Stage::FittingMotion);
-    let by = by_trajectory(recordings, joint, &identified, &start)?;
-    if in_torque_space.is_none_or(|error| by.mae < error) {
-        // Scored with all of the payload taken off, as the model is that of the joint alone.
-        let known = |of: &[Recording]| {
-            let torque = |recording| known_torque(recording, joint, &by.identified, 0.0, Load::OfActuator);
-            of.iter().map(torque).collect::<Result<Vec<_>>>()
-        };
-        outcome = adopt(outcome, &by, &known(recordings)?, &known(tests)?, in_torque_space)?;
-        identified = by.identified;
-        train = simulated(&outcome, recordings, joint, &identified)?;
-    } else {
-        let (own, other) = (by.mae, in_torque_space.unwrap_or(f64::INFINITY));
-        outcome.remarks.push(format!(
-            "By trajectory nothing better was found: it leaves {own:.4} rad of the position, the law in torque space {other:.4} rad."
-        ));
+    let by = match Terms::of(options.form) {
+        Some(terms) => {
+            tell(Stage::FittingMotion);
+            Some(by_trajectory(recordings, joint, &identified, &start, terms)?)
+        }
+        None => None,
+    };
+    match by {
+        Some(by) if in_torque_space.is_none_or(|error| by.mae < error) => {
+            // Scored with all of the payload taken off, as the model is that of the joint alone.
+            let known = |of: &[Recording]| {
+                let torque = |recording| known_torque(recording, joint, &by.identified, 0.0, Load::OfActuator);
+                of.iter().map(torque).collect::<Result<Vec<_>>>()
+            };
+            outcome = adopt(outcome, &by, &known(recordings)?, &known(tests)?, in_torque_space)?;
+            identified = by.identified;
+            train = simulated(&outcome, recordings, joint, &identified)?;
+        }
+        Some(by) => {
+            let (own, other) = (by.mae, in_torque_space.unwrap_or(f64::INFINITY));
+            outcome.remarks.push(format!(
+                "By trajectory nothing better was found: it leaves {own:.4} rad of the position, the law in torque space {other:.4} rad."
+            ));
+        }
+        None => outcome
+            .remarks
+            .push("A law of this form is not fitted by trajectory: it is that of torque space.".to_owned()),
     }
     tell(Stage::Simulating);
     let tests = simulated(&outcome, tests, joint, &identified)?;

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::commanded::Commanded;
-use super::friction::GearFriction;
+use super::friction::{GearFriction, Terms};
 use crate::actuator::{Open, Partial};
 use crate::error::Result;
 use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, NORMAL_95, quantile};
@@ -181,6 +181,7 @@ pub(super) fn moved(
     start: &Candidate,
     open: &[Open],
     [torque, speed]: [f64; 2],
+    terms: Terms,
     own_gravity: bool,
     delay_is_open: bool,
 ) -> Vec<Moved> {
@@ -196,11 +197,15 @@ pub(super) fn moved(
         positive(What::Inertia, start.inertia.abs().max(1e-3 * torque)),
         Moved { what: What::Offset, scale: 0.1 * torque, low: -torque, high: torque },
         positive(What::Coulomb, 0.1 * torque),
-        positive(What::Stribeck, 0.1 * torque),
-        Moved { what: What::StribeckVelocity, scale: 0.05 * speed, low: 0.005 * speed, high: 0.2 * speed },
-        positive(What::Viscous, 0.1 * torque / speed),
-        Moved { what: What::Load, scale: 0.1, low: 0.0, high: 0.95 },
     ]);
+    if terms.stribeck {
+        moved.extend([
+            positive(What::Stribeck, 0.1 * torque),
+            Moved { what: What::StribeckVelocity, scale: 0.05 * speed, low: 0.005 * speed, high: 0.2 * speed },
+        ]);
+    }
+    moved.push(positive(What::Viscous, 0.1 * torque / speed));
+    moved.extend(terms.load.then_some(Moved { what: What::Load, scale: 0.1, low: 0.0, high: 0.95 }));
     moved.extend(
         start.torque_limit.map(|limit| Moved { low: LEAST_LIMIT * limit, ..positive(What::TorqueLimit, limit) }),
     );

@@ -8,8 +8,11 @@ use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, fit_residual, rows_in, weighted};
-use crate::physics::{EffectId, Hypothesis, JointState};
+use crate::physics::{EffectId, Hypothesis, JointState, KNOWN_WITHIN_SHARE};
 use rayon::prelude::*;
+
+/// Standard deviations of its prior that a coefficient which physics knows may be off: three, as is usual for a normal deviate.
+const MOST_DEVIATIONS: f64 = 3.0;
 
 /// What every later stage weighs with: the prepared recording, its base and the design of all candidates.
 pub struct Workbench<'a> {
@@ -68,7 +71,13 @@ impl<'a> Workbench<'a> {
             }
             Label::Generic(_) => true,
         };
-        (!self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)) && is_passive()
+        let is_as_known = || {
+            let Label::Named(effect) = label else { return true };
+            let known = self.hypothesis(*effect).and_then(|h| h.known_coefficient(shape));
+            let most = MOST_DEVIATIONS * KNOWN_WITHIN_SHARE;
+            known.is_none_or(|known| coefficients.iter().all(|c| (c / known - 1.0).abs() <= most))
+        };
+        (!self.only_positive(label) || coefficients.iter().all(|c| *c > 0.0)) && is_passive() && is_as_known()
     }
 
     /// Unfiltered columns of a label and shape at states of the rows.

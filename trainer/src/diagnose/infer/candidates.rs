@@ -7,7 +7,7 @@ use crate::diagnose::infer::side::Side;
 use crate::inference::evidence::{Candidate, Variant};
 use crate::inference::sets::Member;
 use crate::numerics::statistics::root_mean_square;
-use crate::physics::{EffectId, Hypothesis, Shape};
+use crate::physics::{EffectId, Hypothesis, KNOWN_WITHIN_SHARE, Shape};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -15,9 +15,6 @@ use std::ops::Range;
 /// Contribution of an effect to the torque over the friction (root mean squares) that its prior expects: effects that are worth a name
 /// are of some per cent to the size of friction itself.
 const EXPECTED_SHARE: f64 = 0.3;
-/// Standard deviation of a coefficient that physics knows, over its value: constants of actuators are good to a tenth, and what a joint does
-/// about a limit is not all in the column.
-const KNOWN_WITHIN_SHARE: f64 = 0.1;
 /// Length scales of an unnamed function over the range of its channel, and the strength that stands for each where it is refitted:
 /// from a broad function to a narrow feature (Matern 3/2; Solin and Sarkka 2020).
 const LENGTH_SCALES: [(f64, f64); 3] = [(0.5, 20.0), (0.2, 200.0), (0.08, 2000.0)];

@@ -37,7 +37,10 @@ fn levels(state: &JointState, variant: f64) -> Vec<f64> {
         let reference = commanded.map(|_, command, _| if is_followed { command.reference } else { 0.0 });
         state.rate_of(&reference)
     };
-    let at = |share| quantile(values.iter().map(|value| value.abs()), share);
+    // Of an actuator that is off nothing is held down.
+    let asked: Vec<f64> =
+        values.iter().zip(&commanded.commands).filter(|(_, c)| c.enabled).map(|(value, _)| value.abs()).collect();
+    let at = |share| quantile(asked.iter().copied(), share);
     QUANTILES.into_iter().map(at).filter(|level| *level > 0.0).collect()
 }
 

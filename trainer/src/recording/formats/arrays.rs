@@ -21,9 +21,9 @@ pub(super) struct Array {
 }
 
 impl Array {
-    /// Its length as a signal: the longer side.
+    /// Its length as a signal: the longer side; none of an empty array, whatever its other side claims.
     fn length(&self) -> usize {
-        self.shape.0.max(self.shape.1)
+        if self.shape.0.min(self.shape.1) == 0 { 0 } else { self.shape.0.max(self.shape.1) }
     }
 
     fn is_time(&self) -> bool {

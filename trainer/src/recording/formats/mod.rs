@@ -15,6 +15,7 @@ mod parquet;
 #[cfg(test)]
 mod tests;
 
+use std::cell::Cell;
 use std::io::{Cursor, Read};
 use std::panic::catch_unwind;
 
@@ -54,7 +55,26 @@ pub(super) fn read(mut source: impl Read, keep: Keep<'_>) -> Result<RawTable> {
         return Err(Error::new(&codes::FILE_TOO_LARGE, message));
     }
     // What a file says of itself its library may take for granted, and panic where a damaged one does not keep it.
-    catch_unwind(|| reader(&bytes)).unwrap_or_else(|_| Err(damaged("its parts contradict each other")))
+    IS_READING.set(true);
+    let table = catch_unwind(|| reader(&bytes));
+    IS_READING.set(false);
+    table.unwrap_or_else(|_| Err(damaged("its parts contradict each other")))
+}
+
+thread_local! {
+    /// Whether a file of a format with structure is being read by this thread.
+    static IS_READING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Keeps off standard error what a library says when it panics over a damaged file, which is reported as an error of the file; every
+/// other panic is told as before. For programs: the hook is that of the whole process.
+pub fn silence_readers_panics() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !IS_READING.get() {
+            usual(panic);
+        }
+    }));
 }
 
 /// The reader of a format, `None` for text.

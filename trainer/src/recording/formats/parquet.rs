@@ -1,10 +1,12 @@
 //! Apache Parquet, datasets of LeRobot among it: columns of numbers, texts, and lists of them.
 
 use bytes::Bytes;
+use parquet::column::page::Page;
+use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 
-use super::{WHOLE_LIMIT_BYTES, damaged};
+use super::{MOST_CELLS, WHOLE_LIMIT_BYTES, damaged};
 use crate::error::{Error, Result, codes};
 use crate::recording::table::{RawTable, TableBuilder};
 
@@ -25,6 +27,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
             format!("its columns have more than {WHOLE_LIMIT_BYTES} bytes when decompressed; write fewer rows a file");
         return Err(Error::new(&codes::FILE_TOO_LARGE, message).with_value(expanded.to_string()));
     }
+    let rows: i128 = metadata.row_groups().iter().map(|group| i128::from(group.num_rows())).sum();
+    let columns = metadata.file_metadata().schema_descr().num_columns();
+    if rows.saturating_mul(columns as i128) > MOST_CELLS as i128 {
+        let message = format!("it has more than {MOST_CELLS} cells; write fewer rows a file");
+        return Err(Error::new(&codes::FILE_TOO_LARGE, message).with_value(rows.to_string()));
+    }
+    refuse_overlong_pages(&reader).map_err(damaged)?;
     let rows = reader.get_row_iter(None).map_err(damaged)?;
     let mut first: Vec<Vec<String>> = Vec::new();
     let mut builder: Option<TableBuilder> = None;
@@ -46,6 +55,34 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawTable> {
     }
     let builder = builder.map_or_else(|| begin(&header, &first), Ok)?;
     Ok(builder.finish())
+}
+
+/// Refuses pages that claim more values than they or their columns can hold: the library asks for memory by these numbers.
+fn refuse_overlong_pages(reader: &SerializedFileReader<Bytes>) -> Result<(), ParquetError> {
+    let overlong = || Err(ParquetError::General("a page claims more values than there are".to_owned()));
+    for index in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(index)?;
+        for column in 0..group.num_columns() {
+            let values = group.metadata().column(column).num_values();
+            let mut pages = group.get_column_page_reader(column)?;
+            while let Some(page) = pages.peek_next_page()? {
+                if page.is_dict {
+                    if let Some(Page::DictionaryPage { buf, num_values, .. }) = pages.get_next_page()?
+                        && num_values as usize > buf.len()
+                    {
+                        return overlong();
+                    }
+                } else {
+                    let claimed = page.num_levels.or(page.num_rows).unwrap_or(0);
+                    if i64::try_from(claimed).map_or(true, |claimed| claimed > values) {
+                        return overlong();
+                    }
+                    pages.skip_next_page()?;
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 fn begin(header: &[String], first: &[Vec<String>]) -> Result<TableBuilder<'static>> {

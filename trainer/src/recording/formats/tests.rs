@@ -265,16 +265,25 @@ mod bags {
 #[cfg(feature = "parquet")]
 mod tables {
     use super::*;
+    use crate::recording::silence_readers_panics;
     use parquet::data_type::{DoubleType, Int64Type};
     use parquet::file::properties::WriterProperties;
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::parser::parse_message_type;
     use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn table() -> Vec<u8> {
-        let schema = "message schema { required int64 timestamp; required double torque_Nm; optional group observation.state (LIST) { \
-                      repeated group list { optional double element; } } }";
-        let schema = Arc::new(parse_message_type(schema).unwrap());
+        table_of("repeated", 2)
+    }
+
+    /// Lists of `values` numbers under a group that is `repetition`.
+    fn table_of(repetition: &str, values: usize) -> Vec<u8> {
+        let schema = format!(
+            "message schema {{ required int64 timestamp; required double torque_Nm; optional group observation.state (LIST) {{ \
+             {repetition} group list {{ optional double element; }} }} }}"
+        );
+        let schema = Arc::new(parse_message_type(&schema).unwrap());
         let properties = WriterProperties::builder().set_compression(parquet::basic::Compression::SNAPPY).build();
         let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties)).unwrap();
         let mut group = writer.next_row_group().unwrap();
@@ -286,9 +295,10 @@ mod tables {
         column.typed::<DoubleType>().write_batch(&(0..ROWS).map(torque).collect::<Vec<_>>(), None, None).unwrap();
         column.close().unwrap();
         let mut column = group.next_column().unwrap().unwrap();
-        let states: Vec<f64> = (0..2 * ROWS).map(|value| value as f64).collect();
-        let repeated: Vec<i16> = (0..2 * ROWS as i16).map(|value| value % 2).collect();
-        column.typed::<DoubleType>().write_batch(&states, Some(&[3; 2 * ROWS]), Some(&repeated)).unwrap();
+        let states: Vec<f64> = (0..values * ROWS).map(|value| value as f64).collect();
+        let repeated: Vec<i16> = (0..states.len()).map(|place| (place % values) as i16).collect();
+        let defined = vec![if repetition == "repeated" { 3 } else { 2 }; states.len()];
+        column.typed::<DoubleType>().write_batch(&states, Some(&defined), Some(&repeated)).unwrap();
         column.close().unwrap();
         group.close().unwrap();
         writer.into_inner().unwrap()
@@ -303,12 +313,36 @@ mod tables {
         assert_eq!(cut.code(), &codes::CUT_SHORT);
     }
 
+    /// Over a list whose group does not repeat the library panics.
+    #[test]
+    fn a_panic_of_a_library_is_an_error_of_the_file_and_nothing_else() {
+        static TOLD: AtomicUsize = AtomicUsize::new(0);
+        let bytes = table_of("required", 1);
+        std::panic::set_hook(Box::new(|_| _ = TOLD.fetch_add(1, Ordering::Relaxed)));
+        let read = || parse("a.parquet", &bytes[..], &Joint::default()).unwrap_err();
+        assert_eq!(read().code(), &codes::DAMAGED);
+        let before = TOLD.swap(0, Ordering::Relaxed);
+        silence_readers_panics();
+        assert_eq!(read().code(), &codes::DAMAGED);
+        assert_eq!((before, TOLD.load(Ordering::Relaxed)), (1, 0));
+        assert!(std::panic::catch_unwind(|| panic!("elsewhere")).is_err());
+        assert_eq!(TOLD.load(Ordering::Relaxed), 1);
+        let _ = std::panic::take_hook();
+    }
+
     proptest! {
         #[test]
         fn broken_tables_give_an_answer(at in 0_usize..3000, byte: u8, cut in 0_usize..3000) {
             broken(table(), at, byte, cut);
         }
     }
+}
+
+/// The second side of an array whose first row is cut short is no number of rows.
+#[test]
+fn an_array_that_claims_more_than_there_is_ends_at_once() {
+    let bytes = npy("'<f8'", "(2, 100000000000000000)", &doubles((0..9).map(time)));
+    assert_eq!(parse("a.npy", &bytes[..], &Joint::default()).unwrap_err().code(), &codes::EMPTY_FILE);
 }
 
 #[test]

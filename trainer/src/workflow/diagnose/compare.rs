@@ -78,10 +78,14 @@ pub(super) fn comparison(
     } else if let Against::Model(image) = against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
-        let signals = joined((real, told), &bare)?;
+        let mut signals = joined((real, told), &bare)?;
         let state = states(&signals, &real[0])?;
         let reference =
             of_model(image, &state, state.rigid_body.as_deref()).map_err(|error| error.in_file(real[0].file()))?;
+        // The law was told what the actuator put out; of the effects beside it that would explain itself.
+        if !told.is_empty() {
+            signals.load = Some(load_by_law(&signals, &reference));
+        }
         Ok((Comparison::with(signals, reference), Compared::Model(image.clone())))
     } else {
         Ok((joined((real, told), joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
@@ -91,8 +95,7 @@ pub(super) fn comparison(
 /// What the gear of a commanded joint carries, N m a sample: the rigid body by a law, beside what a payload takes. What the actuator did put
 /// out is the torque that is explained.
 fn load_by_law(signals: &Signals, law: &Reference) -> Vec<f64> {
-    let payload = signals.load.as_deref();
-    law.rigid_body.iter().enumerate().map(|(i, torque)| torque + payload.map_or(0.0, |payload| payload[i])).collect()
+    signals.commanded.as_ref().map_or_else(|| law.rigid_body.clone(), |commanded| commanded.needed(&law.rigid_body))
 }
 
 /// A model at the states of a recording, with the error that its law has by the image.

@@ -99,8 +99,8 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let actuator = commanded::actuator(&recordings, simulation.as_ref(), joint)?;
     // A commanded joint is compared with the law of its simulation, whose rows stand in the model only where that is asked for.
     let by_likelihood = request.by_likelihood || actuator.is_some() && simulation.is_some();
-    // An image may hold friction of the load; other effects of the load are looked for in what follows from the motion.
-    let load = if matches!(request.against, Against::Model(_)) { Load::OfActuator } else { Load::OfPayload };
+    // A law of the load has to be told all of it; else the load follows from the motion, so that the torque does not explain itself.
+    let load = if request.against.reads_load() { Load::OfActuator } else { Load::OfPayload };
     let simulation =
         simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref(), load));
     // From here on the constants of the actuator are known.

@@ -1,6 +1,7 @@
 //! What a diagnosis is asked for.
 
 use frikan_shared::image::Image;
+use frikan_shared::units::Quantity;
 
 use crate::compile::profile::Profile;
 pub use crate::diagnose::comparison::columns::BaseKind;
@@ -38,6 +39,13 @@ pub enum Against<'a> {
     Model(Box<Image<CELLS>>),
     /// A static model of the recording itself.
     Itself(BaseKind),
+}
+
+impl Against<'_> {
+    /// Whether it is a law that reads the load of the gear.
+    pub(super) fn reads_load(&self) -> bool {
+        matches!(self, Self::Model(image) if image.model.inputs.iter().any(|input| input.quantity == Quantity::Load))
+    }
 }
 
 impl<'a> Request<'a> {
