@@ -52,8 +52,13 @@ fn log(at: &Path, name: &str, joint: Joint, phase: f64) {
 
 /// What a diagnosis of `real.csv` beside `simulation.csv` finds, each finding with what may stand in for it.
 fn found(at: &Path, joint: &str) -> (Value, Vec<Vec<String>>) {
+    found_against(at, joint, "--simulation simulation.csv")
+}
+
+/// The same against something else.
+fn found_against(at: &Path, joint: &str, against: &str) -> (Value, Vec<Vec<String>>) {
     std::fs::write(at.join("joint.toml"), joint).unwrap();
-    let words = "diagnose real.csv --simulation simulation.csv --joint joint.toml --json told.json --quiet";
+    let words = format!("diagnose real.csv {against} --joint joint.toml --json told.json --quiet");
     let told = run(at, &words.split(' ').collect::<Vec<_>>());
     assert!(told.status <= 1, "{}", told.messages);
     let json: Value = serde_json::from_str(&std::fs::read_to_string(at.join("told.json")).unwrap()).unwrap();
@@ -122,6 +127,31 @@ fn what_the_actuator_does_otherwise_is_no_friction() {
             _ => {}
         }
     }
+}
+
+/// An image is that of a joint with the constants that were identified with it: other ones, identified anew, would make another torque.
+#[test]
+fn an_image_is_compared_with_by_the_constants_of_its_fit() {
+    const OPEN: &str = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 40\n";
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    log(at, "fitted.csv", AS_SIMULATED, 0.3);
+    std::fs::write(at.join("joint.toml"), OPEN).unwrap();
+    let fit = "fit fitted.csv --joint joint.toml --form coulomb-viscous -o image.frk --quiet";
+    let told = run(at, &fit.split(' ').collect::<Vec<_>>());
+    assert_eq!(told.status, 0, "{}", told.messages);
+    let constants: toml::Table = std::fs::read_to_string(at.join("image.actuator.toml")).unwrap().parse().unwrap();
+    let identified = constants["actuator"]["kd_Nms_rad"].as_float().unwrap();
+
+    let against = |joint: Joint| {
+        log(at, "real.csv", joint, 1.7);
+        found_against(at, OPEN, "--model image.frk")
+    };
+    let (json, sets) = against(AS_SIMULATED);
+    assert_eq!(json["actuator"]["kd_Nms_rad"], identified);
+    assert!(sets.is_empty(), "{sets:?}");
+    let (_, sets) = against(Joint { load: 0.2, ..AS_SIMULATED });
+    assert!(sets.first().is_some_and(|set| set.iter().any(|effect| effect == "load_friction")), "{sets:?}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::actuator::Partial;
 use crate::error::codes;
 use crate::fit::{Options, Progress, Stage, Training};
 use crate::joint::Joint;
+use crate::law::KnownForm;
 use crate::recording::{Recording, parse};
 use crate::rollout::{Body, Rig, Series, State, payload, simulate};
 
@@ -132,6 +133,12 @@ fn a_servo_of_two_gains_is_found_in_torque_space_and_by_trajectory() {
     assert!(of(Stage::Scoring) < of(Stage::FittingMotion) && told.last() == Some(&Stage::Simulating), "{told:?}");
     let error = found.train[0].score.unwrap().mae;
     assert!(error < 5e-3, "{error}");
+
+    let asked = Options { form: Some(KnownForm::CoulombViscous), ..quick() };
+    let found = fit_servo(&recordings, &[], &joint, &asked, &|_| ()).unwrap().outcome;
+    let names: Vec<&str> = found.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+    assert!(!names.iter().any(|name| name.contains("load") || name.contains("stribeck")), "{names:?}");
+    assert!(!found.law.expression.contains('τ') && !found.law.expression.contains("exp"), "{}", found.law.expression);
 }
 
 const XL330: &str = r#"
