@@ -90,7 +90,7 @@ class Fitted:
 
     @property
     def band(self) -> npt.NDArray[np.float64]:
-        """Where the friction lies with 95 %: velocity, low, high."""
+        """Where the friction lies with 95 %: velocity, low, high; no rows for a law by trajectory."""
         return np.array(self._native.curves()[1], dtype=np.float64).reshape(-1, 3)
 
     def report(self, path: Path) -> None:
@@ -104,7 +104,8 @@ class Fitted:
 
             axes = pyplot.gca()
         band, curve = self.band, self.curve
-        axes.fill_between(band[:, 0], band[:, 1], band[:, 2], alpha=0.25, label="95 % band")
+        if len(band):
+            axes.fill_between(band[:, 0], band[:, 1], band[:, 2], alpha=0.25, label="95 % band")
         axes.plot(curve[:, 0], curve[:, 1], label=self.law)
         axes.set_xlabel("velocity")
         axes.set_ylabel(f"friction ({self.json['unit']})")

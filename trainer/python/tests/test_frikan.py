@@ -249,11 +249,17 @@ def test_other_threads_run_on_and_a_callback_that_fails_ends_the_work():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT of one process to another")
 def test_interrupting_the_work_raises_at_once():
-    # One fit after the other: a single one may be over before the signal is there.
-    code = f"import frikan\nprint('ready', flush=True)\nwhile True: frikan.fit({str(FIXTURES / 'elbow.csv')!r})"
+    # One fit after the other: a single one may be over before the signal is there. A job in the background of a shell inherits that it ignores SIGINT.
+    code = (
+        "import frikan, signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nprint('ready', flush=True)\n"
+        f"while True: frikan.fit({str(FIXTURES / 'elbow.csv')!r})"
+    )
     with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as work:
         assert work.stdout.readline() == "ready\n"
         time.sleep(0.3)
         work.send_signal(signal.SIGINT)
-        _, messages = work.communicate(timeout=20)
+        try:
+            _, messages = work.communicate(timeout=20)
+        finally:
+            work.kill()
     assert "KeyboardInterrupt" in messages and work.returncode != 0

@@ -5,7 +5,7 @@ use super::motion::{smooth, top_speed};
 use crate::error::{Code, codes};
 use crate::numerics::resolution::resolution;
 use crate::numerics::statistics::quantile;
-use crate::recording::{Channel, Quantity, Recording};
+use crate::recording::{Channel, Quantity, Recording, STRETCH_ROWS};
 use crate::samples::{Samples, VelocitySource};
 
 /// Steps over the range of a channel from which it is coarse: fewer are told as a warning. Of 8 bits.
@@ -121,9 +121,9 @@ pub fn survey(recording: &Recording) -> Vec<Fact> {
         let seen = Seen::Clock { rows: recording.len(), period_s, jitter: health.jitter };
         facts.push(fact(seen, health.jitter > UNEVEN));
     }
-    if let Some(time) = recording.values(Quantity::Time).filter(|_| !health.gaps.is_empty()) {
-        let when_s = health.gaps.iter().map(|row| [time[row - 1], time[*row]]).collect();
-        facts.push(Fact { seen: Seen::Gaps { count: health.gaps.len() }, is_poor: true, when_s });
+    let gaps = gaps(recording);
+    if !gaps.is_empty() {
+        facts.push(Fact { seen: Seen::Gaps { count: gaps.len() }, is_poor: true, when_s: gaps });
     }
     let measured = |channel: &&Channel| channel.quantity.is_some_and(|quantity| quantity != Quantity::Time);
     for channel in recording.channels.iter().filter(measured) {
@@ -149,6 +149,14 @@ pub fn survey(recording: &Recording) -> Vec<Fact> {
         facts.push(fact(Seen::Temperature { range }, range[1] - range[0] < TEMPERATURE_RANGE_K));
     }
     facts
+}
+
+/// Interruptions of the clock, from and to, s; between two stretches of an excerpt, at least one of which was left out, there is none.
+fn gaps(recording: &Recording) -> Vec<[f64; 2]> {
+    let Some(time) = recording.values(Quantity::Time) else { return Vec::new() };
+    let left_out_s = (STRETCH_ROWS - 1) as f64 * recording.health.period_s.unwrap_or(f64::INFINITY);
+    let around = recording.health.gaps.iter().map(|row| [time[row - 1], time[*row]]);
+    around.filter(|[from, to]| !(recording.is_excerpt && to - from >= left_out_s)).collect()
 }
 
 impl Motion {

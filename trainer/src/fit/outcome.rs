@@ -10,6 +10,8 @@ use frikan_runtime::supervised::DEFAULT_GAIN;
 
 /// Points of a drawn curve.
 pub(super) const CURVE_POINTS: usize = 241;
+/// Most points of a picture.
+pub(crate) const CLOUD_POINTS: usize = 4000;
 
 /// The form in which a law goes into the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

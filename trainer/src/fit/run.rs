@@ -22,7 +22,8 @@ use super::laws::simple::Simple;
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
 use super::outcome::{
-    CURVE_POINTS, Form, InputRange, Outcome, Representation, Score, Soundness, SplitScore, uncertain_share,
+    CLOUD_POINTS, CURVE_POINTS, Form, InputRange, Outcome, Representation, Score, Soundness, SplitScore,
+    uncertain_share,
 };
 use super::preparation_error::allow_for;
 use super::rigid_body_error::rigid_body_error;
@@ -36,8 +37,6 @@ use crate::samples::told_of_clock;
 
 /// Share of the inertia that noise may take untold.
 const TOLD_ATTENUATION: f64 = 0.01;
-/// Most points of a picture.
-const CLOUD_POINTS: usize = 4000;
 
 /// Fits recordings of one joint; `tests` are only scored.
 ///

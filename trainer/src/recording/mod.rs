@@ -29,6 +29,7 @@ pub use formats::silence_readers_panics;
 pub use guess::{Proposal, Taken};
 pub(crate) use health::GAP_PERIODS;
 pub use health::Health;
+pub(crate) use keep::STRETCH_ROWS;
 pub use quantity::{Axis, Quantity, Unit};
 pub use select::Omission;
 pub use table::TextTable;

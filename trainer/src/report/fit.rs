@@ -98,13 +98,14 @@ fn velocity_label(outcome: &Outcome) -> &'static str {
 /// The exported law among the measured friction.
 fn law(page: &mut Page, outcome: &Outcome) {
     let mut plot = over_velocity(outcome, "friction over velocity");
-    plot.area(&outcome.band, Ink::Two, "95 % band");
+    let mut caption = "The law in the image, other inputs at their mean; measured torque less the rigid body.";
+    if !outcome.band.is_empty() {
+        plot.area(&outcome.band, Ink::Two, "95 % band");
+        caption = "The law in the image, other inputs at their mean, with the band that the network leaves for it; measured torque less the rigid body.";
+    }
     let (velocity, friction) = columns(&outcome.law_curve);
     plot.lines(&velocity, &[(&friction, Ink::One, "exported law")]);
-    page.plot(
-        &plot,
-        "The law in the image, other inputs at their mean, with the band that the network leaves for it; measured torque less the rigid body.",
-    );
+    page.plot(&plot, caption);
 }
 
 /// The measured friction over velocity.

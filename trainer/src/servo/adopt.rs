@@ -4,7 +4,7 @@ use crate::compile::host_model::HostModel;
 use crate::error::Result;
 use crate::fit::Outcome;
 use crate::fit::model::{from_bytes, to_bytes};
-use crate::fit::outcome::{LawSummary, Representation, Score, Soundness, SplitScore};
+use crate::fit::outcome::{CLOUD_POINTS, LawSummary, Representation, Score, Soundness, SplitScore, Trace};
 use crate::fit::score::trace;
 use crate::law::{Language, latex, render, significant};
 use crate::recording::Recording;
@@ -47,6 +47,9 @@ pub(super) fn adopt(
     };
     let at = |velocity: f64| law(&model, &Instant { velocity, ..Instant::default() });
     outcome.law_curve.iter_mut().for_each(|point| point[1] = at(point[0]));
+    // Friction and its band were those of another torque: of the constants found in torque space.
+    outcome.cloud = cloud(&outcome.train);
+    outcome.band.clear();
     outcome.candidates.iter_mut().for_each(|candidate| candidate.chosen = false);
     outcome.representation = Representation::Expression;
     let own = significant(by.mae, DIGITS);
@@ -63,4 +66,13 @@ pub(super) fn adopt(
         Soundness::NotConverged("the fit by trajectory was still improving when its steps were used up".to_owned())
     };
     Ok(outcome)
+}
+
+/// Samples of the traces: velocity and recorded friction.
+fn cloud(traces: &[Trace]) -> Vec<[f64; 2]> {
+    let stride = traces.iter().map(|trace| trace.friction.len()).sum::<usize>().div_ceil(CLOUD_POINTS).max(1);
+    let points = |trace: &Trace| -> Vec<[f64; 2]> {
+        trace.velocity.iter().zip(&trace.friction).step_by(stride).map(|(v, f)| [*v, *f]).collect()
+    };
+    traces.iter().flat_map(points).collect()
 }

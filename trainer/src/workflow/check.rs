@@ -68,6 +68,12 @@ pub fn check(recordings: &[Source<'_>], joint: &Joint) -> Result<Checked> {
         };
         recordings.iter().flat_map(one).collect::<Vec<_>>()
     };
+    let notes =
+        recordings.iter().flat_map(|recording| recording.health.notes.iter().map(move |note| (recording, note)));
+    items.extend(notes.map(|(recording, note)| Item {
+        recording: (recordings.len() > 1).then(|| recording.label.clone()),
+        ..Item::of_all(codes::CLOCK.id, Severity::Info, note)
+    }));
     items.extend(survey_all(&recordings, &|_| true));
     let is_at_fault = items.iter().any(|item| item.severity == Severity::Error);
     // Beside a fault that cannot be put right no figure means anything.

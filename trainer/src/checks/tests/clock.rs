@@ -1,5 +1,6 @@
 use super::plant::{axis, joints, motor, robot};
 use super::*;
+use crate::checks::survey::{Seen, survey};
 use crate::error::codes;
 
 #[test]
@@ -27,6 +28,27 @@ fn a_slow_log_with_a_velocity_is_none() {
 #[test]
 fn a_clock_that_stands_still_is_refused() {
     refused(motor().changed(|_, [_, q, v, u]| [1.0, q, v, u]), &codes::TIME_NOT_INCREASING);
+}
+
+#[test]
+fn what_was_left_out_between_stretches_is_no_interruption() {
+    let jump = |row: usize| {
+        if row > 900 {
+            1000.0
+        } else if row > 300 {
+            1.0
+        } else {
+            0.0
+        }
+    };
+    let mut recording = robot().changed(|row, [t, q, v, u]| [t + jump(row), q, v, u]);
+    let gaps = |recording: &Recording| {
+        let facts = survey(recording);
+        facts.iter().find(|fact| matches!(fact.seen, Seen::Gaps { .. })).map_or(0, |fact| fact.when_s.len())
+    };
+    assert_eq!(gaps(&recording), 2);
+    recording.is_excerpt = true;
+    assert_eq!(gaps(&recording), 1);
 }
 
 #[test]

@@ -34,7 +34,10 @@ fn kind_sentence(kind: &Kind) -> String {
     let constant = |(name, unit, siblings): &(String, String, Option<crate::fleet::Siblings>)| {
         let siblings = siblings.as_ref()?;
         let name = name.replace('_', " ");
-        Some(format!("{name} {} ± {}", quantity(siblings.mean, unit), quantity(siblings.spread, unit)))
+        let mean = quantity(siblings.mean, unit);
+        // Where the intervals alone explain what the joints differ by.
+        let spread = || format!("± {}", quantity(siblings.spread, unit));
+        Some(format!("{name} {mean} {}", if siblings.spread > 0.0 { spread() } else { "in all".to_owned() }))
     };
     let constants: Vec<String> = kind.constants.iter().filter_map(constant).collect();
     let name = if kind.name.is_empty() { "all joints" } else { &kind.name };

@@ -53,7 +53,7 @@ pub(super) fn table_of(arrays: Vec<Array>) -> Result<RawTable> {
     for array in &arrays {
         *lengths.entry(array.length()).or_default() += 1;
     }
-    let of_time = arrays.iter().filter(|array| array.is_time()).map(Array::length).max();
+    let of_time = arrays.iter().filter(|array| array.is_time()).map(Array::length).max().filter(|length| *length > 1);
     let most = lengths.iter().filter(|(length, _)| **length > 1).max_by_key(|(length, count)| (**count, **length));
     let Some(rows) = of_time.or(most.map(|(length, _)| *length)) else {
         return Err(Error::new(&codes::EMPTY_FILE, "the file holds no array of numbers longer than one"));

@@ -338,11 +338,15 @@ mod tables {
     }
 }
 
-/// The second side of an array whose first row is cut short is no number of rows.
+/// The second side of an array whose first row is cut short is no number of rows, and of no rows there are no columns.
 #[test]
 fn an_array_that_claims_more_than_there_is_ends_at_once() {
-    let bytes = npy("'<f8'", "(2, 100000000000000000)", &doubles((0..9).map(time)));
-    assert_eq!(parse("a.npy", &bytes[..], &Joint::default()).unwrap_err().code(), &codes::EMPTY_FILE);
+    for (description, shape) in
+        [("'<f8'", "(2, 100000000000000000)"), ("[('time_s', '<f8', (1000000000,))]", "(0, 290)")]
+    {
+        let bytes = npy(description, shape, &doubles((0..9).map(time)));
+        assert_eq!(parse("a.npy", &bytes[..], &Joint::default()).unwrap_err().code(), &codes::EMPTY_FILE);
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod in_use;
 mod thinning;
 
 pub(super) use in_use::InUse;
+pub(crate) use thinning::STRETCH_ROWS;
 pub(super) use thinning::Thinning;
 
 /// What is kept of a recording.

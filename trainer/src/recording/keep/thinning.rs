@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 /// Rows of a stretch: half a minute at a thousand rows a second, long beside every filter and memory of a joint.
-const STRETCH_ROWS: usize = 1 << 15;
+pub(crate) const STRETCH_ROWS: usize = 1 << 15;
 /// Memory of the program beside what grows with the rows, B (docs/size.md).
 const AT_LEAST_BYTES: f64 = 1e8;
 /// Memory of a row beside its columns at most, B: copies that are filtered, sorted and scored one after the other (docs/size.md).

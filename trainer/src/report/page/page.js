@@ -86,7 +86,9 @@
       const series = this.named.map((one, s) => {
         const colour = ink(one.ink);
         const shown = { label: one.label, show: this.shown[s], stroke: colour, width: one.ink === "data" ? 3 : 1.4, points: { show: false } };
-        if (one.mark === "dots") return { ...shown, ...low, points: { ...low.points, fill: colour + "99", stroke: colour } };
+        // Few points are seen one by one, many as a cloud.
+        const size = one.y.length > 200 ? 3 : 7;
+        if (one.mark === "dots") return { ...shown, ...low, points: { ...low.points, size, fill: colour + "99", stroke: colour } };
         return one.mark === "area" ? { ...shown, width: 0.5 } : shown;
       });
       const bands = this.named.flatMap((one, s) =>
