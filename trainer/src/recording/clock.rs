@@ -88,12 +88,12 @@ pub(super) fn reading_of(raw: &RawTable, index: usize) -> Reading {
 pub(super) fn ticks(raw: &RawTable, row: usize, index: usize, reading: Reading) -> Option<i128> {
     let number = |index: usize| match raw.table.kept(row, index) {
         Some(cell) => decimal(cell, raw.decimal_comma),
-        None => Some(billionths(raw.numbers[index].values[row])).filter(|_| raw.numbers[index].values[row].is_finite()),
+        None => Some(raw.numbers[index].values[row]).filter(|number| number.is_finite()).and_then(billionths),
     };
     match reading {
         Reading::Number => number(index),
         Reading::Calendar => calendar(raw.table.cell(row, index)),
-        Reading::WithNanoseconds(other) => Some(number(index)? + number(other)? / 1_000_000_000),
+        Reading::WithNanoseconds(other) => Some(number(index)?.saturating_add(number(other)? / 1_000_000_000)),
     }
 }
 
@@ -107,7 +107,7 @@ pub(super) fn seconds(ticks: &[i128], seconds_per_unit: f64, reading: Reading) -
     let per_second = scale.recip().round();
     let exact = (per_second * scale - 1.0).abs() < 1e-12;
     let value = |tick: &i128| {
-        let count = (tick - zero) as f64;
+        let count = tick.saturating_sub(zero) as f64;
         if exact { count / per_second } else { count * scale }
     };
     (ticks.iter().map(value).collect(), from_first)
@@ -166,9 +166,9 @@ fn decimal(cell: &str, decimal_comma: bool) -> Option<i128> {
 }
 
 /// A finite number in billionths, as far as it holds them.
-fn billionths(number: f64) -> i128 {
+fn billionths(number: f64) -> Option<i128> {
     let whole = number.trunc();
-    whole as i128 * 1_000_000_000 + ((number - whole) * 1e9).round() as i128
+    (whole as i128).checked_mul(1_000_000_000)?.checked_add(((number - whole) * 1e9).round() as i128)
 }
 
 /// A calendar time in nanoseconds since 1970.
@@ -204,6 +204,15 @@ mod tests {
         for text in ["", "-", ".", "1e", "nan", "1,5", "1e400", "0x10"] {
             assert_eq!(decimal(text, false), None, "{text}");
         }
+    }
+
+    /// No clock counts so far, and what damaged files hold is no arithmetic to panic about.
+    #[test]
+    fn numbers_beyond_any_clock_are_read_or_refused() {
+        assert_eq!((billionths(1.5), billionths(1e30)), (Some(1_500_000_000), None));
+        let far = i128::MAX / 2 + 9;
+        let (seconds, _) = seconds(&[-far, far], 1.0, Reading::Number);
+        assert!(seconds.iter().all(|time| time.is_finite()), "{seconds:?}");
     }
 
     #[test]
