@@ -83,7 +83,7 @@ share s of the noise gains s²/2 nats a row: one of a twenty-seventh of the nois
 times as many rows would only halve that. What happens once beside the stretches is not seen, and the result says how much was searched.
 
 `--memory MB` (1000): of a recording that needs more, at 8 B a number in use, 40 B a row and 100 MB beside, stretches of 32768 rows spread over it are read: every
-other one, every fourth, and so on. `diagnose` then searches in proportion less.
+other one, every fourth, and so on. `diagnose` then searches in proportion less; six tenths of its memory are the search's.
 
 | command | rows | MB of CSV | s | s of the processor | of polars | MB | bytes a row |
 |---|---|---|---|---|---|---|---|

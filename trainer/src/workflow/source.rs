@@ -65,6 +65,9 @@ impl Source<'_> {
 /// Memory that reading, fitting and diagnosing stay within unless another one is asked for, MB.
 const DEFAULT_MEMORY_MB: u32 = 1000;
 
+/// Share of it that the search of a diagnosis takes beside what is read (docs/size.md, a million rows).
+const SEARCH_SHARE: f64 = 0.6;
+
 /// What is read of a recording.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reading<'a> {
@@ -85,6 +88,11 @@ impl<'a> Reading<'a> {
             memory_bytes: 1e6 * memory_mb / recordings.max(1) as f64,
             of_default: memory_mb / f64::from(DEFAULT_MEMORY_MB),
         }
+    }
+
+    /// The same where recordings are searched once they are read.
+    pub(crate) fn beside_search(self) -> Self {
+        Self { memory_bytes: (1.0 - SEARCH_SHARE) * self.memory_bytes, ..self }
     }
 
     /// The memory of all recordings over the default one.

@@ -89,7 +89,7 @@ pub struct Diagnosed {
 /// Whatever reading a recording reports; `FRK-D016`, `FRK-D017` or `FRK-D023` where the motion determines nothing.
 pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> Result<Diagnosed> {
     let begin = Instant::now();
-    let reading = Reading::of(&[], request.memory_mb, request.recordings.len());
+    let reading = Reading::of(&[], request.memory_mb, request.recordings.len()).beside_search();
     let (recordings, warnings) =
         load_all(request.recordings.iter().copied(), |source| load_with_faults(source, joint, reading))?;
     if recordings.is_empty() {
