@@ -39,10 +39,10 @@ constants of the actuator too, of a motor all but its resistance; `trainer diagn
 #[derive(Parser)]
 struct Arguments {
     /// Draws of each kind that are fitted
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 20)]
     draws: u64,
     /// Draws of each kind and each hidden effect that are diagnosed
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 2)]
     diagnosed: u64,
     /// First seed
     #[arg(long, default_value_t = 7001)]
@@ -64,14 +64,14 @@ fn append_fits(page: &mut String, arguments: &Arguments) {
          the truth, and in how many it was\ntold that the recordings do not determine it.\n\n\
          | kind | constant | draws | median | within 2 % | interval holds | not determined |\n|---|---|---|---|---|---|---|\n",
     );
+    let mut refused: Vec<(Kind, String)> = Vec::new();
     for kind in Kind::ALL {
         let mut of_draws: Vec<Vec<Found>> = Vec::new();
-        let mut refused: Vec<String> = Vec::new();
         for seed in arguments.seed..arguments.seed + arguments.draws {
             let folder = tempfile::tempdir().expect("there is a place for temporary files");
             match Joint::drawn(kind, seed).fitted(folder.path()) {
                 Ok(found) => of_draws.push(found),
-                Err(message) => refused.push(message.lines().last().unwrap_or_default().to_owned()),
+                Err(message) => refused.push((kind, message.lines().last().unwrap_or_default().to_owned())),
             }
             eprintln!("{} {seed}: {:?} {:?}", kind.name(), of_draws.last(), refused.last());
         }
@@ -91,9 +91,9 @@ fn append_fits(page: &mut String, arguments: &Arguments) {
                 of_draws.len()
             );
         }
-        for message in refused {
-            let _ = writeln!(page, "\n`{}`: refused, {message}\n", kind.name());
-        }
+    }
+    for (kind, message) in refused {
+        let _ = writeln!(page, "\nA `{}` was refused: {message}", kind.name());
     }
 }
 

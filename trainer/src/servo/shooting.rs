@@ -15,6 +15,8 @@ use crate::rollout::{Body, Rig, State, simulate, starts};
 /// Most steps, and the share by which the cost has to fall for another one.
 const MOST_STEPS: usize = 40;
 const LEAST_GAIN: f64 = 1e-4;
+/// A step in which every constant moves less than this share of itself is the last: without noise the cost goes on falling by a share of nothing.
+const LEAST_STEP: f64 = 1e-5;
 /// Step of the central differences as a share of the size of a constant.
 const DIFFERENCE: f64 = 1e-3;
 /// The same of the delay, s: commands are held from sample to sample, and a shorter one may change nothing.
@@ -268,8 +270,12 @@ pub(super) fn shoot(
             break;
         };
         let gain = (before - cost(&tried)) / before.max(f64::MIN_POSITIVE);
+        let rests = moved.iter().all(|constant| {
+            let (from, to) = (candidate.value(constant.what), trial.value(constant.what));
+            (to - from).abs() <= LEAST_STEP * to.abs().max(constant.scale)
+        });
         (candidate, left) = (trial, tried);
-        if gain < LEAST_GAIN {
+        if gain < LEAST_GAIN || rests {
             converged = true;
             break;
         }
