@@ -9,10 +9,10 @@ pub(in crate::physics) struct DeadBand;
 
 /// Widths that are tried, shares of the error that nine of ten samples stay below; refined afterwards. A wider band is a wrong gain.
 const SHARES: (f64, f64) = (0.05, 0.8);
+const STEPS: usize = 6;
 /// Widest band of a joint that turns, rad: twice the most that firmwares of servos take (32 of 4096 steps a turn, Feetech STS series; the 10 us of an
 /// RC servo are 0.03 rad). Within a wider one the recorded torque is made of the error alone, and would explain itself.
 const WIDEST_RAD: f64 = 0.1;
-const STEPS: usize = 6;
 
 /// Position error that nine of ten samples stay below, rad, of those at which the actuator is on; zero where nothing follows a position.
 fn common_error(state: &JointState) -> f64 {
