@@ -1,13 +1,14 @@
 """Asks `trainer diagnose` about plants that are not ours: joints of MuJoCo and Drake, healthy or with one concealed effect.
 
-    foreign_pairs.py --write FOLDER [--simulation N] [--model N] [--alone N] [--seed N] [--jobs N]
+    foreign_pairs.py --write FOLDER [--simulation N] [--model N] [--alone N] [--servo N] [--seed N] [--jobs N]
     foreign_pairs.py --score FOLDER --trainer PATH [--only NAMES] [--extra "FLAGS"] [--jobs N] [-o RESULTS.json] [--page FILE.md]
     foreign_pairs.py --results RESULTS.json ... --page FILE.md     the page of runs that are done
 
 Pairs are written once, each from the seed, its kind of reference and its number alone, and scored as often as there are programs to measure. A
 pair is a recording (real.csv) with its joint.toml, what it is compared with (simulation.csv: a simulation refitted to the recording; model.csv:
-another recording of the healthy joint, to which a model is fitted first; or nothing) and truth.json. A third of the motions dwell, a third sweep,
-a third have four sines; 20 to 90 s at 250 Hz or 1 kHz. A third is healthy, and half behind a model.
+another recording of the healthy joint, to which a model is fitted first; or nothing) and truth.json. Of --servo it is a joint of MuJoCo under a
+controller or a position servo, whose files have positions and commands and no torque, with a refitted simulation. A third of the motions dwell, a third sweep,
+a third have four sines; 20 to 90 s at 250 Hz or 1 kHz, of servos at 200 to 500 Hz. A third is healthy, and half behind a model.
 """
 
 import argparse
@@ -30,6 +31,7 @@ def read_arguments():
     parser.add_argument("--simulation", type=int, default=48, help="pairs with a simulation")
     parser.add_argument("--model", type=int, default=0, help="pairs with a model of another recording")
     parser.add_argument("--alone", type=int, default=0, help="recordings without a reference")
+    parser.add_argument("--servo", type=int, default=0, help="pairs with a simulation, of a joint that reports no torque")
     parser.add_argument("--seed", type=int, default=int(time.time()), help="fresh unless given")
     parser.add_argument("--score", type=Path, metavar="FOLDER")
     parser.add_argument("--trainer", type=Path)

@@ -11,7 +11,6 @@ import numpy as np
 
 from .pair import REFERENCES
 
-HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
 # Processor time of one command: a busy machine changes no answer.
 TRAINER_LIMIT_S = 300
 
@@ -19,9 +18,9 @@ TRAINER_LIMIT_S = 300
 def write(folder, reference, recording, toml, truth):
     """The files of a pair; the truth comes last, so that a pair that has it is complete."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name, rows in ((REFERENCES[truth["reference"]], reference), ("real.csv", recording)):
+    for name, columns in ((REFERENCES[truth["reference"]], reference), ("real.csv", recording)):
         if name:
-            np.savetxt(folder / name, rows, delimiter=",", header=HEADER, comments="", fmt="%.9g")
+            np.savetxt(folder / name, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="", fmt="%.9g")
     (folder / "joint.toml").write_text(toml)
     (folder / "truth.json").write_text(json.dumps(truth, indent=1, default=float) + "\n")
 
@@ -44,7 +43,7 @@ class Trainer:
             if fitted.returncode not in (0, 4):
                 return {"status": fitted.returncode, "error": "fit: " + fitted.stderr.strip()}
             compared = ("--model", "model.frk")
-        elif reference == "simulation":
+        elif REFERENCES[reference]:
             compared = ("--simulation", folder / REFERENCES[reference])
         before = processor_seconds()
         told = self.run("diagnose", folder / "real.csv", *compared, *joint, "--json", "answer.json", "-o", "improved.frk", *self.extra)

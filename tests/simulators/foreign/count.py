@@ -43,10 +43,12 @@ def count(results):
         part = [result for result in results if result["reference"] == reference]
         healthy, effects = ([r for r in part if r["healthy"] == of] for of in (True, False))
         ratios = sorted({result["ratio"] for result in effects}, reverse=True)
+        servos = sorted({result["actuator"] for result in effects if result.get("actuator", "torque") != "torque"})
         counted[reference] = {
             "healthy": {"pairs": len(healthy), "alarms": sum(r["alarm"] for r in healthy)},
             "effects": of_effects(effects),
             **{f"effect over noise {ratio:g}": of_effects([r for r in effects if r["ratio"] == ratio]) for ratio in ratios},
+            **{servo: of_effects([r for r in effects if r["actuator"] == servo]) for servo in servos},
         }
     pairs = stated(results)
     costs = [result["processor_s"] for result in results if "processor_s" in result]

@@ -1,7 +1,7 @@
 """A joint under a position controller, and its log, whatever simulates the joint."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,8 @@ SMOOTHING_S = 0.02
 
 @dataclass
 class Log:
-    """Rows of a motion: time, position, velocity, torque of the actuator, and what of it the simulation's joint would not have needed."""
+    """Rows of a motion: time, position, velocity, torque of the actuator (of a servo the one that joint.toml has for it), and what of it the
+    simulation's joint would not have needed."""
 
     time: np.ndarray
     position: np.ndarray
@@ -23,38 +24,63 @@ class Log:
     torque: np.ndarray
     effect: np.ndarray
     friction: np.ndarray  # of the simulation's joint at these states
+    commands: dict = field(default_factory=dict)  # columns in place of the torque
 
     @property
     def period_s(self):
         return float(self.time[1])
 
+    def columns(self):
+        """By the names of their quantities, as they are without noise."""
+        motion = {"time_s": self.time, "position_rad": self.position, "velocity_rad_s": self.velocity}
+        return motion | (self.commands or {"torque_Nm": self.torque})
 
-def run(mechanism, joint, plant, motion, every):
-    """Drives a mechanism of one of the simulators with a PD controller of about 6 Hz and the feed-forward of the joint's rigid body; a row at
-    every so many of its steps."""
-    omega = 2 * math.pi * 6.0
-    kp, kd = joint.inertia_kgm2 * omega**2, 1.6 * joint.inertia_kgm2 * omega
-    positions, velocities, accelerations = motion
-    mechanism.place(positions[0], velocities[0])
-    commands = np.zeros(len(positions) + 1)
-    rows = np.zeros((len(positions) // every, 6))
+
+class Control:
+    """A PD controller of about 6 Hz with the feed-forward of the joint's rigid body, whose torque is logged and put out by a motor."""
+
+    def __init__(self, joint, plant, motion):
+        self.joint, self.plant, self.motion = joint, plant, motion
+        omega = 2 * math.pi * 6.0
+        self.kp, self.kd = joint.inertia_kgm2 * omega**2, 1.6 * joint.inertia_kgm2 * omega
+        self.commands = np.zeros(len(motion[0]) + 1)
+
+    def begin(self, step, q, v):
+        """A period of the controller."""
+        positions, velocities, accelerations = self.motion
+        forward = self.joint.inertia_kgm2 * accelerations[step] + self.joint.gravity_Nm(positions[step])
+        self.command = self.commands[step] = self.kp * (positions[step] - q) + self.kd * (velocities[step] - v) + forward
+        motor = self.commands[max(step - self.plant.command_delay_steps, 0)]
+        self.motor = min(max(motor, -self.plant.command_limit_Nm), self.plant.command_limit_Nm)
+
+    def act(self, q, v):
+        """What the motor is told at this state, and the torque that the log has for it."""
+        return self.motor, self.command
+
+    def columns(self, every, rows):
+        """What the log has in place of the torque."""
+        return {}
+
+
+def run(mechanism, control, plant, motion, every):
+    """Drives a mechanism of one of the simulators by a controller along a motion; a row at every so many of its periods."""
+    mechanism.place(motion[0][0], motion[1][0])
+    rows = np.zeros((len(motion[0]) // every, 6))
     parts = mechanism.substeps * every
     for step in range(len(rows) * every):
-        q, v = mechanism.state()
+        state = mechanism.state()
         row = rows[step // every]
-        forward = joint.inertia_kgm2 * accelerations[step] + joint.gravity_Nm(positions[step])
-        command = commands[step] = kp * (positions[step] - q) + kd * (velocities[step] - v) + forward
+        control.begin(step, *state)
         if step % every == 0:
-            row[:4] = step * CONTROL_PERIOD_S, q, v, command
-        motor = commands[max(step - plant.command_delay_steps, 0)]
-        motor = min(max(motor, -plant.command_limit_Nm), plant.command_limit_Nm)
+            row[:4] = step * CONTROL_PERIOD_S, *state, control.act(*state)[1]
         for substep in range(mechanism.substeps):
-            needed, friction = mechanism.advance(motor, (step + substep / mechanism.substeps) * CONTROL_PERIOD_S)
-            row[4] += (command - needed) / parts
+            told, known = control.act(*mechanism.state())
+            needed, friction = mechanism.advance(told, (step + substep / mechanism.substeps) * CONTROL_PERIOD_S)
+            row[4] += (known - needed) / parts
             row[5] += friction / parts
     time, position, velocity, torque, effect, friction = rows.T.copy()
     logged = plant.torque_scale * np.concatenate((np.repeat(torque[:1], plant.torque_delay_steps // every), torque))[: len(torque)]
-    log = Log(time, position, velocity, logged, effect + logged - torque, friction)
+    log = Log(time, position, velocity, logged, effect + logged - torque, friction, control.columns(every, len(rows)))
     log.effect = smooth(log.effect, log.period_s)
     return log
 

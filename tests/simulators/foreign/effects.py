@@ -23,6 +23,7 @@ class Effect:
     share: float = 1.0  # of the friction, as a multiple of the usual one
     sized: bool = True
     given: str = ""  # what would take the effect away if it were refitted: "level" (friction and body), or "body"
+    only: str = ""  # with a "torque" column, or with a "servo" that reports none
 
 
 def coulomb(joint, motion, rng):
@@ -173,6 +174,21 @@ def torque_scale(joint, motion, rng):
     return lambda size: Plant(torque_scale=1 + 0.02 * size)
 
 
+def actuator_gain(joint, motion, rng):
+    scale = 1 + rng.choice((-1, 1)) * rng.uniform(0.1, 0.2)
+    return lambda size: Plant(actuator_scale=scale)
+
+
+def servo_late(joint, motion, rng):
+    steps = int(rng.integers(8, 21))
+    return lambda size: Plant(command_delay_steps=steps)
+
+
+def dead_band(joint, motion, rng):
+    torque = 0.3 * joint.frictionloss_Nm
+    return lambda size: Plant(dead_band_Nm=torque * size)
+
+
 EFFECTS = {
     "coulomb_level": Effect(("friction_level",), "level of Coulomb friction", coulomb, given="level"),
     "viscous_level": Effect(("friction_level",), "damping of the joint", viscous, given="level"),
@@ -192,10 +208,22 @@ EFFECTS = {
     "drift": Effect(("slow_drift",), "Coulomb friction over time", drift, beside=("friction_level",)),
     "offset": Effect(("torque_offset",), "constant applied torque", offset),
     "asymmetry": Effect(("direction_asymmetry",), "Coulomb friction over the direction", asymmetry),
-    "measured_late": Effect(("time_misalignment",), "torque column 8 or 12 ms late", measured_late, sized=False),
-    "command_early": Effect(("time_misalignment", "command_delay"), "the log has the command, the motor follows 8 or 12 ms later", command_early, sized=False),
-    "saturation": Effect(("saturation",), "the log has the command, the motor its limit", saturation),
+    "measured_late": Effect(("time_misalignment",), "torque column 8 or 12 ms late", measured_late, sized=False, only="torque"),
+    "command_early": Effect(("time_misalignment", "command_delay"), "the log has the command, the motor follows 8 or 12 ms later", command_early, sized=False, only="torque"),
+    "saturation": Effect(("saturation",), "the log has the command, the motor its limit", saturation, only="torque"),
     "viscous_nonlinearity": Effect(("viscous_nonlinearity",), "cubic damping", viscous_nonlinearity, beside=("friction_level",)),
     "event": Effect(("transient_event",), "a constant torque for about a second", event),
-    "torque_scale": Effect(("torque_scale", "drive_backdrive"), "scaled torque column; equal to a loss in one direction of power", torque_scale, beside=("friction_level",), given="body"),
+    "torque_scale": Effect(("torque_scale", "drive_backdrive"), "scaled torque column; equal to a loss in one direction of power", torque_scale, beside=("friction_level",), given="body", only="torque"),
+    "actuator_gain": Effect(("actuator_gain",), "gain of a controller, torque constant of a motor: 10 to 20 % off", actuator_gain, sized=False, given="body", only="servo"),
+    "torque_limit": Effect(("supply_or_duty_limit",), "the actuator's torque has a limit that it meets", saturation, share=3.0, only="servo"),
+    "command_delay": Effect(("command_delay",), "a command acts 8 to 20 ms later", servo_late, sized=False, given="level", only="servo"),
+    "dead_band": Effect(("dead_band",), "nothing is done about a small position error", dead_band, only="servo"),
 }
+
+
+def of_reference(reference):
+    """Names of the effects that pairs with such a reference can have. Of a servo the actuator's come twice as often as the joint's."""
+    if reference == "servo":
+        actuator = [name for name, of in EFFECTS.items() if of.only == "servo"]
+        return [name for name, of in EFFECTS.items() if of.only != "torque"] + actuator[::-1]
+    return [name for name, of in EFFECTS.items() if of.only != "servo" and (reference != "alone" or of.given != "level")]

@@ -10,16 +10,19 @@ from .motion import CONTROL_PERIOD_S
 
 TITLE = "MuJoCo"
 HAS_SOFT_CONSTRAINT = True
+# Under a torque.
+MOTOR = '<motor name="drive" joint="joint"/>'
 
 
 class Mechanism:
-    """A joint under way. Coulomb friction is the soft constraint of `frictionloss`, or a tanh of the velocity."""
+    """A joint under way, driven by a motor or by a servo. Coulomb friction is the soft constraint of `frictionloss`, or a tanh of the velocity."""
 
-    def __init__(self, joint, plant, real):
-        """The recorded joint with `real`, else the simulation; a tanh needs the short steps in both."""
-        self.substeps = REAL_SUBSTEPS if real or joint.sign_width_rad_s else 1
+    def __init__(self, joint, plant, real, servo=None):
+        """The recorded joint with `real`, else the simulation; a tanh needs the short steps in both, and so does a servo, which closes its loop
+        at each of them."""
+        self.substeps = REAL_SUBSTEPS if real or joint.sign_width_rad_s or servo else 1
         self.simulated, self.plant, self.real = joint, plant, plant.joint(joint)
-        self.model = model(joint, plant, CONTROL_PERIOD_S / self.substeps)
+        self.model = model(joint, plant, CONTROL_PERIOD_S / self.substeps, following(servo, plant) if servo else MOTOR)
         self.data = mujoco.MjData(self.model)
         self.expected = model(joint, Plant(), CONTROL_PERIOD_S)
         self.inverse = mujoco.MjData(self.expected)
@@ -35,7 +38,7 @@ class Mechanism:
     def advance(self, motor, now):
         """A substep on; the torque that the simulation's joint would have needed for it, and what of it is friction."""
         data, width = self.data, self.simulated.sign_width_rad_s
-        data.ctrl[0] = motor
+        data.ctrl[:] = motor
         q, v = self.state()
         coulomb = self.plant.coulomb_Nm(self.real, q, v, now, float(data.qacc[0]))
         sign = math.tanh(v / width) if width else 0.0
@@ -53,7 +56,7 @@ class Mechanism:
         return float(inverse.qfrc_inverse[0]), -float(inverse.qfrc_constraint[0] + inverse.qfrc_passive[0])
 
 
-def model(joint, plant, timestep):
+def model(joint, plant, timestep, actuator=MOTOR):
     """The compiled model of the joint as `plant` alters it."""
     link = plant.joint(joint)
     lever = (-link.lever_m * math.sin(link.phase_rad), 0.0, -link.lever_m * math.cos(link.phase_rad))
@@ -70,8 +73,19 @@ def model(joint, plant, timestep):
     return mujoco.MjModel.from_xml_string(f"""<mujoco model="foreign">
   <option timestep="{timestep}" gravity="0 0 -{GRAVITY_M_S2}"/>
   <worldbody><body name="arm">{body}</body></worldbody>
-  <actuator><motor name="drive" joint="joint"/>{resistances(plant)}</actuator>
+  <actuator>{actuator}{resistances(plant)}</actuator>
 </mujoco>""")
+
+
+def following(servo, plant):
+    """The actuator of a servo as `plant` alters it, in MJCF: a controller, or a motor under the voltage that its firmware makes of the supply."""
+    real, limit = servo.real(plant), plant.command_limit_Nm
+    is_limited = math.isfinite(limit)
+    if real.is_motor:
+        saturation = f'saturation="{limit} 0 0"' if is_limited else ""
+        return f'<dcmotor name="drive" joint="joint" motorconst="{real.torque_constant_Nm_A}" resistance="{real.resistance_ohm}" {saturation}/>'
+    force = f'forcelimited="true" forcerange="{-limit} {limit}"' if is_limited else ""
+    return f'<pid name="drive" joint="joint" input="pos vel ff" kp="{real.kp_Nm_rad}" kv="{real.kd_Nms_rad}" {force}/>'
 
 
 def attributes(link, plant):

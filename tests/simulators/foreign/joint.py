@@ -107,10 +107,12 @@ class Plant:
     play: Play | None = None
     level: object = None  # Coulomb friction over position, velocity, time and transmitted torque, N m
     applied: object = None  # torque on the joint over position, velocity and time, N m
-    command_limit_Nm: float = math.inf  # of the motor; the log has the command
-    command_delay_steps: int = 0  # of the motor; the log has the command
+    command_limit_Nm: float = math.inf  # of motor or servo; the log has the command
+    command_delay_steps: int = 0  # of motor or servo; the log has the command
     torque_delay_steps: int = 0  # of the logged torque
     torque_scale: float = 1.0  # of the logged torque
+    actuator_scale: float = 1.0  # of the gain of a controller, or the torque constant of a motor
+    dead_band_Nm: float = 0.0  # torque of the position error about which a servo does nothing
 
     def joint(self, simulated):
         """The real joint."""

@@ -27,12 +27,32 @@ def unit_noise(kind, torque, rng):
 
 
 def recorded(log, kind, rms, rng):
-    """Time, position, velocity and torque as recorded, and what describes the noise: an encoder of 12 to 18 bits a turn, or else an exact one."""
+    """Columns of time, position, velocity and torque as recorded, and what describes the noise: an encoder of 12 to 18 bits a turn, or else an
+    exact one."""
     noise, told = unit_noise(kind, log.torque, rng)
     position, velocity = log.position, log.velocity
     if kind == "coarse_encoder":
         bits = told["bits"] = int(rng.integers(12, 19))
-        step = 2 * np.pi / 2**bits
-        position = np.round(position / step) * step
+        position = counted(position, bits)
         velocity = np.diff(position, prepend=2 * position[0] - position[1]) / log.period_s
-    return np.column_stack((log.time, position, velocity, log.torque + rms * noise)), told
+    return log.columns() | {"position_rad": position, "velocity_rad_s": velocity, "torque_Nm": log.torque + rms * noise}, told
+
+
+def recorded_by_servo(log, kind, rms_rad, rms_rad_s, reports_velocity, rng):
+    """The same of a joint that reports no torque: the noise is that of its position and, where it has one, of its velocity. Here the coarse
+    encoder is the noise, and comes without velocity."""
+    noise, told = unit_noise(kind, log.torque, rng)
+    velocity_noise, _ = unit_noise(kind, log.torque, rng)
+    columns = log.columns() | {"position_rad": log.position + rms_rad * noise, "velocity_rad_s": log.velocity + rms_rad_s * velocity_noise}
+    if kind == "coarse_encoder":
+        bits = told["bits"] = round(np.log2(2 * np.pi / (rms_rad * np.sqrt(12))))
+        columns["position_rad"] = counted(log.position, bits)
+    if kind == "coarse_encoder" or not reports_velocity:
+        del columns["velocity_rad_s"]
+    return columns, told
+
+
+def counted(position, bits):
+    """By an encoder of so many bits a turn."""
+    step = 2 * np.pi / 2**bits
+    return np.round(position / step) * step

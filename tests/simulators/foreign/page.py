@@ -4,9 +4,9 @@ import math
 from collections import Counter
 
 from .count import classes, stated
-from .effects import EFFECTS
+from .effects import EFFECTS, of_reference
 from .noise import KINDS
-from .pair import LARGEST_SHARE, LEAST_SHARE, LONGEST_S, SHORTEST_S, SIMULATORS
+from .pair import LARGEST_SHARE, LEAST_SHARE, LONGEST_S, SERVO_FINER, SERVO_RATES_HZ, SHORTEST_S, SIMULATORS
 
 
 def share(hits, of):
@@ -65,14 +65,15 @@ def simulator(result):
 
 
 def plant(result):
-    """Simulator and Coulomb friction: a soft constraint of the simulator, or a tanh of the velocity."""
-    return f"{simulator(result)} {'tanh' if result['joint']['sign_width_rad_s'] else 'frictionloss'}"
+    """Simulator, kind of servo if it is one, and Coulomb friction: a soft constraint of the simulator, or a tanh of the velocity."""
+    servo = f"{result['actuator']} " if result.get("actuator", "torque") != "torque" else ""
+    return f"{simulator(result)} {servo}{'tanh' if result['joint']['sign_width_rad_s'] else 'frictionloss'}"
 
 
 def split(results, key):
     """Results by a key: in the order of the simulators, soft constraints first."""
     order = list(SIMULATORS)
-    ordered = sorted(results, key=lambda r: (order.index(r["simulator"]), bool(r["joint"]["sign_width_rad_s"])))
+    ordered = sorted(results, key=lambda r: (order.index(r["simulator"]), r.get("actuator", ""), bool(r["joint"]["sign_width_rad_s"])))
     return {name: [r for r in results if key(r) == name] for name in dict.fromkeys(map(key, ordered))}
 
 
@@ -103,12 +104,18 @@ def mistakes(results):
     return table(["concealed", "named", "pairs", *parts], [[*pair, *(found[pair] for found in counts)] for pair, _ in counts[0].most_common()])
 
 
+def kinds_of(results):
+    """The effects that these pairs can have, in the order of the catalogue."""
+    kinds = {kind for reference in {result["reference"] for result in results} for kind in of_reference(reference)}
+    return [kind for kind in EFFECTS if kind in kinds]
+
+
 def of_kinds(results, ratios):
     """Every kind of effect over the simulators."""
     parts = split(results, simulator)
     rows = []
-    for kind, effect in EFFECTS.items():
-        cells = []
+    for kind in kinds_of(results):
+        cells, effect = [], EFFECTS[kind]
         for part in parts.values():
             found = [r for r in part if r["effect"] == kind]
             levels = [[r["right"] for r in found if r["ratio"] == ratio] for ratio in ratios]
@@ -132,7 +139,7 @@ def of_effects(results, title):
     overall = [
         [f"{ratio:g}", name, *row([r for r in found if r["ratio"] == ratio])] for ratio in ratios for name, found in split(results, plant).items()
     ]
-    absent = [kind for kind in EFFECTS if not any(result["effect"] == kind for result in results)]
+    absent = [kind for kind in kinds_of(results) if not any(result["effect"] == kind for result in results)]
     misses = "\n".join(told(result) for result in sorted(results, key=lambda r: (r["effect"], -r["ratio"])) if result["wrong"] or not result["right"])
     return (
         f"## {title}\n\n"
@@ -155,6 +162,7 @@ COMPARED = {
     "simulation": "recording against simulation",
     "model": "recording against a model fitted to another recording",
     "alone": "recording without a reference",
+    "servo": "positions and commands of a servo against simulation",
 }
 
 
@@ -186,6 +194,14 @@ The recording has one of five kinds of noise: white; autoregressive; an encoder 
 torque noise; Student's with three degrees of freedom; growing with the torque. An effect is the torque that the reference's joint, tuned as above,
 would not have needed for the recorded motion, below 20 Hz. Its root mean square is {100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for
 presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times that.
+
+A servo is such a joint of MuJoCo that reports no torque: under MuJoCo's `pid` actuator with gains on position and velocity and in half of them 30 to
+80 % of the torque of the rigid body as feed-forward ("pd"), or under its `dcmotor` whose voltage a firmware makes of the position error
+("position_servo"), of 3 to 8 Hz. Loop and joint are stepped at 0.25 ms in recording and simulation; commands change at 1 kHz. The log has positions and
+commands at {", ".join(map(str, SERVO_RATES_HZ))} Hz, in half of the pairs velocities, and `[actuator]` of `joint.toml` the constants of the simulation. Its noise is that of the position,
+and of the velocity where there is one: what the gains would make of each is a {SERVO_FINER:g}th of the noise above, so that the effect is {SERVO_FINER:g} times as large or as
+large as the noise, and an encoder that is coarse is the noise. For another gain and for delays, which are as large as they are, the noise is that beside the largest of the other
+effects at most. A body is given where another gain is concealed, for the two are one, and nothing is refitted where a delay is, for it would be taken for damping.
 
 """
     for reference, compared in COMPARED.items():

@@ -5,20 +5,23 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from . import in_drake, in_mujoco, motion
-from .drive import Log, run, smooth
-from .effects import EFFECTS
+from . import drive, in_drake, in_mujoco, motion, servo
+from .drive import run, smooth
+from .effects import EFFECTS, of_reference
 from .joint import Plant, random_joint
 from .motion import CONTROL_PERIOD_S, random_motion
-from .noise import KINDS, recorded
+from .noise import KINDS, recorded, recorded_by_servo
 
 # Each has the name of its page, whether its Coulomb friction can be a soft constraint, and the mechanism that `run` drives.
 SIMULATORS = {"mujoco": in_mujoco, "drake": in_drake}
-# What a recording is compared with: a simulation that was refitted to it, a model fitted to another recording, nothing.
-REFERENCES = {"simulation": "simulation.csv", "model": "model.csv", "alone": None}
-RATES_HZ = (250, 1000)
+# What a recording is compared with: a simulation that was refitted to it, a model fitted to another recording, nothing; of a servo, which reports
+# no torque, such a simulation.
+REFERENCES = {"simulation": "simulation.csv", "model": "model.csv", "alone": None, "servo": "simulation.csv"}
+RATES_HZ, SERVO_RATES_HZ = (250, 1000), (200, 250, 500)
 # Root mean square of the effect over that of the noise.
 RATIOS = (1.0, 0.2)
+# By how much less an encoder is off, in torque by the gain of the position error, than what measures a torque.
+SERVO_FINER = 5.0
 SHORTEST_S, LONGEST_S = 20.0, 90.0
 
 # Root mean square of what the reference cannot have of the effect, as a share of the friction: above the default of `--least-effect`.
@@ -44,11 +47,12 @@ class Case:
     motion: str
     rate_Hz: int
     body: str  # "given" in joint.toml, or "free"
+    actuator: str = "torque"  # that is logged, or a kind of servo
 
 
 def case(seed, reference, number):
     """The case of a number, whatever else is asked for. Every choice is balanced by itself, in blocks in which each of its values comes once."""
-    seed = (seed, list(REFERENCES).index(reference), number)
+    seed, is_servo = (seed, list(REFERENCES).index(reference), number), reference == "servo"
 
     def choose(which, values, index=number):
         block, place = divmod(index, len(values))
@@ -59,18 +63,20 @@ def case(seed, reference, number):
     period = 2 if reference == "model" else 3
     effect, ratio, body = "none", 0.0, choose(0, ("given", "free"))
     if number % period:
-        kinds = [name for name, of in EFFECTS.items() if reference != "alone" or of.given != "level"]
+        kinds = of_reference(reference)
         index = number - number // period - 1
-        effect = choose(1, kinds, index)
+        place = choose(1, range(len(kinds)), index)
+        effect = kinds[place]
         # Each effect has one ratio and then the other.
-        ratio = RATIOS[(index // len(kinds) + kinds.index(effect)) % 2]
+        ratio = RATIOS[(index // len(kinds) + place) % 2] * (SERVO_FINER if is_servo else 1.0)
         if EFFECTS[effect].given and reference != "model":
             body = "given"
     # Without a reference a body that is not given is missing.
     body = "given" if reference == "alone" else body
-    # Drake takes five times as long.
-    simulator = choose(2, ("mujoco", "mujoco", "mujoco", "drake"))
-    return Case(seed, reference, effect, ratio, choose(3, KINDS), simulator, choose(4, motion.KINDS), choose(5, RATES_HZ), body)
+    # Drake takes five times as long, and has neither controllers nor motors of its own.
+    simulator = "mujoco" if is_servo else choose(2, ("mujoco", "mujoco", "mujoco", "drake"))
+    rate, actuator = choose(5, SERVO_RATES_HZ if is_servo else RATES_HZ), choose(6, servo.KINDS) if is_servo else "torque"
+    return Case(seed, reference, effect, ratio, choose(3, KINDS), simulator, choose(4, motion.KINDS), rate, body, actuator)
 
 
 class Bench:
@@ -80,13 +86,29 @@ class Bench:
         self.simulator = SIMULATORS[case.simulator]
         self.joint = random_joint(rng, self.simulator.HAS_SOFT_CONSTRAINT)
         self.every = round(1 / case.rate_Hz / CONTROL_PERIOD_S)
+        self.servo = servo.random_servo(case.actuator, self.joint, rng) if case.actuator != "torque" else None
 
     def simulated(self, joint, motion):
         """The joint as a simulation knows it, under the controller of the real one."""
-        return run(self.simulator.Mechanism(joint, Plant(), real=False), self.joint, Plant(), motion, self.every)
+        return self.driven(self.simulator, joint, Plant(), False, motion)
 
     def recorded(self, motion, plant=Plant(), simulator=None):
-        return run((simulator or self.simulator).Mechanism(self.joint, plant, real=True), self.joint, plant, motion, self.every)
+        return self.driven(simulator or self.simulator, self.joint, plant, True, motion)
+
+    def driven(self, simulator, joint, plant, real, motion):
+        if self.servo:
+            mechanism, control = simulator.Mechanism(joint, plant, real, self.servo), servo.Control(self.servo, self.joint, plant, motion)
+        else:
+            mechanism, control = simulator.Mechanism(joint, plant, real), drive.Control(self.joint, plant, motion)
+        return run(mechanism, control, plant, motion, self.every)
+
+    def logged(self, log, noise, level, rng):
+        """Columns as recorded under noise of a root mean square, N m, and what describes it. A servo's is that of position and velocity, each of
+        which its gains would make that torque of."""
+        if not self.servo:
+            return recorded(log, noise, level, rng)
+        of = self.servo
+        return recorded_by_servo(log, noise, level / of.kp_Nm_rad, level / of.kd_Nms_rad, of.reports_velocity, rng)
 
 
 def rms(values):
@@ -162,7 +184,7 @@ def sized(bench, reference, motion, shape, share):
 
 
 def make(case):
-    """Rows of the reference (none where there is none), rows of the recording, text of joint.toml and the truth about the pair."""
+    """Columns of the reference (none where there is none) and of the recording, text of joint.toml and the truth about the pair."""
     rng = np.random.default_rng(case.seed)
     bench = Bench(case, rng)
     reference = Reference(case, bench)
@@ -178,13 +200,17 @@ def make(case):
     if case.effect == "none":
         log = bench.recorded(motion)
         tuned, left = reference.refitted(log)
-        level *= rms(log.friction)
+        level *= rms(log.friction) / (SERVO_FINER if bench.servo else 1.0)
     else:
         effect = EFFECTS[case.effect]
         shape = effect.plant(bench.joint, motion, rng)
         size, log = sized(bench, reference, motion, shape, effect.share) if effect.sized else (1.0, bench.recorded(motion, shape(1.0)))
         tuned, left = reference.refitted(log)
-        level = rms(left) / case.ratio
+        level = rms(left)
+        if bench.servo and not effect.sized:
+            # A position is not the worse for a large effect: the noise is that beside the largest of the others.
+            level = min(level, LARGEST_SHARE * rms(log.friction))
+        level /= case.ratio
         truth |= {
             "class": effect.names[0],
             "names": list(effect.names),
@@ -193,16 +219,19 @@ def make(case):
         }
     # Behind the refit: what the reference lacks. Before it: the torque that the healthy joint would not have needed.
     truth |= {"effect_Nm": rms(left), "effect_before_refit_Nm": rms(log.effect), "joint": asdict(bench.joint), "reference_joint": asdict(tuned)}
-    rows, noise = recorded(log, case.noise, level, rng)
+    columns, noise = bench.logged(log, case.noise, level, rng)
     truth |= {"noise_Nm": level, "friction_Nm": rms(log.friction), "torque_Nm": rms(log.torque), **noise}
     compared = None
-    if case.reference == "simulation":
-        compared = as_rows(bench.simulated(tuned, motion))
+    if bench.servo:
+        truth["servo"] = asdict(bench.servo)
+    if REFERENCES[case.reference] == "simulation.csv":
+        simulated = bench.simulated(tuned, motion).columns()
+        compared = {name: simulated[name] for name in columns}
     elif case.reference == "model":
         truth["fitted_s"] = duration()
         other = bench.recorded(random_motion(case.motion, rng, truth["fitted_s"])[1])
-        compared, _ = recorded(other, KINDS[rng.integers(len(KINDS))], level, rng)
-    return compared, rows, joint_toml(bench.joint, case), truth
+        compared, _ = bench.logged(other, KINDS[rng.integers(len(KINDS))], level, rng)
+    return compared, columns, joint_toml(bench, case), truth
 
 
 def numbers(shape):
@@ -211,11 +240,8 @@ def numbers(shape):
     return {name: [value.real, value.imag] if isinstance(value, complex) else float(value) for name, value in drawn.items()}
 
 
-def as_rows(log: Log):
-    return np.column_stack((log.time, log.position, log.velocity, log.torque))
-
-
-def joint_toml(joint, case):
+def joint_toml(bench, case):
+    joint = bench.joint
     body = f"""
 [rigid_body]
 inertia_kgm2 = {joint.inertia_kgm2}
@@ -223,7 +249,7 @@ gravity_torque_Nm = {joint.gravity_torque_Nm}
 gravity_phase_rad = {joint.phase_rad}
 """
     return f"""name = "joint"
-{body if case.body == "given" else ""}
+{body if case.body == "given" else ""}{bench.servo.toml() if bench.servo else ""}
 [drive]
 rate_Hz = {case.rate_Hz}.0
 """
