@@ -195,13 +195,14 @@ torque noise; Student's with three degrees of freedom; growing with the torque. 
 would not have needed for the recorded motion, below 20 Hz. Its root mean square is {100 * LEAST_SHARE:.0f} to {100 * LARGEST_SHARE:.0f} % of the friction (three times as much for
 presliding and backlash, whatever it is for delays); the noise has the same root mean square, or five times that.
 
-A servo is such a joint of MuJoCo that reports no torque: under MuJoCo's `pid` actuator with gains on position and velocity and in half of them 30 to
-80 % of the torque of the rigid body as feed-forward ("pd"), or under its `dcmotor` whose voltage a firmware makes of the position error
-("position_servo"), of 3 to 8 Hz. Loop and joint are stepped at 0.25 ms in recording and simulation; commands change at 1 kHz. The log has positions and
-commands at {", ".join(map(str, SERVO_RATES_HZ))} Hz, in half of the pairs velocities, and `[actuator]` of `joint.toml` the constants of the simulation. Its noise is that of the position,
-and of the velocity where there is one: what the gains would make of each is a {SERVO_FINER:g}th of the noise above, so that the effect is {SERVO_FINER:g} times as large or as
-large as the noise, and an encoder that is coarse is the noise. For another gain and for delays, which are as large as they are, the noise is that beside the largest of the other
-effects at most. A body is given where another gain is concealed, for the two are one, and nothing is refitted where a delay is, for it would be taken for damping.
+A servo is such a joint of MuJoCo that reports no torque: under MuJoCo's `pid` actuator with gains on position and velocity and in half of them
+30 to 80 % of the torque of the rigid body as feed-forward ("pd"), or under its `dcmotor` whose voltage a firmware makes of the position error
+("position_servo"), of 3 to 8 Hz. Loop and joint are stepped at 0.25 ms in recording and simulation; commands change at 1 kHz. The log has positions
+and commands at {", ".join(map(str, SERVO_RATES_HZ))} Hz, in half of the pairs velocities, and `[actuator]` of `joint.toml` the constants of the simulation. Its noise is that
+of the position, and of the velocity where there is one: what the gains would make of each is a {SERVO_FINER:g}th of the noise above, so that the effect is
+{SERVO_FINER:g} times as large or as large as the noise, and an encoder that is coarse is the noise. Another gain and a delay are as large as they are, and the
+noise beside them is at most that beside the largest of the other effects. The body is given where another gain is concealed, for one body and
+gain are another body and gain; nothing is refitted where a delay is, for it would be taken for damping.
 
 """
     for reference, compared in COMPARED.items():
