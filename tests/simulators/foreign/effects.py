@@ -215,7 +215,7 @@ EFFECTS = {
     "event": Effect(("transient_event",), "a constant torque for about a second", event),
     "torque_scale": Effect(("torque_scale", "drive_backdrive"), "scaled torque column; equal to a loss in one direction of power", torque_scale, beside=("friction_level",), given="body", only="torque"),
     "actuator_gain": Effect(("actuator_gain",), "gain of a controller, torque constant of a motor: 10 to 20 % off", actuator_gain, sized=False, given="body", only="servo"),
-    "torque_limit": Effect(("supply_or_duty_limit",), "the actuator's torque has a limit that it meets", saturation, share=3.0, only="servo"),
+    "torque_limit": Effect(("supply_or_duty_limit",), "the actuator's torque has a limit that it meets again and again", saturation, share=10.0, only="servo"),
     "command_delay": Effect(("command_delay",), "a command acts 8 to 20 ms later", servo_late, sized=False, given="level", only="servo"),
     "dead_band": Effect(("dead_band",), "nothing is done about a small position error", dead_band, only="servo"),
 }

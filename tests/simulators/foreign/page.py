@@ -200,7 +200,7 @@ A servo is such a joint of MuJoCo that reports no torque: under MuJoCo's `pid` a
 ("position_servo"), of 3 to 8 Hz. Loop and joint are stepped at 0.25 ms in recording and simulation; commands change at 1 kHz. The log has positions
 and commands at {", ".join(map(str, SERVO_RATES_HZ))} Hz, in half of the pairs velocities, and `[actuator]` of `joint.toml` the constants of the simulation. Its noise is that
 of the position, and of the velocity where there is one: what the gains would make of each is a {SERVO_FINER:g}th of the noise above, so that the effect is
-{SERVO_FINER:g} times as large or as large as the noise, and an encoder that is coarse is the noise. Another gain and a delay are as large as they are, and the
+{SERVO_FINER:g} times as large or as large as the noise, and an encoder that is coarse is the noise. Another gain, a limit and a delay are larger, and the
 noise beside them is at most that beside the largest of the other effects. The body is given where another gain is concealed, for one body and
 gain are another body and gain; nothing is refitted where a delay is, for it would be taken for damping.
 

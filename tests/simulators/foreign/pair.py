@@ -207,8 +207,8 @@ def make(case):
         size, log = sized(bench, reference, motion, shape, effect.share) if effect.sized else (1.0, bench.recorded(motion, shape(1.0)))
         tuned, left = reference.refitted(log)
         level = rms(left)
-        if bench.servo and not effect.sized:
-            # A position is not the worse for a large effect: the noise is that beside the largest of the others.
+        if effect.only == "servo":
+            # A position is not the worse for an actuator that is far off: the noise is that beside the largest of the others.
             level = min(level, LARGEST_SHARE * rms(log.friction))
         level /= case.ratio
         truth |= {
