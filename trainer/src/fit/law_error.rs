@@ -1,8 +1,8 @@
 //! How wrong a shipped law is where it was fitted, beside the noise: what another recording may show of it is no physics that came later.
 
 use super::data::gather::Material;
+use super::filtered::predict_filtered;
 use super::model::HostModel;
-use super::predict::predict;
 use crate::error::Result;
 use crate::numerics::hat_functions::law_error_hats;
 use crate::numerics::jackknife::ERROR_BLOCKS;
@@ -29,13 +29,15 @@ pub(super) struct Residual<'a> {
 
 impl<'a> Residual<'a> {
     /// # Errors
-    /// As [`predict`].
+    /// As [`predict_filtered`].
     pub(super) fn of(model: &HostModel, material: &'a Material) -> Result<Self> {
         let samples = &material.samples;
-        let predicted = predict(model, samples)?.total();
         let measured = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-        let predicted = predicted.iter().zip(&material.bend).map(|(predicted, bend)| predicted + bend);
-        let left = measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect();
+        let left = measured
+            .iter()
+            .zip(predict_filtered(model, material)?)
+            .map(|(measured, predicted)| measured - predicted)
+            .collect();
         let velocity = samples.velocity.as_deref().unwrap_or_default();
         let top_speed = model.top_speed().map_or_else(|| top_speed(velocity), f64::from);
         Ok(Self { left, velocity, top_speed })

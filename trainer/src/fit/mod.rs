@@ -5,6 +5,7 @@
 mod agreement;
 mod choice;
 mod data;
+mod filtered;
 mod forces;
 mod gate;
 mod integer_summary;

@@ -117,7 +117,7 @@ impl<'m> Predictor<'m> {
 }
 
 /// The columns that the model reads, in the order of its inputs.
-fn channels<'a>(model: &HostModel, samples: &'a Samples) -> Result<Vec<&'a [f64]>> {
+pub(super) fn channels<'a>(model: &HostModel, samples: &'a Samples) -> Result<Vec<&'a [f64]>> {
     let column = |quantity: &Quantity| match quantity {
         Quantity::Load => samples.input("load").or(samples.rigid_body.as_deref()),
         other => samples.input(other.name()),

@@ -18,6 +18,7 @@ use super::law_error::{Residual, law_error};
 use super::laws::builder::Builder;
 use super::laws::formula::{self, at_velocity, classical, law_data, law_parameters};
 use super::laws::learn::{TrainedNetwork, TrainingData};
+use super::laws::next_width::{at_next_width, hold_both};
 use super::laws::simple::Simple;
 use super::model::{HostModel, from_bytes, provenance, to_bytes};
 use super::options::{Options, Progress, ProgressCallback, Stage};
@@ -33,7 +34,7 @@ use crate::joint::Joint;
 use crate::law::{FormFit, Law};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
-use crate::samples::told_of_clock;
+use crate::samples::{Request, told_of_clock};
 
 /// Share of the inertia that noise may take untold.
 const TOLD_ATTENUATION: f64 = 0.01;
@@ -93,7 +94,8 @@ fn fit_once(
 ) -> Result<Outcome> {
     let tell = |stage| progress(&Progress { stage, steps: 0, rmse: None });
     tell(Stage::Separating);
-    let material = gather(recordings, joint, options)?;
+    let request = Request { rate_hz: options.rate_hz, ..Request::default() };
+    let material = gather(recordings, joint, &request)?;
     let (inputs, relevance) = choose(&material, options.inputs.as_deref())?;
     let builder = Builder { material: &material, inputs: &inputs, joint, cells: options.budget.cells() };
 
@@ -139,6 +141,10 @@ fn fit_once(
     let identified = Identified::by(&material);
     let band = training.band(&refitted, correlation_length, f64::from(model.rigid_body.offset))?;
     let mut parameters = parameters(&material, &fit, &learnt, by_expression, &identified);
+    hold_both(
+        &mut parameters,
+        &at_next_width(recordings, joint, &request, (&material, &inputs), &fit).unwrap_or_default(),
+    );
     let trial = trials[verdict.form.place()].as_ref();
     let mut sound = soundness(&material, &fit, &learnt, verdict.form, violation)
         .and(|| withheld(&material, &identified, trial, &parameters, uncertain_share(&band)));

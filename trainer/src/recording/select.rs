@@ -126,6 +126,15 @@ impl Recording {
         self.with_health()
     }
 
+    /// The same with another position, rad or m, one value a row.
+    #[must_use]
+    pub(crate) fn with_position(mut self, position: Vec<f64>) -> Self {
+        if let Some(channel) = self.channels.iter_mut().find(|channel| channel.quantity == Some(Quantity::Position)) {
+            channel.values = position;
+        }
+        self.with_health()
+    }
+
     fn interrupted_at(mut self, mut interruptions: Vec<usize>) -> Self {
         let rows = self.len();
         interruptions.retain(|row| (1..rows).contains(row));

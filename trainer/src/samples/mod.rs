@@ -10,6 +10,7 @@ mod even;
 mod grid;
 pub mod hold_out;
 pub mod plan;
+mod position_noise;
 mod prepare;
 pub mod relevance;
 pub mod rigid_body;
@@ -25,9 +26,10 @@ pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
 pub(crate) use grid::{interpolate, told_of_clock};
 pub use plan::{Preparation, Request, VelocitySource};
+pub(crate) use position_noise::PositionNoise;
 pub(crate) use prepare::{EveryRow, prepare_every_row_of};
 pub use prepare::{prepare, prepare_every_row};
-pub(crate) use width::{smooth_friction_columns, thinned};
+pub(crate) use width::{STEP as WIDTH_STEP, smooth_friction_columns, thinned};
 
 use crate::did_you_mean::hint;
 use crate::error::{Error, Result, codes};
@@ -77,6 +79,8 @@ pub struct Samples {
     pub recordings: Vec<(String, Range<usize>)>,
     /// Samples per second; `None` without a clock.
     pub rate_hz: Option<f64>,
+    /// Standard deviation of the filter, s; `None` where nothing was filtered.
+    pub sigma_s: Option<f64>,
     /// The filter and where velocity comes from, in one sentence.
     pub filter: String,
 }
@@ -92,6 +96,13 @@ impl Samples {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Share of a sine of the position that passes the filter at a sample: within its window the joint moves on at the velocity v, and the average
+    /// of `sin(q + v s)` over a Gaussian of deviation sigma is `sin(q) exp(-(sigma v)^2 / 2)` (its characteristic function).
+    pub(crate) fn passed_share_of_sine(&self, row: usize) -> f64 {
+        let way = self.sigma_s.zip(self.velocity.as_deref()).map_or(0.0, |(sigma_s, velocity)| sigma_s * velocity[row]);
+        (-0.5 * way * way).exp()
     }
 
     /// The values that a model's input of this name takes: `velocity`, `position`, `acceleration`, or a channel.

@@ -78,8 +78,9 @@ impl Preparation {
         let motions = recordings.iter().map(|recording| Motion::of(recording)).collect::<Result<Vec<_>>>()?;
         refuse_constant_velocity(recordings, motions.iter().map(|motion| motion.velocity.as_slice()))?;
         let candidates = candidates(&motions, request);
-        let trials = width::trials(recordings, &candidates, &|samples: &Samples| width::cross_fitted(samples, joint));
-        let chosen = width::shortest_to_learn_at(&trials).map(|trial| trial.preparation);
+        let judge = |samples: &Samples, tried: &Self| width::cross_fitted(samples, joint, tried.acceleration_noise);
+        let trials = width::trials(recordings, &candidates, &judge);
+        let chosen = width::to_learn_at(&trials).map(|trial| trial.preparation);
         Ok(chosen.unwrap_or_else(|| quietest(&motions, &candidates)))
     }
 
@@ -99,7 +100,8 @@ impl Preparation {
         }
         let motions = [Motion::of(recording)?];
         let candidates = candidates(&motions, &Request::default());
-        let trials = width::trials(&[recording], &candidates, &|samples: &Samples| Ok((residual(samples)?, 0.0)));
+        let trials =
+            width::trials(&[recording], &candidates, &|samples: &Samples, _: &Self| Ok((residual(samples)?, 0.0)));
         let chosen = width::best(&trials).map(|trial| trial.preparation);
         Ok(chosen.unwrap_or_else(|| quietest(&motions, &candidates)))
     }

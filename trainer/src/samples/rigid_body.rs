@@ -146,8 +146,8 @@ pub fn given_torque(samples: &Samples, joint: &Joint) -> Result<Vec<f64>> {
                 .in_column("position_rad")
         })?;
         let phase = body.gravity_phase_rad.unwrap_or(0.0);
-        for (sum, q) in torque.iter_mut().zip(position) {
-            *sum += per_nm * gravity * (q + phase).sin();
+        for (row, (sum, q)) in torque.iter_mut().zip(position).enumerate() {
+            *sum += per_nm * gravity * samples.passed_share_of_sine(row) * (q + phase).sin();
         }
     }
     Ok(torque)
@@ -173,8 +173,11 @@ pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
     let gravity_asked =
         samples.axis == Axis::Rotary && samples.rigid_body.is_none() && body.gravity_torque_nm.is_none();
     if let Some(position) = samples.position.as_deref().filter(|q| gravity_asked && range(q) >= GRAVITY_RANGE_RAD) {
-        push(TermKind::GravitySine, position.iter().map(|q| q.sin()).collect());
-        push(TermKind::GravityCosine, position.iter().map(|q| q.cos()).collect());
+        let passed = |of: fn(f64) -> f64| {
+            position.iter().enumerate().map(|(row, q)| samples.passed_share_of_sine(row) * of(*q)).collect()
+        };
+        push(TermKind::GravitySine, passed(f64::sin));
+        push(TermKind::GravityCosine, passed(f64::cos));
     }
     if samples.velocity.as_deref().is_some_and(both_directions) {
         push(TermKind::TorqueOffset, vec![1.0; samples.len()]);

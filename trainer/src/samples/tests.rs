@@ -218,6 +218,7 @@ impl Samples {
             segments: vec![rows.clone()],
             recordings: vec![("made".into(), rows)],
             rate_hz: Some(100.0),
+            sigma_s: None,
             filter: String::new(),
         }
     }

@@ -5,28 +5,31 @@
 //! identified anew at every width, on other blocks than those that are scored, so that an inertia which noise has attenuated
 //! (errors in variables; Fuller 1987) cannot recommend its own width.
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::prepare::prepare;
 use super::rigid_body;
-use super::{Preparation, Samples, top_speed};
+use super::rigid_body::Term;
+use super::{BendingLaw, Preparation, SLIDING_SPEED_SHARE, Samples, top_speed};
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
-use crate::numerics::products::norm;
-use crate::numerics::regression::least_squares;
+use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
+use crate::numerics::products::{dot, norm};
+use crate::numerics::regression::{Columns, least_squares};
 use crate::recording::Recording;
 
 /// Factor from one width to the next.
-const STEP: f64 = std::f64::consts::SQRT_2;
+pub(crate) const STEP: f64 = std::f64::consts::SQRT_2;
 /// Most samples of all recordings together at which one width is scored.
 const MOST_SAMPLES: f64 = 30_000.0;
 /// Blocks of each recording, every other of which is held out in turn.
 const BLOCKS: usize = 20;
-/// The inertia at a width counts as that at the best one up to this share: half of it would be noise or bias.
-const SAME_INERTIA: f64 = 0.02;
-/// A law may be learnt at a width that leaves this much more than the best, as a ratio of mean squares: constants are then known
-/// by its root less well, and friction that turns over within a few milliseconds is not smeared.
-const LEARNING_RATIO: f64 = 1.5;
+/// Another step has to bring the mean square error of the constants down by this factor. The power of the acceleration's noise falls by
+/// [`STEP`]^5 = 5.7 a step, so that it has an eighth of the error at most where a step brings less.
+const LEAST_GAIN: f64 = 1.1;
+/// Share of an acceleration's power beside the other columns that may be its noise: beyond half, nothing is known of the inertia.
+const MOST_ATTENUATION: f64 = 0.5;
 /// Where the smoothed signs of the velocity have three quarters of their height, as shares of the top speed: sharp as
 /// Coulomb friction, and wide as what a Stribeck curve adds to it.
 const SIGN_WIDTHS: [f64; 2] = [0.02, 0.1];
@@ -37,12 +40,12 @@ pub(super) struct Trial {
     pub(super) preparation: Preparation,
     /// Mean square of what is left of the recorded torque, a block; `None` where the block has no samples.
     blocks: Vec<Option<f64>>,
-    /// Inertia, unit of the actuator per acceleration; zero where none is identified.
-    pub(super) inertia: f64,
+    /// Expected mean square, over samples that slide, of what errors of the constants make of the torque.
+    error: f64,
 }
 
-/// Left of the recorded actuator at every sample, and the inertia that was assumed.
-pub(super) type Residual<'a> = dyn Fn(&Samples) -> Result<(Vec<f64>, f64)> + Sync + 'a;
+/// Left of the recorded actuator at every sample, and the expected mean square of what errors of the constants make of the torque.
+pub(super) type Residual<'a> = dyn Fn(&Samples, &Preparation) -> Result<(Vec<f64>, f64)> + Sync + 'a;
 
 /// Widths from `shortest` to `longest`, s.
 pub(super) fn ladder(shortest: f64, longest: f64) -> Vec<f64> {
@@ -56,9 +59,9 @@ pub(super) fn trials(recordings: &[&Recording], preparations: &[Preparation], re
         let parts: Result<Vec<Samples>> =
             recordings.iter().map(|r| prepare(r, &thinned(recordings, preparation, MOST_SAMPLES))).collect();
         let samples = parts.and_then(Samples::join).ok()?;
-        let (left, inertia) = residual(&samples).ok()?;
+        let (left, error) = residual(&samples, preparation).ok()?;
         let blocks = block_means(&samples, &left);
-        Some(Trial { preparation: *preparation, blocks, inertia })
+        Some(Trial { preparation: *preparation, blocks, error })
     });
     tried.collect::<Vec<_>>().into_iter().flatten().collect()
 }
@@ -109,57 +112,74 @@ pub(super) fn best(trials: &[Trial]) -> Option<&Trial> {
     trials.iter().min_by(|a, b| a.mean_square().total_cmp(&b.mean_square()))
 }
 
-/// The width to learn at: of those at which the inertia is that of the best and not much more is left, the shortest. What a filter
-/// does to friction around a reversal no constant can undo, what noise of the acceleration does is averaged out, as long as it
-/// does not attenuate the inertia.
-pub(super) fn shortest_to_learn_at(trials: &[Trial]) -> Option<&Trial> {
-    let best = best(trials)?;
-    let same_inertia = |trial: &Trial| (trial.inertia - best.inertia).abs() <= SAME_INERTIA * best.inertia.abs();
-    let of_its_source = trials.iter().filter(|trial| trial.preparation.velocity == best.preparation.velocity);
-    let mut usable =
-        of_its_source.filter(|trial| same_inertia(trial) && trial.mean_square() <= LEARNING_RATIO * best.mean_square());
-    Some(usable.next().unwrap_or(best))
+/// The width to learn at, from the source of velocity that leaves least: the shortest at which noise has little part in the error of the constants.
+/// A wider one would know them no better, and what a joint does that sticks for a moment is no average of its law over the states of a sample.
+pub(super) fn to_learn_at(trials: &[Trial]) -> Option<&Trial> {
+    let source = best(trials)?.preparation.velocity;
+    let of_its_source: Vec<&Trial> = trials.iter().filter(|trial| trial.preparation.velocity == source).collect();
+    let rests = |pair: &&[&Trial]| pair[0].error.is_finite() && pair[0].error <= LEAST_GAIN * pair[1].error;
+    let rests = of_its_source.windows(2).find(rests);
+    rests.map(|pair| pair[0]).or(of_its_source.last().copied())
 }
 
 /// What rigid body and friction leave of the recorded actuator, identified on the even blocks for the odd ones and the other
-/// way round.
+/// way round; and the error of the constants.
 ///
 /// # Errors
 /// `FRK-D009` where neither actuator nor friction is recorded.
-pub(super) fn cross_fitted(samples: &Samples, joint: &Joint) -> Result<(Vec<f64>, f64)> {
+pub(super) fn cross_fitted(samples: &Samples, joint: &Joint, acceleration_noise: f64) -> Result<(Vec<f64>, f64)> {
     let not_recorded = || Error::new(&codes::MISSING_COLUMN, "neither actuator nor friction is recorded");
     let recorded = samples.recorded.as_deref().ok_or_else(not_recorded)?;
-    let (given, terms) = match samples.friction {
+    let (given, mut terms) = match samples.friction {
         Some(_) => (vec![0.0; samples.len()], Vec::new()),
         None => (rigid_body::given_torque(samples, joint)?, rigid_body::terms(samples, joint)),
     };
     let filtered = samples.friction.as_deref().or(samples.actuator.as_deref()).unwrap_or_default();
-    let inertia_at = terms.iter().position(|term| term.kind.is_inertia());
-    let mut columns: Vec<Vec<f64>> =
-        terms.into_iter().filter(|term| term.kind != rigid_body::TermKind::TorqueOffset).map(|t| t.column).collect();
+    terms.retain(|term| term.kind != rigid_body::TermKind::TorqueOffset);
+    let target: Vec<f64> = filtered.iter().zip(&given).map(|(torque, given)| torque - given).collect();
+    let error = error_of_constants(samples, &terms, &target, acceleration_noise)?;
+    let mut columns: Vec<Vec<f64>> = terms.into_iter().map(|term| term.column).collect();
     columns.extend(smooth_friction_columns(samples.require_velocity()?));
     let blocks = block_of_rows(samples);
     let mut left = vec![0.0; samples.len()];
-    let mut inertia = 0.0;
     for held in 0..2 {
         let learnt: Vec<usize> = (0..samples.len()).filter(|&row| blocks[row] % 2 != held).collect();
         let pick = |column: &[f64]| learnt.iter().map(|&row| column[row]).collect::<Vec<f64>>();
         let own: Vec<Vec<f64>> = columns.iter().map(|column| pick(column)).collect();
-        let target: Vec<f64> = learnt.iter().map(|&row| filtered[row] - given[row]).collect();
-        let whole = std::iter::once(0..target.len()).collect::<Vec<_>>();
-        let fit = least_squares(&own, &target, &whole);
+        let whole = std::iter::once(0..learnt.len()).collect::<Vec<_>>();
+        let fit = least_squares(&own, &pick(&target), &whole);
         for row in (0..samples.len()).filter(|&row| blocks[row] % 2 == held) {
             let predicted: f64 = columns.iter().zip(&fit.coefficients).map(|(column, c)| c * column[row]).sum();
             left[row] = recorded[row] - given[row] - predicted;
         }
-        inertia += 0.5 * inertia_at.map_or(0.0, |index| fit.coefficients[index]);
     }
-    Ok((left, inertia + given_inertia(joint, samples)))
+    Ok((left, error))
 }
 
-fn given_inertia(joint: &Joint, samples: &Samples) -> f64 {
-    let factor = joint.actuator_per_torque(samples.actuator_unit).ok();
-    joint.rigid_body.inertia_kgm2.zip(factor).map_or(0.0, |(inertia, factor)| inertia * factor)
+/// Expected mean square, over the samples that slide, of what errors of rigid body and friction make of the torque: the scatter of the
+/// constants from block to block, and what noise of the acceleration takes of the inertia (errors in variables; Fuller 1987).
+fn error_of_constants(samples: &Samples, terms: &[Term], target: &[f64], acceleration_noise: f64) -> Result<f64> {
+    let velocity = samples.require_velocity()?;
+    let sliding = SLIDING_SPEED_SHARE * top_speed(velocity);
+    let rows: Vec<usize> = (0..velocity.len()).filter(|&row| velocity[row].abs() > sliding).collect();
+    let pick = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
+    let velocity = pick(velocity);
+    let mut columns: Vec<Vec<f64>> = terms.iter().map(|term| pick(&term.column)).collect();
+    columns.extend(BendingLaw::over(&velocity)?.columns(&velocity));
+    let fit = least_squares(&columns, &pick(target), &even_blocks(rows.len(), ERROR_BLOCKS));
+    let gram = DMatrix::from_fn(columns.len(), columns.len(), |i, j| dot(&columns[i], &columns[j]) / rows.len() as f64);
+    let scatter = (&gram * &fit.covariance).trace();
+    let Some(inertia) = terms.iter().position(|term| term.kind.is_inertia()) else { return Ok(scatter) };
+    let others: Vec<Vec<f64>> =
+        columns.iter().enumerate().filter(|(i, _)| *i != inertia).map(|(_, c)| c.clone()).collect();
+    let own = Columns::of(&others).residuals(&columns[inertia]);
+    let power = dot(&own, &own) / rows.len() as f64;
+    let share = acceleration_noise.powi(2) / power.max(f64::MIN_POSITIVE);
+    if share > MOST_ATTENUATION {
+        return Ok(f64::INFINITY);
+    }
+    let missing = fit.coefficients[inertia] * share / (1.0 - share);
+    Ok(scatter + missing * missing * (1.0 - share) * power)
 }
 
 /// Friction over velocity as a few smooth shapes that serve at any width: signs, viscous, their asymmetries, a constant.

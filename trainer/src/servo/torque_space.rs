@@ -285,7 +285,8 @@ fn given(samples: &Samples, commanded: &[Commanded<'_>], joint: &Joint) -> Resul
         let Some(payload) = &one.payload else { continue };
         let body = Body::of_payload(payload);
         for row in rows.clone() {
-            let pull = position.map_or(0.0, |position| body.gravity(position[row]));
+            let passed = samples.passed_share_of_sine(row);
+            let pull = position.map_or(0.0, |position| passed * body.gravity(position[row]));
             gravity[row] += pull;
             torque[row] += pull + acceleration.map_or(0.0, |acceleration| body.inertia * acceleration[row]);
         }

@@ -7,7 +7,7 @@ use crate::diagnose::infer::side::Side;
 use crate::diagnose::infer::size::{Size, Sizing};
 use crate::diagnose::infer::weighing::{FIRST_PRICE, Weighing, friction_of};
 use crate::diagnose::noise::autoregression::Noise;
-use crate::inference::evidence::Model;
+use crate::inference::evidence::{Candidate, Model};
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
 use crate::numerics::least_squares::weighted;
@@ -68,8 +68,10 @@ pub(crate) fn infer(
         let left = weighing.left(&candidates, real, &weighed, &likeliest);
         let of_members = weighted(&candidates.real, &weighing.own(&weighed, &likeliest));
         refine_shapes(hypotheses, &mut candidates, (real, simulated), &weighing, &field, &posterior, &noise);
+        let alone = best_alone(&weighing, &weighed);
         candidates = candidates.only(|member| {
             weighed[member.candidate].variants.len() <= member.variant
+                || alone[member.candidate] == Some(member.variant)
                 || useful.binary_search(&member).is_ok()
                 || weighing.shown.contains(&member)
         });
@@ -97,6 +99,16 @@ pub(crate) fn infer(
         sizing.of_set(&weighing, &weighed, &likeliest.members, least)
     });
     Inferred { candidates, posterior, sizes, least, alone, noise, temper, price }
+}
+
+/// The shape of each candidate that explains most by itself.
+fn best_alone(weighing: &Weighing, weighed: &[Candidate]) -> Vec<Option<usize>> {
+    let nothing = Model::new(&weighing.reduced, &[]);
+    let best = |candidate: &Candidate| {
+        let gains: Vec<f64> = candidate.variants.iter().map(|v| nothing.as_ref().map_or(0.0, |m| m.gain(v))).collect();
+        (0..gains.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))
+    };
+    weighed.iter().map(best).collect()
 }
 
 /// Sets with the member of each whose shape is refined: members of probable sets, and effects with a cause in the place of a function or an

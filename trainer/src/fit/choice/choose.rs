@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::fit::data::gather::Material;
+use crate::fit::filtered::predict_filtered;
 use crate::fit::model::HostModel;
-use crate::fit::predict::predict;
 use crate::numerics::regression::least_squares;
 use crate::numerics::statistics::{NORMAL_95, mean};
 use crate::samples::blocks::Split;
@@ -15,8 +15,9 @@ const CLEAR_SHARE: f64 = 0.1;
 /// A law that breaks physics has to be better by this many times the error that another needs.
 const WANTED: f64 = 2.0;
 
-/// Squared errors of one candidate on the rows that it is judged by, with their blocks: on the torque as filtered, where a
-/// difference stands out of less noise, and as recorded, where nothing hides behind the filter.
+/// Squared errors of one candidate on the rows that it is judged by, with their blocks: on the torque as filtered, by which candidates are compared,
+/// and as recorded, which is what is told. A controller answers the noise of its encoder, so that the recorded torque goes with the noise of
+/// the velocity that a law is evaluated at.
 #[derive(Clone, Debug, Default)]
 pub(in crate::fit) struct Trial {
     filtered: Vec<f64>,
@@ -27,11 +28,11 @@ pub(in crate::fit) struct Trial {
 impl Trial {
     /// Adds a model that was fitted without the locked blocks of `split`; where none is locked, all rows count.
     pub(in crate::fit) fn add(&mut self, model: &HostModel, material: &Material, split: &Split) -> Result<()> {
-        self.add_predicted(&predict(model, &material.samples)?.total(), material, split);
+        self.add_predicted(&predict_filtered(model, material)?, material, split);
         Ok(())
     }
 
-    /// Adds what was predicted of every sample without the locked blocks of `split`.
+    /// Adds what was predicted of the filtered torque at every sample without the locked blocks of `split`.
     pub(in crate::fit) fn add_predicted(&mut self, predicted: &[f64], material: &Material, split: &Split) {
         let samples = &material.samples;
         let recorded = samples.recorded.as_deref().unwrap_or_default();
@@ -40,16 +41,15 @@ impl Trial {
         let judged = if locked.is_empty() { (0..material.rows.len()).collect() } else { locked };
         for position in judged {
             let row = material.rows[position];
-            let predicted = predicted[row] + material.bend[row];
-            self.filtered.push((filtered[row] - predicted).powi(2));
-            self.recorded.push((recorded[row] - predicted).powi(2));
+            self.filtered.push((filtered[row] - predicted[row]).powi(2));
+            self.recorded.push((recorded[row] - predicted[row]).powi(2));
             self.labels.push(material.labels[position]);
         }
     }
 
     /// Whether `other` leaves less of the filtered torque, with 97.5 %.
     pub(in crate::fit) fn is_clearly_beaten_by(&self, other: &Self) -> bool {
-        let [gain, _] = self.gains_of(other);
+        let gain = self.gain_of(other);
         gain.mean > NORMAL_95 * gain.error
     }
 
@@ -63,10 +63,9 @@ impl Trial {
         self.mean_square().sqrt()
     }
 
-    /// By how much `other` has the smaller mean square as filtered, and as recorded.
-    fn gains_of(&self, other: &Self) -> [Gain; 2] {
-        let gain = |own: &[f64], rival: &[f64]| Gain::of(&self.labels, own, rival);
-        [gain(&self.filtered, &other.filtered), gain(&self.recorded, &other.recorded)]
+    /// By how much `other` has the smaller mean square as filtered.
+    fn gain_of(&self, other: &Self) -> Gain {
+        Gain::of(&self.labels, &self.filtered, &other.filtered)
     }
 }
 
@@ -121,8 +120,8 @@ impl Judge {
         let factor = if other.breaks_physics && !held.breaks_physics { WANTED } else { 1.0 };
         match self {
             Self::Locked => {
-                let [filtered, recorded] = held.trial.gains_of(other.trial);
-                filtered.mean > factor * filtered.error && recorded.mean > -recorded.error
+                let gain = held.trial.gain_of(other.trial);
+                gain.mean > factor * gain.error
             }
             Self::Penalty { effective } => {
                 let gain =

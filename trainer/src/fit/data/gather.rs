@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::turns::{self, Repetition};
 use crate::error::{Error, Result, codes};
-use crate::fit::options::Options;
 use crate::joint::Joint;
 use crate::numerics::derivatives::first_derivative;
 use crate::recording::Recording;
@@ -79,13 +78,12 @@ pub(in crate::fit) struct Material {
 
 /// # Errors
 /// As [`fit`](crate::fit::fit).
-pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, options: &Options) -> Result<Material> {
+pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, request: &Request) -> Result<Material> {
     let borrowed: Vec<&Recording> = recordings.iter().collect();
     for recording in recordings.iter().filter(|recording| recording.separated_friction().is_none()) {
         require_actuator(recording)?;
     }
-    let request = Request { rate_hz: options.rate_hz, ..Request::default() };
-    let planned = Preparation::plan(&borrowed, joint, &request)?;
+    let planned = Preparation::plan(&borrowed, joint, request)?;
     let planned = thinned(&borrowed, &planned, MOST_SAMPLES);
     let delay = torque_delay(&borrowed, joint, &planned);
     let preparation = Preparation { torque_delay_s: delay.put_back_s, ..planned };

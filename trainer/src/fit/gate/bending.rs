@@ -155,10 +155,10 @@ fn sentence(parameters: &[Parameter], largest: f64) -> String {
 mod tests {
     use super::*;
     use crate::fit::data::gather::gather;
-    use crate::fit::options::Options;
     use crate::joint::Joint;
     use crate::numerics::random::normal;
     use crate::recording::parse;
+    use crate::samples::Request;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use std::fmt::Write;
@@ -177,7 +177,7 @@ mod tests {
             writeln!(text, "{time},{},{}", (position / 2.4e-5).round() * 2.4e-5, torque + noise).unwrap();
         }
         let recording = parse("stuck.csv", text.as_bytes(), &Joint::default()).unwrap();
-        bending(&gather(&[recording], &Joint::default(), &Options::default()).unwrap()).unwrap()
+        bending(&gather(&[recording], &Joint::default(), &Request::default()).unwrap()).unwrap()
     }
 
     #[test]

@@ -8,12 +8,12 @@ pub(super) mod worth;
 
 use super::choice::choose::Trial;
 use super::data::gather::{Material, gather};
-use super::options::Options;
 use super::outcome::Soundness;
 use crate::error::Result;
 use crate::joint::Joint;
 use crate::parameter::Parameter;
 use crate::recording::Recording;
+use crate::samples::Request;
 use bending::{Bending, bending};
 use confounded::{Constant, Identified};
 use worth::{Worthless, worthless};
@@ -48,7 +48,7 @@ pub struct Identifiable {
 /// # Errors
 /// As [`fit`](super::fit), where nothing can be learnt at all.
 pub fn identifiable(recordings: &[Recording], joint: &Joint) -> Result<Identifiable> {
-    let material = gather(recordings, joint, &Options::default())?;
+    let material = gather(recordings, joint, &Request::default())?;
     let identified = Identified::by(&material);
     let unknown = identified.unknown();
     // What makes up for Coulomb friction says what has to be recorded.

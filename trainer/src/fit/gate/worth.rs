@@ -68,7 +68,7 @@ fn baseline(material: &Material, columns: &[Vec<f64>]) -> Option<Trial> {
             return None;
         }
         let predicted = |row: usize| {
-            let given = total[row] - material.target[row];
+            let given = total[row] - material.target[row] + material.bend[row];
             given + columns.iter().zip(&fit.coefficients).map(|(column, c)| c * column[row]).sum::<f64>()
         };
         trial.add_predicted(&(0..total.len()).map(predicted).collect::<Vec<_>>(), material, split);
@@ -80,9 +80,9 @@ fn baseline(material: &Material, columns: &[Vec<f64>]) -> Option<Trial> {
 mod tests {
     use super::*;
     use crate::fit::data::gather::gather;
-    use crate::fit::options::Options;
     use crate::joint::Joint;
     use crate::recording::parse;
+    use crate::samples::Request;
     use std::fmt::Write;
 
     /// A minute at 100 Hz of position and torque over time (s); `None` where nothing of it moves long enough for a fit.
@@ -94,7 +94,7 @@ mod tests {
             writeln!(text, "{time},{position},{}", torque + 0.02 * (31.0 * time * time).sin()).unwrap();
         }
         let recording = parse("joint.csv", text.as_bytes(), &Joint::default()).unwrap();
-        gather(&[recording], &Joint::default(), &Options::default()).ok()
+        gather(&[recording], &Joint::default(), &Request::default()).ok()
     }
 
     /// What is said of Coulomb and viscous friction beside rigid body and offset.

@@ -134,7 +134,7 @@ pub(in crate::fit) fn search(
 }
 
 /// A law fitted from constants that some of the rows gave it, and what is to be said of its sign.
-fn settled(
+pub(in crate::fit) fn settled(
     (structure, constants): (&Structure, &[f64]),
     data: &LawData,
     intervals: Interval,

@@ -5,5 +5,6 @@ pub(in crate::fit) mod activations;
 pub(in crate::fit) mod builder;
 pub(in crate::fit) mod formula;
 pub(in crate::fit) mod learn;
+pub(in crate::fit) mod next_width;
 pub(in crate::fit) mod simple;
 mod tables;

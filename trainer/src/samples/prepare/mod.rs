@@ -181,6 +181,7 @@ fn unfiltered(recording: &Recording, rows: &Range<usize>) -> Samples {
         segments: std::iter::once(0..rows.len()).collect(),
         recordings: vec![(recording.label.clone(), 0..rows.len())],
         rate_hz: None,
+        sigma_s: None,
         filter: "friction recorded already separated; not filtered".to_owned(),
     }
 }
@@ -201,6 +202,7 @@ fn empty(recording: &Recording, preparation: &Preparation, rate_hz: Option<f64>)
         segments: Vec::new(),
         recordings: Vec::new(),
         rate_hz,
+        sigma_s: preparation.sigma_s,
         filter: preparation.to_string(),
     }
 }

@@ -6,11 +6,13 @@ use super::request::Against;
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
+use crate::diagnose::infer::answer::LEAST_NAMED_SHARE;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;
 use crate::joint::{self, Joint};
+use crate::numerics::statistics::root_mean_square;
 use crate::physics::JointState;
 use crate::physics::units::Units;
 use crate::recording::{Quantity, Recording};
@@ -18,6 +20,12 @@ use crate::workflow::recordings::{motion, units};
 use crate::workflow::source::Reading;
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
+
+/// Torque by the noise of the position over the least effect from which on it biases what is found: its power is a twenty-fifth of that effect's.
+const BIASING_SHARE: f64 = 0.2;
+
+/// Time over which a filter of about 22 Hz, the widest of most recordings, averages, s.
+const PASSED_S: f64 = 0.02;
 
 /// What the recording is compared with.
 pub(super) enum Compared {
@@ -46,22 +54,33 @@ impl Compared {
     }
 }
 
+/// A simulation: as its simulator computed it, from which its law is learned; of a commanded joint as the recording would have measured it, whose rows
+/// stand beside the recording's; and what its actuator was told.
+pub(super) struct Simulated {
+    pub(super) computed: Recording,
+    pub(super) measured_alike: Option<Recording>,
+    pub(super) told: Option<Commands>,
+}
+
 /// The real recordings, with what the actuators of commanded joints were told, and what they are compared with; `in_one_model` puts the rows of a
 /// simulation beside theirs.
 pub(super) fn comparison(
     against: &Against<'_>,
     (real, told): (&[Recording], &[Commands]),
-    simulation: Option<Recording>,
+    simulation: Option<Simulated>,
     joint: &Joint,
     in_one_model: bool,
 ) -> Result<(Comparison, Compared)> {
-    if let Some(simulation) = simulation {
-        let simulated = as_recorded(simulation, &real[0], joint)?;
+    if let Some(Simulated { computed, measured_alike, told: told_simulation }) = simulation {
+        let simulated = as_recorded(computed, &real[0], joint)?;
         let mut signals = joined((real, told), joint)?;
-        let simulation = Signals::of(&simulated, joint)?;
+        let told_simulation = told_simulation.as_slice();
+        let simulation = joined((std::slice::from_ref(&simulated), told_simulation), joint)?;
         let state = states(&signals, &real[0])?;
+        // What a commanded joint has to put out, which is what its gear carries, is all of the law.
+        let is_static = in_one_model && told_simulation.is_empty();
         let learned =
-            if in_one_model { learn_static(&simulation, &signals) } else { learn_simulation(&simulation, &signals) };
+            if is_static { learn_static(&simulation, &signals) } else { learn_simulation(&simulation, &signals) };
         let law =
             learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
         let given = given_rigid_body(&real[0], joint)?;
@@ -69,10 +88,22 @@ pub(super) fn comparison(
         if !told.is_empty() {
             signals.load = Some(load_by_law(&signals, &reference));
         }
+        let friction = reference.torque.iter().zip(&reference.rigid_body).map(|(torque, body)| torque - body);
+        let friction = root_mean_square(&friction.collect::<Vec<f64>>());
         let mut comparison = Comparison::with(signals, reference);
-        if in_one_model {
-            let of_simulation = law.at(&simulation.states());
-            comparison = comparison.beside(simulation, of_simulation);
+        let measured = match measured_alike {
+            Some(measured) => Some(joined((&[as_recorded(measured, &real[0], joint)?], told_simulation), joint)?),
+            None => None,
+        };
+        let is_biased =
+            |measured: &Signals| noise_torque(&simulation, measured) > BIASING_SHARE * LEAST_NAMED_SHARE * friction;
+        if in_one_model || measured.as_ref().is_some_and(is_biased) {
+            let mut rows = measured.unwrap_or(simulation);
+            let of_simulation = law.at(&rows.states());
+            if !told_simulation.is_empty() {
+                rows.load = Some(load_by_law(&rows, &of_simulation));
+            }
+            comparison = comparison.beside(rows, of_simulation);
         }
         Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
     } else if let Against::Model(image) = against {
@@ -90,6 +121,16 @@ pub(super) fn comparison(
     } else {
         Ok((joined((real, told), joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
+}
+
+/// Torque, root mean square over what a filter passes, that the noise of the position makes through the law of the commands. Where it is little beside the
+/// least effect, columns by the recorded position are those of the joint itself, and no row of a simulation has to tell what noise makes of them.
+fn noise_torque(computed: &Signals, measured: &Signals) -> f64 {
+    let together = ((PASSED_S / computed.period).round() as usize).max(1);
+    let noise: Vec<f64> =
+        computed.torque.iter().zip(&measured.torque).map(|(computed, noisy)| noisy - computed).collect();
+    let means = noise.chunks(together).map(|part| part.iter().sum::<f64>() / part.len() as f64);
+    root_mean_square(&means.collect::<Vec<f64>>())
 }
 
 /// What the gear of a commanded joint carries, N m a sample: the rigid body by a law, beside what a payload takes. What the actuator did put

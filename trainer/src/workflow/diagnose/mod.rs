@@ -38,9 +38,10 @@ use crate::recording::{Quantity, Recording};
 use crate::report::tell::evidence::planned_motion;
 use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
+use crate::samples::PositionNoise;
 use crate::servo::{Identified, Load};
 use commanded::{Commands, under_torque};
-use compare::{Compared, comparison};
+use compare::{Compared, Simulated, comparison};
 use improvement::improved_image;
 pub use improvement::{Improvement, Written};
 pub use request::{Against, BaseKind, Request, Told};
@@ -97,14 +98,25 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     }
     let simulation = compare::simulation(&request.against, joint, reading)?;
     let actuator = commanded::actuator(&recordings, simulation.as_ref(), joint)?;
-    // A commanded joint is compared with the law of its simulation, whose rows stand in the model only where that is asked for.
     let by_likelihood = request.by_likelihood || actuator.is_some() && simulation.is_some();
     // A law of the load has to be told all of it; else the load follows from the motion, so that the torque does not explain itself.
     let load = if request.against.reads_load() { Load::OfActuator } else { Load::OfPayload };
-    let simulation =
-        simulation.map(|simulation| under_torque(simulation, &joint.of_simulation(), actuator.as_ref(), load));
     // From here on the constants of the actuator are known.
     let joint = &actuator.as_ref().map_or_else(|| joint.clone(), |actuator| actuator.joint(joint));
+    // What reads the position of a commanded joint is biased by its noise, and has to be on both sides.
+    let noise = PositionNoise::of(&recordings[0]).filter(|_| actuator.is_some());
+    let simulation = simulation.map(|simulation| -> Result<_> {
+        let joint = joint.of_simulation();
+        let told = Commands::of(&simulation, &joint, load)?;
+        let searched = |simulation: Recording| -> Result<Recording> {
+            let simulation = under_torque(simulation, &joint, actuator.as_ref(), load)?;
+            let excerpt = stretches_to_search(std::slice::from_ref(&simulation), reading.share_of_default());
+            Ok(excerpt.map_or(simulation, |mut excerpt| excerpt.swap_remove(0)))
+        };
+        let measured_alike = noise.map(|noise| searched(noise.on(simulation.clone()))).transpose()?;
+        Ok(Simulated { computed: searched(simulation)?, measured_alike, told })
+    });
+    let simulation = simulation.transpose()?;
     let told = recordings.iter().filter_map(|recording| Commands::of(recording, joint, load).transpose());
     let told = told.collect::<Result<Vec<_>>>()?;
     let recordings = recordings.into_iter().map(|recording| under_torque(recording, joint, actuator.as_ref(), load));
@@ -114,12 +126,6 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
     let real = &recordings[0];
     let excerpt = stretches_to_search(&recordings, reading.share_of_default());
     let real_searched = excerpt.as_deref().unwrap_or(&recordings);
-    let simulation = simulation.transpose()?.map(|simulation| {
-        match stretches_to_search(std::slice::from_ref(&simulation), reading.share_of_default()) {
-            Some(mut excerpt) => excerpt.swap_remove(0),
-            None => simulation,
-        }
-    });
     let (comparison, compared) =
         comparison(&request.against, (real_searched, &told), simulation, joint, request.by_likelihood)?;
     let told_searched = excerpt.is_some().then(|| Searched::new(comparison.signals.time.len(), &recordings));

@@ -1,0 +1,146 @@
+//! Noise of a recorded position beside its steps: how large it is and how it hangs together from row to row, and a simulated position with as much.
+//!
+//! A law of commands, an inertia and a delay all read the position, so that its noise biases them (errors in variables; Fuller 1987). Where a recording
+//! is compared with a simulation, one that was measured alike is biased alike.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use super::grid::Grid;
+use crate::numerics::random::normal;
+use crate::numerics::statistics::quantile;
+use crate::recording::{Quantity, Recording};
+
+/// Products of the fourth difference's weights 1, -4, 6, -4, 1 so many rows apart, summed: what noise of that correlation has of its variance.
+const LAGGED_PRODUCTS: [f64; 5] = [70.0, -56.0, 28.0, -8.0, 1.0];
+/// Largest pole that is looked for: noise slower than twenty rows is a motion.
+const LARGEST_POLE: f64 = 0.95;
+/// Differences count up to so many of their usual size: an impact is no noise, and heavy tails are.
+const MOST_DEVIATIONS: f64 = 8.0;
+/// Bisections of the pole: to a millionth.
+const BISECTIONS: usize = 20;
+/// Seed of the noise that is added: one recording, one answer.
+const SEED: u64 = 1;
+
+/// First-order autoregressive noise of a position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PositionNoise {
+    /// rad2 or m2
+    variance: f64,
+    /// Correlation of a row with the one before.
+    pole: f64,
+    period_s: f64,
+    /// Step of the encoder, rad or m; 0 where there is none.
+    step: f64,
+}
+
+impl PositionNoise {
+    /// Of a recording; `None` without position and clock.
+    pub(crate) fn of(recording: &Recording) -> Option<Self> {
+        let time = recording.values(Quantity::Time)?;
+        let position = recording.values(Quantity::Position)?;
+        let grid = Grid::of(recording, time);
+        let longest = grid.segments.iter().max_by_key(|segment| segment.points)?;
+        let values = grid.values(longest, time, position);
+        let step = recording.health.position_resolution.unwrap_or(0.0);
+        let [fine, coarse] = [1, 2].map(|stride| fourth_difference_variance(&values, stride));
+        let pole = pole(coarse / fine);
+        let variance = (fine / gain(pole) - step * step / 12.0).max(0.0);
+        Some(Self { variance, pole, period_s: grid.period_s, step })
+    }
+
+    /// A recording as it would be measured with this noise and these steps, as far as its position has less of both.
+    pub(crate) fn on(&self, recording: Recording) -> Recording {
+        let own = Self::of(&recording);
+        let (Some(own), Some(position)) = (own, recording.values(Quantity::Position)) else { return recording };
+        let pole = self.pole.powf(own.period_s / self.period_s);
+        let missing = (self.density() - own.density()).max(0.0);
+        let deviation = (missing / own.period_s * (1.0 - pole) / (1.0 + pole)).sqrt();
+        let mut random = ChaCha8Rng::seed_from_u64(SEED);
+        let mut noise = deviation * normal(&mut random);
+        let step = if self.step > own.step { self.step } else { 0.0 };
+        let measured = position.iter().map(|position| {
+            let noisy = position + noise;
+            noise = pole * noise + deviation * (1.0 - pole * pole).sqrt() * normal(&mut random);
+            if step > 0.0 { (noisy / step).round() * step } else { noisy }
+        });
+        let measured = measured.collect();
+        recording.with_position(measured)
+    }
+
+    /// Spectral density below the pole, which rates leave as it is, rad2 s or m2 s.
+    fn density(&self) -> f64 {
+        self.variance * self.period_s * (1.0 + self.pole) / (1.0 - self.pole)
+    }
+}
+
+/// Variance of fourth differences so many rows apart, which hold next to nothing of a motion.
+fn fourth_difference_variance(values: &[f64], stride: usize) -> f64 {
+    let at = |i: usize, lag: usize| values[i + lag * stride];
+    let count = values.len().saturating_sub(4 * stride);
+    let differences: Vec<f64> =
+        (0..count).map(|i| at(i, 0) - 4.0 * at(i, 1) + 6.0 * at(i, 2) - 4.0 * at(i, 3) + at(i, 4)).collect();
+    let most = MOST_DEVIATIONS * quantile(differences.iter().map(|x| x.abs()), 0.5) / 0.6745;
+    let usual = differences.iter().map(|x| x.abs().min(most).powi(2));
+    usual.sum::<f64>() / count.max(1) as f64
+}
+
+/// Variance of the fourth difference of noise of variance one with this pole.
+fn gain(pole: f64) -> f64 {
+    let lagged = (1..).zip(&LAGGED_PRODUCTS[1..]).map(|(lag, product)| 2.0 * product * pole.powi(lag));
+    LAGGED_PRODUCTS[0] + lagged.sum::<f64>()
+}
+
+/// The pole at which differences over two rows have this variance over that of differences over one.
+fn pole(ratio: f64) -> f64 {
+    let of = |pole: f64| gain(pole * pole) / gain(pole);
+    let (mut low, mut high) = (0.0, LARGEST_POLE);
+    if !ratio.is_finite() || ratio <= of(low) {
+        return low;
+    }
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        *(if of(middle) < ratio { &mut low } else { &mut high }) = middle;
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::joint::Joint;
+    use crate::recording::parse;
+
+    /// A swing at so many samples a second under noise of this deviation (rad) and pole.
+    fn swing(rate_hz: f64, deviation: f64, pole: f64) -> Recording {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut noise = 0.0;
+        let mut text = String::from("time_s,position_rad,torque_Nm\n");
+        for i in 0..8000 {
+            let time = f64::from(i) / rate_hz;
+            noise = pole * noise + deviation * (1.0 - pole * pole).sqrt() * normal(&mut random);
+            let position = 0.8 * (2.3 * time).sin() + 0.2 * (5.1 * time).sin() + noise;
+            text += &format!("{time},{position},{}\n", time.sin());
+        }
+        parse("swing.csv", text.as_bytes(), &Joint::default()).unwrap()
+    }
+
+    #[test]
+    fn deviation_and_pole_come_back() {
+        for (deviation, pole) in [(1e-4, 0.0), (1e-3, 0.3), (1e-3, 0.6)] {
+            let found = PositionNoise::of(&swing(250.0, deviation, pole)).unwrap();
+            assert!((found.variance.sqrt() / deviation - 1.0).abs() < 0.15, "{deviation} {pole}: {found:?}");
+            assert!((found.pole - pole).abs() < 0.15, "{deviation} {pole}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_position_without_noise_gets_as_much_whatever_its_rate() {
+        let noise = PositionNoise::of(&swing(250.0, 5e-4, 0.5)).unwrap();
+        for rate_hz in [250.0, 500.0] {
+            let measured = noise.on(swing(rate_hz, 0.0, 0.0));
+            let found = PositionNoise::of(&measured).unwrap();
+            assert!((found.density() / noise.density() - 1.0).abs() < 0.5, "{rate_hz}: {found:?} for {noise:?}");
+        }
+    }
+}
