@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use frikan_tests::command::run;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
 use serde_json::Value;
 
 /// What a pendulum and its drive do otherwise than the simulation.
@@ -20,9 +22,11 @@ struct Joint {
     delay: f64,
     /// Position error up to which the drive does nothing, rad.
     dead_band: f64,
+    /// Deviation of the noise of the logged position, rad.
+    noise: f64,
 }
 
-const AS_SIMULATED: Joint = Joint { load: 0.0, kp: 40.0, limit: f64::INFINITY, delay: 0.0, dead_band: 0.0 };
+const AS_SIMULATED: Joint = Joint { load: 0.0, kp: 40.0, limit: f64::INFINITY, delay: 0.0, dead_band: 0.0, noise: 0.0 };
 
 /// A pendulum under a PD command of 2 kHz, logged every 4 ms by an encoder of 16 bits: friction of 0.5 N m, and what the gear turns into
 /// friction of the torque that it carries. Written apart from the program's own plant.
@@ -33,11 +37,15 @@ fn log(at: &Path, name: &str, joint: Joint, phase: f64) {
     let rate = |t: f64| waves.iter().map(|(a, w, p)| a * w * (w * t + p).cos()).sum::<f64>();
     let (mut q, mut v) = (reference(0.0), rate(0.0));
     let mut text = "time_s,position_rad,reference_position_rad,reference_velocity_rad_s\n".to_owned();
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    // Twelve uniform draws have a variance of one.
+    let mut uniform = || f64::from(random.next_u32()) / f64::from(u32::MAX);
+    let mut noise = || joint.noise * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0);
     for i in 0..80_000 {
         let t = f64::from(i) * STEP_S;
         if i % 8 == 0 {
             let count = TAU / 65536.0;
-            writeln!(text, "{t:.4},{:.9},{:.9},{:.9}", (q / count).round() * count, reference(t), rate(t)).unwrap();
+            writeln!(text, "{t:.4},{:.9},{:.9},{:.9}", ((q + noise()) / count).round() * count, reference(t), rate(t)).unwrap();
         }
         let told = t - joint.delay;
         let error = reference(told) - q;
@@ -89,6 +97,19 @@ fn what_a_simulation_of_a_commanded_joint_leaves_out_is_named_from_positions() {
     log(at, "real.csv", Joint { load: 0.2, ..AS_SIMULATED }, 0.8);
     let (_, sets) = found(at, KNOWN);
     assert!(sets.iter().flatten().any(|name| name == "load_friction"), "{sets:?}");
+}
+
+/// Gain, delay, dead band and inertia all read the position, as the torque of the commands does.
+#[test]
+fn noise_of_the_position_is_no_effect_that_has_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    log(at, "simulation.csv", AS_SIMULATED, 0.3);
+    for phase in [0.8, 1.7] {
+        log(at, "real.csv", Joint { noise: 2e-4, ..AS_SIMULATED }, phase);
+        let (_, sets) = found(at, KNOWN);
+        assert!(sets.iter().flatten().all(|name| name == "unknown"), "{phase}: {sets:?}");
+    }
 }
 
 /// The first parameter of a name among all findings.

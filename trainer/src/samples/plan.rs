@@ -1,5 +1,5 @@
-//! Chooses the one filter: its width and the source of the velocity by what they leave of the recorded torque, its output rate
-//! by its width (rules P1 and P2).
+//! Chooses the one filter: its width by the error of the constants behind it, the source of the velocity by what it leaves of the recorded torque,
+//! its output rate by its width (rules P1 and P2).
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -62,9 +62,8 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// Chooses filter, rate and source of the velocity for recordings of one joint by what is left of the recorded actuator on
-    /// blocks held out, with inertia and friction identified at each width: the shortest at which the inertia is that of the
-    /// width that leaves least.
+    /// Chooses filter, rate and source of the velocity for recordings of one joint: the source that leaves least of the recorded actuator on blocks
+    /// held out, and the shortest filter behind which noise of the acceleration has little part in the error of inertia, gravity and friction.
     ///
     /// # Errors
     /// `FRK-D009` when motion or actuator is missing, `FRK-D016` when the velocity hardly changes, `FRK-D017` when a

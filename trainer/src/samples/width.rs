@@ -1,9 +1,11 @@
-//! Width of the filter and source of the velocity, chosen by what they leave of the actuator as recorded.
+//! Width of the filter and source of the velocity.
 //!
-//! Every channel passes the same filter, but a prediction is scored on torque that did not: noise of the acceleration that a
-//! narrow filter lets through, and motion that a wide one takes away, both stand in the error. Inertia, gravity and friction are
-//! identified anew at every width, on other blocks than those that are scored, so that an inertia which noise has attenuated
-//! (errors in variables; Fuller 1987) cannot recommend its own width.
+//! For a prediction, and of two sources of the velocity, the one counts that leaves least of the actuator as recorded: noise of the acceleration that
+//! a narrow filter lets through, and motion that a wide one takes away, both stand in that. Inertia, gravity and friction are identified anew at
+//! every width, on other blocks than those that are scored.
+//!
+//! For learning the error of the constants counts. It falls with the width as long as noise of the position makes it, which scatters them and takes
+//! part of the inertia (errors in variables; Fuller 1987), and then stays: torque and states pass the same filter.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -29,7 +31,7 @@ const BLOCKS: usize = 20;
 /// [`STEP`]^5 = 5.7 a step, so that it has an eighth of the error at most where a step brings less.
 const LEAST_GAIN: f64 = 1.1;
 /// Share of an acceleration's power beside the other columns that may be its noise: beyond half, nothing is known of the inertia.
-const MOST_ATTENUATION: f64 = 0.5;
+const MOST_NOISE_SHARE: f64 = 0.5;
 /// Where the smoothed signs of the velocity have three quarters of their height, as shares of the top speed: sharp as
 /// Coulomb friction, and wide as what a Stribeck curve adds to it.
 const SIGN_WIDTHS: [f64; 2] = [0.02, 0.1];
@@ -175,7 +177,7 @@ fn error_of_constants(samples: &Samples, terms: &[Term], target: &[f64], acceler
     let own = Columns::of(&others).residuals(&columns[inertia]);
     let power = dot(&own, &own) / rows.len() as f64;
     let share = acceleration_noise.powi(2) / power.max(f64::MIN_POSITIVE);
-    if share > MOST_ATTENUATION {
+    if share > MOST_NOISE_SHARE {
         return Ok(f64::INFINITY);
     }
     let missing = fit.coefficients[inertia] * share / (1.0 - share);

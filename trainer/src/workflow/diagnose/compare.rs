@@ -71,41 +71,8 @@ pub(super) fn comparison(
     joint: &Joint,
     in_one_model: bool,
 ) -> Result<(Comparison, Compared)> {
-    if let Some(Simulated { computed, measured_alike, told: told_simulation }) = simulation {
-        let simulated = as_recorded(computed, &real[0], joint)?;
-        let mut signals = joined((real, told), joint)?;
-        let told_simulation = told_simulation.as_slice();
-        let simulation = joined((std::slice::from_ref(&simulated), told_simulation), joint)?;
-        let state = states(&signals, &real[0])?;
-        // What a commanded joint has to put out, which is what its gear carries, is all of the law.
-        let is_static = in_one_model && told_simulation.is_empty();
-        let learned =
-            if is_static { learn_static(&simulation, &signals) } else { learn_simulation(&simulation, &signals) };
-        let law =
-            learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
-        let given = given_rigid_body(&real[0], joint)?;
-        let reference = law.at(&state);
-        if !told.is_empty() {
-            signals.load = Some(load_by_law(&signals, &reference));
-        }
-        let friction = reference.torque.iter().zip(&reference.rigid_body).map(|(torque, body)| torque - body);
-        let friction = root_mean_square(&friction.collect::<Vec<f64>>());
-        let mut comparison = Comparison::with(signals, reference);
-        let measured = match measured_alike {
-            Some(measured) => Some(joined((&[as_recorded(measured, &real[0], joint)?], told_simulation), joint)?),
-            None => None,
-        };
-        let is_biased =
-            |measured: &Signals| noise_torque(&simulation, measured) > BIASING_SHARE * LEAST_NAMED_SHARE * friction;
-        if in_one_model || measured.as_ref().is_some_and(is_biased) {
-            let mut rows = measured.unwrap_or(simulation);
-            let of_simulation = law.at(&rows.states());
-            if !told_simulation.is_empty() {
-                rows.load = Some(load_by_law(&rows, &of_simulation));
-            }
-            comparison = comparison.beside(rows, of_simulation);
-        }
-        Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
+    if let Some(simulated) = simulation {
+        with_simulation(simulated, (real, told), joint, in_one_model)
     } else if let Against::Model(image) = against {
         // The image carries the rigid body of the joint file already; what is recorded is handed to it.
         let bare = Joint { rigid_body: joint::RigidBody::default(), ..joint.clone() };
@@ -121,6 +88,47 @@ pub(super) fn comparison(
     } else {
         Ok((joined((real, told), joint)?.into(), Compared::Itself(Box::new(given_rigid_body(&real[0], joint)?))))
     }
+}
+
+/// The same with a simulation.
+fn with_simulation(
+    Simulated { computed, measured_alike, told: told_simulation }: Simulated,
+    (real, told): (&[Recording], &[Commands]),
+    joint: &Joint,
+    in_one_model: bool,
+) -> Result<(Comparison, Compared)> {
+    let simulated = as_recorded(computed, &real[0], joint)?;
+    let mut signals = joined((real, told), joint)?;
+    let told_simulation = told_simulation.as_slice();
+    let simulation = joined((std::slice::from_ref(&simulated), told_simulation), joint)?;
+    let state = states(&signals, &real[0])?;
+    // What a commanded joint has to put out, which is what its gear carries, is all of the law.
+    let is_static = in_one_model && told_simulation.is_empty();
+    let learned = if is_static { learn_static(&simulation, &signals) } else { learn_simulation(&simulation, &signals) };
+    let law = learned.map_err(|error| Error::new(&codes::NO_MOTION, error.to_string()).in_file(simulated.file()))?;
+    let given = given_rigid_body(&real[0], joint)?;
+    let reference = law.at(&state);
+    if !told.is_empty() {
+        signals.load = Some(load_by_law(&signals, &reference));
+    }
+    let friction = reference.torque.iter().zip(&reference.rigid_body).map(|(torque, body)| torque - body);
+    let friction = root_mean_square(&friction.collect::<Vec<f64>>());
+    let mut comparison = Comparison::with(signals, reference);
+    let measured = match measured_alike {
+        Some(measured) => Some(joined((&[as_recorded(measured, &real[0], joint)?], told_simulation), joint)?),
+        None => None,
+    };
+    let is_biased =
+        |measured: &Signals| noise_torque(&simulation, measured) > BIASING_SHARE * LEAST_NAMED_SHARE * friction;
+    if in_one_model || measured.as_ref().is_some_and(is_biased) {
+        let mut rows = measured.unwrap_or(simulation);
+        let of_simulation = law.at(&rows.states());
+        if !told_simulation.is_empty() {
+            rows.load = Some(load_by_law(&rows, &of_simulation));
+        }
+        comparison = comparison.beside(rows, of_simulation);
+    }
+    Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
 }
 
 /// Torque, root mean square over what a filter passes, that the noise of the position makes through the law of the commands. Where it is little beside the
