@@ -45,7 +45,8 @@ fn log(at: &Path, name: &str, joint: Joint, phase: f64) {
         let t = f64::from(i) * STEP_S;
         if i % 8 == 0 {
             let count = TAU / 65536.0;
-            writeln!(text, "{t:.4},{:.9},{:.9},{:.9}", ((q + noise()) / count).round() * count, reference(t), rate(t)).unwrap();
+            writeln!(text, "{t:.4},{:.9},{:.9},{:.9}", ((q + noise()) / count).round() * count, reference(t), rate(t))
+                .unwrap();
         }
         let told = t - joint.delay;
         let error = reference(told) - q;
