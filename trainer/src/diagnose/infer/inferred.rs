@@ -68,10 +68,14 @@ pub(crate) fn infer(
         let left = weighing.left(&candidates, real, &weighed, &likeliest);
         let of_members = weighted(&candidates.real, &weighing.own(&weighed, &likeliest));
         refine_shapes(hypotheses, &mut candidates, (real, simulated), &weighing, &field, &posterior, &noise);
-        let alone = best_alone(&weighing, &weighed);
+        let alone = gains_alone(&weighing, &weighed);
+        let is_best = |member: Member| {
+            let gains = &alone[member.candidate];
+            (0..gains.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b])) == Some(member.variant)
+        };
         candidates = candidates.only(|member| {
             weighed[member.candidate].variants.len() <= member.variant
-                || alone[member.candidate] == Some(member.variant)
+                || is_best(member)
                 || useful.binary_search(&member).is_ok()
                 || weighing.shown.contains(&member)
         });
@@ -86,14 +90,8 @@ pub(crate) fn infer(
     let price = price_at(temper);
     let field = Field { price, temper, ..field };
     let posterior = Posterior::of(&field, field.search());
-    let nothing = Model::new(&weighing.reduced, &[]);
-    let alone = weighed
-        .iter()
-        .map(|candidate| {
-            let gains = candidate.variants.iter().map(|v| nothing.as_ref().map_or(0.0, |m| m.gain(v)));
-            temper * gains.fold(f64::NEG_INFINITY, f64::max)
-        })
-        .collect();
+    let best = |gains: Vec<f64>| temper * gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let alone = gains_alone(&weighing, &weighed).into_iter().map(best).collect();
     let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
         let sizing = Sizing { candidates: &candidates, real, temper };
         sizing.of_set(&weighing, &weighed, &likeliest.members, least)
@@ -101,14 +99,11 @@ pub(crate) fn infer(
     Inferred { candidates, posterior, sizes, least, alone, noise, temper, price }
 }
 
-/// The shape of each candidate that explains most by itself.
-fn best_alone(weighing: &Weighing, weighed: &[Candidate]) -> Vec<Option<usize>> {
+/// Nats of every shape of each candidate by itself.
+fn gains_alone(weighing: &Weighing, weighed: &[Candidate]) -> Vec<Vec<f64>> {
     let nothing = Model::new(&weighing.reduced, &[]);
-    let best = |candidate: &Candidate| {
-        let gains: Vec<f64> = candidate.variants.iter().map(|v| nothing.as_ref().map_or(0.0, |m| m.gain(v))).collect();
-        (0..gains.len()).max_by(|a, b| gains[*a].total_cmp(&gains[*b]))
-    };
-    weighed.iter().map(best).collect()
+    let gain = |variant| nothing.as_ref().map_or(0.0, |model| model.gain(variant));
+    weighed.iter().map(|candidate| candidate.variants.iter().map(gain).collect()).collect()
 }
 
 /// Sets with the member of each whose shape is refined: members of probable sets, and effects with a cause in the place of a function or an
