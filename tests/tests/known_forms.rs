@@ -4,7 +4,7 @@ use frikan_tests::exhaustive;
 use frikan_tests::laws::{data, joint, velocity};
 use frikan_tests::paper::{JOINTS, SAMPLES, SMOOTHING, with_noise};
 use frikan_trainer::kan::Random;
-use frikan_trainer::law::{FormFit, KnownForm, fit_form, rank_forms};
+use frikan_trainer::law::{FormFit, KnownForm, fit_form, rank_forms, remainder};
 
 const NAMES: [&str; 4] = ["coulomb_torque", "stribeck_extra_torque", "stribeck_velocity", "viscous_coefficient"];
 
@@ -54,4 +54,18 @@ fn the_form_that_generated_the_data_ranks_first_among_the_known_ones() {
     let clean: Vec<f64> = v.iter().map(|v| 8.0 * (60.0 * v).tanh() + 3.0 * v).collect();
     let ranked = rank_forms(&data(vec![velocity(v)], with_noise(&clean, 0.03, &mut random))).unwrap();
     assert_eq!(ranked[0].0, KnownForm::CoulombViscous);
+}
+
+#[test]
+fn a_law_is_not_itself_at_the_end_of_its_range_or_with_a_negative_coulomb_torque() {
+    let mut random = Random::new(6, 0);
+    let v: Vec<f64> = (0..800).map(|_| random.uniform(-1.0, 1.0)).collect();
+    let is_stribeck = |coulomb: f64, stribeck_velocity: f64| {
+        let torque = |v: &f64| (60.0 * v).tanh() * (coulomb + 3.0 * (-v.abs() / stribeck_velocity).exp()) + v;
+        let data = data(vec![velocity(v.clone())], v.iter().map(torque).collect());
+        remainder(&KnownForm::Stribeck.structure(), &data, None).unwrap().converged
+    };
+    assert!(is_stribeck(2.0, 0.1), "a law within its bounds");
+    assert!(!is_stribeck(2.0, 4.0), "a decline over four times the largest speed");
+    assert!(!is_stribeck(-1.0, 0.9), "a Coulomb torque of -1 N m");
 }

@@ -131,6 +131,12 @@ pub trait Hypothesis: Sync {
         None
     }
 
+    /// Change of its first column with the recorded torque at every sample, 1: what it takes over of the noise of that torque, and so explains
+    /// without being there. `None` where it is the motion's.
+    fn slope_over_recorded_torque(&self, _state: &JointState, _shape: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// Whether coefficients are a joint's: friction of its own takes energy from every motion.
     fn is_passive(&self, _state: &JointState, _shape: &[f64], _coefficients: &[f64]) -> bool {
         true

@@ -61,6 +61,8 @@ pub(crate) struct Candidates {
     pub real: Vec<Vec<f64>>,
     /// The same at the rows of the simulation.
     pub simulated: Vec<Vec<f64>>,
+    /// What the noise of the recorded torque adds to the product of each column with it, both whitened.
+    pub own_noise: Vec<f64>,
 }
 
 impl Candidates {
@@ -126,6 +128,10 @@ impl Candidates {
         for (shape, [of_real, of_simulated]) in shapes.into_iter().zip(built) {
             let (columns, sizes) = self.add_columns(real, simulated, of_real, of_simulated);
             if !columns.is_empty() {
+                let own_noise = real.product_with_own_noise(hypotheses, &label, &shape);
+                if let (Some(first), Some(size)) = (self.own_noise.get_mut(columns.start), sizes.first()) {
+                    *first = if *size > 0.0 { own_noise / size } else { 0.0 };
+                }
                 let relative_variance = vec![1.0; columns.len()];
                 let known = named.and_then(|hypothesis| hypothesis.known_coefficient(&shape)).map(|c| c * sizes[0]);
                 // A column that this recording does not show is expected nowhere.
@@ -193,6 +199,7 @@ impl Candidates {
                 }
             }
         }
+        self.own_noise.resize(begin + of_real.len(), 0.0);
         self.real.extend(of_real);
         self.simulated.extend(of_simulated);
         (begin..self.real.len(), sizes)
@@ -248,6 +255,7 @@ impl Candidates {
             let begin = *moved.entry(columns.start).or_insert_with(|| {
                 let begin = kept.real.len();
                 kept.real.extend_from_slice(&self.real[columns.clone()]);
+                kept.own_noise.extend_from_slice(&self.own_noise[columns.clone()]);
                 if !self.simulated.is_empty() {
                     kept.simulated.extend_from_slice(&self.simulated[columns.clone()]);
                 }

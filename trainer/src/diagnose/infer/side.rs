@@ -76,6 +76,21 @@ impl<'a> Side<'a> {
         self.prepared.filtered_all(&columns)
     }
 
+    /// What the noise of the recorded torque adds to the product of torque and first column of a label, both whitened: a column that follows that
+    /// torque holds its noise too. By Stein's lemma the product is expected to be larger by the sum of the column's slope over the torque; as the slope
+    /// of the likelihood's Jacobian it is what a transformed target pays (Box and Cox 1964). Zero for a column of the motion.
+    pub fn product_with_own_noise(
+        &self,
+        hypotheses: &[Box<dyn Hypothesis + Send>],
+        label: &Label,
+        shape: &[f64],
+    ) -> f64 {
+        let Label::Named(effect) = label else { return 0.0 };
+        let hypothesis = hypotheses.iter().find(|hypothesis| hypothesis.id() == *effect);
+        let slope = hypothesis.and_then(|h| h.slope_over_recorded_torque(&self.prepared.state, shape));
+        slope.map_or(0.0, |slope| self.on_rows(&self.prepared.at_rows(&slope)).iter().sum())
+    }
+
     /// Columns behind the noise's whitening filter, on the weighed rows alone.
     pub fn whitened(&self, columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
         columns.par_iter().map(|column| self.on_rows(&noise.whitened(column, &self.runs))).collect()

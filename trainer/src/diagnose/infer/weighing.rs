@@ -74,7 +74,13 @@ impl Weighing {
             white
         };
         let white = whitened(real, &candidates.real, noise);
-        let of_real = Reduced::without_base(&products(&white), base);
+        let mut of_all = products(&white);
+        let target = white.len() - 1;
+        for (place, own_noise) in candidates.own_noise.iter().enumerate() {
+            of_all[(base + place, target)] -= own_noise;
+            of_all[(target, base + place)] -= own_noise;
+        }
+        let of_real = Reduced::without_base(&of_all, base);
         let beside = simulated.and_then(|side| {
             let noise = noise.at_rows_of(&side.features);
             let white = whitened(side, &candidates.simulated, &noise);

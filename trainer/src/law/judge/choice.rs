@@ -6,7 +6,7 @@ use super::criterion::Evidence;
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
 use crate::law::model::canonical::canonical;
 use crate::law::model::expression::Expr;
-use crate::law::model::structure::{Nonlinear, Structure};
+use crate::law::model::structure::{Modulation, Nonlinear, Shape, Structure, Term};
 
 /// Candidates of best score that are examined on held-out blocks.
 const FINALISTS_BY_SCORE: usize = 10;
@@ -71,12 +71,27 @@ pub fn best<'a>(problem: &Problem<'_>, explored: &'a Explored, evidence: Evidenc
     ranked.into_iter().take(count).map(|(_, f)| f).collect()
 }
 
-/// Whether every term adds something, every number is finite and no constant has run to the end of its range (the
-/// smoothing of the sign may: then it is a step).
-fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
+/// Whether no constant has run to the end of its range, where a law is no longer itself (the smoothing of the sign may:
+/// then it is a step).
+fn is_inside(problem: &Problem<'_>, fit: &Fit) -> bool {
     let ranges = problem.ranges(&fit.structure);
-    let inside = fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x));
-    inside && fit.rss.is_finite() && fit.params.iter().all(|p| p.is_finite()) && !fit.dependent.contains(&true)
+    fit.nonlinear().iter().zip(&ranges).all(|((n, x), r)| *n == Nonlinear::Smoothing || !r.is_end(*x))
+}
+
+/// Whether a law of the literature is itself: no constant at the end of its range, and no negative Coulomb torque, which no motion has and which
+/// stands for speeds beyond those recorded. Within its bounds such a law is best where it is a simpler one.
+pub(in crate::law) fn is_itself(problem: &Problem<'_>, fit: &Fit) -> bool {
+    let is_coulomb = |term: &Term| term.shape == Shape::Sign && term.modulation == Modulation::Plain;
+    let of_coulomb = fit.structure.terms().iter().zip(fit.coefficients()).filter(|(term, _)| is_coulomb(term));
+    is_inside(problem, fit) && of_coulomb.into_iter().all(|(_, torque)| *torque >= 0.0)
+}
+
+/// Whether every term adds something, every number is finite and no constant has run to the end of its range.
+fn usable(problem: &Problem<'_>, fit: &Fit) -> bool {
+    is_inside(problem, fit)
+        && fit.rss.is_finite()
+        && fit.params.iter().all(|p| p.is_finite())
+        && !fit.dependent.contains(&true)
 }
 
 /// The laws of best score, and the best of each smaller complexity.

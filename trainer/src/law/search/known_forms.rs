@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::law::fitting::problem::{Effort, Fit, Held, Problem};
-use crate::law::judge::choice::held_out_mean_square;
+use crate::law::judge::choice::{held_out_mean_square, is_itself};
 use crate::law::judge::criterion::{Evidence, correlation_length};
 use crate::law::judge::description::{Law, NuisanceCoefficient, describe, nuisance_coefficients};
 use crate::law::judge::rounding::rounded;
@@ -190,7 +190,7 @@ pub struct Remainder {
     pub mean_square: f64,
     /// Samples over which it is correlated.
     pub correlation_length: f64,
-    /// Whether the optimiser ended at a minimum.
+    /// Whether the optimiser ended at a minimum where the law is itself: no constant at the end of its range, no negative Coulomb torque.
     pub converged: bool,
     /// The non-linear constants, in the order of [`Structure::nonlinear`].
     pub constants: Vec<f64>,
@@ -211,7 +211,7 @@ pub fn remainder(structure: &Structure, data: &LawData, constants: Option<&[f64]
     Ok(Remainder {
         mean_square: fit.rss / data.rows() as f64,
         correlation_length: correlation_length(&problem.residuals(&fit)),
-        converged: fit.converged,
+        converged: fit.converged && is_itself(&problem, &fit),
         constants: fit.constants().to_vec(),
     })
 }
