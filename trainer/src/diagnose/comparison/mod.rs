@@ -8,3 +8,4 @@ pub(crate) mod reference;
 pub(crate) mod relaxation;
 pub(crate) mod sign_width;
 pub mod simulation;
+pub(crate) mod turn_over;

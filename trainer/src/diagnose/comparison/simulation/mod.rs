@@ -14,6 +14,7 @@ mod turn_over;
 use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::diagnose::comparison::relaxation::{self, relaxation_time};
+use crate::diagnose::comparison::turn_over::TurnOver;
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::rows::Lock;
@@ -28,7 +29,7 @@ use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
 use simulated_effects::{SimulatedEffects, simulated_effects};
-use turn_over::TurnOver;
+use turn_over::turn_over;
 
 /// Least rows of motion from which a law is learned.
 const LEAST_ROWS: usize = 100;
@@ -115,7 +116,7 @@ pub fn learn_static(simulation: &Signals, real: &Signals) -> Result<InverseLaw, 
     let given = real.rigid_body.is_some() && simulation.rigid_body.is_some();
     let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
     let unfitted = InverseLaw::unfitted(&prepared, given)?;
-    let TurnOver { lead_s, width } = TurnOver::of(&InverseLaw { knots: KNOTS[0], ..unfitted.clone() }, &prepared);
+    let TurnOver { lead_s, width } = turn_over(&InverseLaw { knots: KNOTS[0], ..unfitted.clone() }, &prepared);
     let resolved_speed = unfitted.resolved_speed.max(width);
     InverseLaw { lead_s, sign_velocity: width, resolved_speed, ..unfitted }.learned(&prepared)
 }
