@@ -16,6 +16,7 @@ use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::delay::{delay_by_shifting, position_error_energy};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
+use crate::diagnose::comparison::turn_over::fit_turn_over;
 use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
@@ -149,7 +150,7 @@ fn diagnose_locked(
     let signals = &comparison.signals;
     let mut prepared = comparison.prepare(options.lock);
     if options.by_likelihood {
-        turn_over_as_simulated(&mut prepared, comparison);
+        turn_over(&mut prepared, comparison, options.base);
     }
     let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
@@ -247,7 +248,7 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let period = comparison.signals.period;
     let hypotheses = catalogue();
     let mut prepared = comparison.prepare(options.lock);
-    turn_over_as_simulated(&mut prepared, comparison);
+    turn_over(&mut prepared, comparison, options.base);
     let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
     let simulated = of_simulation(&prepared, comparison);
     let side = simulated.as_ref().map(|(prepared, base)| Side::without_delay(prepared, base));
@@ -293,10 +294,10 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
 }
 
 /// Friction of the joint turns over as softly as that of its simulation, which has no noise: where this is Coulomb and viscous friction
-/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction.
-fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
+/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction. Without a simulation the recording tells.
+fn turn_over(real: &mut Prepared, comparison: &Comparison, base: BaseKind) {
     if comparison.simulation.is_none() {
-        return;
+        return fit_turn_over(real, comparison, base);
     }
     let Some(law) = &comparison.reference else { return };
     real.state.sign_lead_s = law.sign_lead_s;

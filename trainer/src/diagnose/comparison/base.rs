@@ -4,8 +4,7 @@ use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, friction_
 use crate::diagnose::comparison::delay::position_error_energy;
 use crate::diagnose::comparison::reference::{Comparison, tabulated_velocities};
 use crate::diagnose::comparison::relaxation::{self, relaxation_time};
-use crate::diagnose::comparison::sign_width::add_soft_sign;
-use crate::diagnose::comparison::turn_over::fit_turn_over;
+use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
 use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
 use crate::numerics::statistics::root_mean_square;
@@ -58,7 +57,7 @@ impl Base {
     /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) -> Option<Self> {
-        fit_turn_over(prepared, comparison, kind);
+        fit_sign_width(prepared, comparison, kind);
         let raw = raw_columns(&prepared.state, comparison, kind);
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
         let target = prepared.filtered(&prepared.friction_torque);
