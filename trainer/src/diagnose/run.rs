@@ -297,7 +297,8 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
 /// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction. Without a simulation the recording tells.
 fn turn_over(real: &mut Prepared, comparison: &Comparison, base: BaseKind) {
     if comparison.simulation.is_none() {
-        return fit_turn_over(real, comparison, base);
+        fit_turn_over(real, comparison, base);
+        return;
     }
     let Some(law) = &comparison.reference else { return };
     real.state.sign_lead_s = law.sign_lead_s;

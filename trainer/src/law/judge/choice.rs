@@ -82,8 +82,8 @@ fn is_inside(problem: &Problem<'_>, fit: &Fit) -> bool {
 /// stands for speeds beyond those recorded. Within its bounds such a law is best where it is a simpler one.
 pub(in crate::law) fn is_itself(problem: &Problem<'_>, fit: &Fit) -> bool {
     let is_coulomb = |term: &Term| term.shape == Shape::Sign && term.modulation == Modulation::Plain;
-    let of_coulomb = fit.structure.terms().iter().zip(fit.coefficients()).filter(|(term, _)| is_coulomb(term));
-    is_inside(problem, fit) && of_coulomb.into_iter().all(|(_, torque)| *torque >= 0.0)
+    let mut of_coulomb = fit.structure.terms().iter().zip(fit.coefficients()).filter(|(term, _)| is_coulomb(term));
+    is_inside(problem, fit) && of_coulomb.all(|(_, torque)| *torque >= 0.0)
 }
 
 /// Whether every term adds something, every number is finite and no constant has run to the end of its range.
