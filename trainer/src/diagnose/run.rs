@@ -16,7 +16,6 @@ use crate::diagnose::comparison::columns::BaseKind;
 use crate::diagnose::comparison::delay::{delay_by_shifting, position_error_energy};
 use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::comparison::simulation::{InverseLaw, Unlearnable, learn};
-use crate::diagnose::comparison::turn_over::fit_turn_over;
 use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
@@ -150,7 +149,7 @@ fn diagnose_locked(
     let signals = &comparison.signals;
     let mut prepared = comparison.prepare(options.lock);
     if options.by_likelihood {
-        turn_over(&mut prepared, comparison, options.base);
+        turn_over_as_simulated(&mut prepared, comparison);
     }
     let rows = rows_in(&prepared.open_runs());
     if rows < LEAST_ROWS {
@@ -248,7 +247,7 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let period = comparison.signals.period;
     let hypotheses = catalogue();
     let mut prepared = comparison.prepare(options.lock);
-    turn_over(&mut prepared, comparison, options.base);
+    turn_over_as_simulated(&mut prepared, comparison);
     let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
     let simulated = of_simulation(&prepared, comparison);
     let side = simulated.as_ref().map(|(prepared, base)| Side::without_delay(prepared, base));
@@ -287,22 +286,17 @@ fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, 
     let simulation = comparison.simulation.as_deref()?;
     let cut_off = real.filter.cut_off_hz;
     let mut prepared = Prepared::at_cut_off(&simulation.signals, cut_off, simulation.known(), Lock::Nothing);
-    prepared.state.sign_lead_s = real.state.sign_lead_s;
-    prepared.state.turn_over_within(real.state.sign_velocity);
+    prepared.state.turn_over_at(real.state.sign_lead_s, real.state.sign_velocity);
     let base = Base::fit(&mut prepared, simulation, BaseKind::Reference)?;
     Some((prepared, base))
 }
 
 /// Friction of the joint turns over as softly as that of its simulation, which has no noise: where this is Coulomb and viscous friction
-/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction. Without a simulation the recording tells.
-fn turn_over(real: &mut Prepared, comparison: &Comparison, base: BaseKind) {
-    if comparison.simulation.is_none() {
-        fit_turn_over(real, comparison, base);
-        return;
+/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction.
+fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
+    if let (Some(law), Some(_)) = (&comparison.reference, &comparison.simulation) {
+        real.state.turn_over_at(law.sign_lead_s, law.sign_width.max(real.state.sign_velocity));
     }
-    let Some(law) = &comparison.reference else { return };
-    real.state.sign_lead_s = law.sign_lead_s;
-    real.state.turn_over_within(law.sign_width.max(real.state.sign_velocity));
 }
 
 /// Adds a wrong friction level of the reference to the findings; the figures before are then those of the reference as given.

@@ -109,6 +109,13 @@ pub(crate) fn least_squares(columns: &[Vec<f64>], target: &[f64], runs: &[Range<
         .map(|solution| solution.iter().copied().collect())
 }
 
+/// Energy of `target` that its least-squares fit by `columns` explains over runs; `None` where it is singular.
+pub(crate) fn explained_energy(columns: &[Vec<f64>], target: &[f64], runs: &[Range<usize>]) -> Option<f64> {
+    let asked = moments(columns, target, runs);
+    let solution = solve_symmetric(&gram(columns, runs), &asked)?;
+    Some(solution.dot(&asked)).filter(|energy| energy.is_finite())
+}
+
 /// What a fit leaves: target less the weighted columns.
 pub(crate) fn residual(columns: &[Vec<f64>], target: &[f64], coefficients: &[f64]) -> Vec<f64> {
     let mut residual = target.to_vec();

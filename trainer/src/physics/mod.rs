@@ -19,7 +19,7 @@ mod load;
 mod misalignment;
 pub mod names;
 mod position_friction;
-mod presliding;
+pub(crate) mod presliding;
 mod recurrent_fault;
 mod rigid_body;
 mod ripple;
@@ -37,8 +37,8 @@ mod windup;
 
 pub use identity::{Action, EffectId};
 pub(crate) use position_friction::SERIES_ORDERS;
-pub(crate) use state::top_speed;
 pub use state::{JointState, MemoryAxes, OtherJoint, Twist};
+pub(crate) use state::{friction_at, top_speed};
 pub(crate) use transmission::{carried_torque, nominal_inertia, usual_link_inertia};
 
 /// Shape parameters of a hypothesis (its non-linear parameters, in the order of [`Hypothesis::shape_names`]).

@@ -33,6 +33,13 @@ fn longest(state: &JointState) -> f64 {
     if state.rotary { 0.1 } else { f64::INFINITY }
 }
 
+/// Distances over which friction may build up, as far as the recording resolves and travels them.
+pub(crate) fn breakaway_distances(state: &JointState) -> Vec<f64> {
+    let travel = state.span();
+    let finest = (4.0 * state.resolution).max(3e-5 * travel).max(shortest(state));
+    geometric_grid(finest, (0.4 * travel).min(longest(state)).max(finest), 10)
+}
+
 impl Hypothesis for Presliding {
     fn id(&self) -> EffectId {
         EffectId::Presliding
@@ -43,12 +50,7 @@ impl Hypothesis for Presliding {
     }
 
     fn shapes(&self, state: &JointState) -> Vec<Shape> {
-        let travel = state.span();
-        let finest = (4.0 * state.resolution).max(3e-5 * travel).max(shortest(state));
-        geometric_grid(finest, (0.4 * travel).min(longest(state)).max(finest), 10)
-            .into_iter()
-            .flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]])
-            .collect()
+        breakaway_distances(state).into_iter().flat_map(|delta| [vec![delta, 1.0], vec![delta, 3.0]]).collect()
     }
 
     fn only_positive(&self) -> bool {

@@ -48,10 +48,6 @@ impl Hypothesis for Saturation {
         vec![state.map(|i| (torque[i].abs() - shape[0]).max(0.0) * torque[i].signum())]
     }
 
-    fn known_coefficient(&self, shape: &[f64]) -> Option<f64> {
-        (shape[1] == RECORDED).then_some(1.0)
-    }
-
     fn slope_over_recorded_torque(&self, state: &JointState, shape: &[f64]) -> Option<Vec<f64>> {
         let is_beyond = |i: usize| f64::from(u8::from(state.torque[i].abs() > shape[0]));
         (shape[1] == RECORDED).then(|| state.map(is_beyond))

@@ -203,13 +203,7 @@ impl JointState {
 
     /// Friction of the base model at a velocity, held beyond the ends.
     pub fn base_friction_at(&self, velocity: f64) -> f64 {
-        let table = &self.base_friction;
-        let after = table.partition_point(|(v, _)| *v < velocity);
-        match (after.checked_sub(1).and_then(|i| table.get(i)), table.get(after)) {
-            (Some(&(v0, f0)), Some(&(v1, f1))) => f0 + (f1 - f0) * (velocity - v0) / (v1 - v0),
-            (Some(&(_, f)), None) | (None, Some(&(_, f))) => f,
-            (None, None) => 0.0,
-        }
+        friction_at(&self.base_friction, velocity)
     }
 
     /// Central difference of a series, one-sided at the ends of a segment.
@@ -254,6 +248,12 @@ impl JointState {
         self.sign = self.averaged_sign(&self.led_velocity(self.sign_lead_s), velocity);
     }
 
+    /// Lets it turn below another velocity, and a time (s) before the velocity does.
+    pub(crate) fn turn_over_at(&mut self, lead_s: f64, width: f64) {
+        self.sign_lead_s = lead_s;
+        self.turn_over_within(width);
+    }
+
     /// The velocity that the joint is about to have after a time (s) at its acceleration; at rest it has none, and its acceleration is noise.
     pub(crate) fn led_velocity(&self, lead_s: f64) -> Vec<f64> {
         let rests = |i: usize| self.memory.at_rest.get(i).copied().unwrap_or(false);
@@ -263,6 +263,16 @@ impl JointState {
     /// One value a sample.
     pub fn map(&self, torque: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.len()).map(torque).collect()
+    }
+}
+
+/// Friction at a velocity from pairs (velocity, torque) in ascending velocity, held beyond the ends.
+pub(crate) fn friction_at(table: &[(f64, f64)], velocity: f64) -> f64 {
+    let after = table.partition_point(|(v, _)| *v < velocity);
+    match (after.checked_sub(1).and_then(|i| table.get(i)), table.get(after)) {
+        (Some(&(v0, f0)), Some(&(v1, f1))) => f0 + (f1 - f0) * (velocity - v0) / (v1 - v0),
+        (Some(&(_, f)), None) | (None, Some(&(_, f))) => f,
+        (None, None) => 0.0,
     }
 }
 

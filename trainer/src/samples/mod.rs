@@ -3,7 +3,6 @@
 //! [`Preparation::plan`] chooses one filter for all recordings, [`prepare`] applies it alike to every channel, and
 //! [`rigid_body::separate`] takes the rigid body off the actuator's torque.
 
-mod bending;
 pub mod blocks;
 pub(crate) mod delay;
 mod even;
@@ -13,7 +12,7 @@ pub mod plan;
 mod position_noise;
 mod prepare;
 pub mod relevance;
-pub mod rigid_body;
+pub mod separation;
 pub mod spikes;
 pub(crate) mod states;
 #[cfg(test)]
@@ -22,13 +21,15 @@ mod width;
 
 use std::ops::Range;
 
-pub(crate) use bending::BendingLaw;
 pub use even::EvenClock;
 pub(crate) use grid::{interpolate, told_of_clock};
 pub use plan::{Preparation, Request, VelocitySource};
 pub(crate) use position_noise::PositionNoise;
 pub(crate) use prepare::{EveryRow, prepare_every_row_of};
 pub use prepare::{prepare, prepare_every_row};
+pub(crate) use separation::bending::BendingLaw;
+pub(crate) use separation::lead;
+pub use separation::rigid_body;
 pub(crate) use width::{STEP as WIDTH_STEP, smooth_friction_columns, thinned};
 
 use crate::did_you_mean::hint;

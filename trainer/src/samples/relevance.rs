@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::Samples;
-use super::bending::BendingLaw;
 use super::blocks::{blocks, correlation_time};
 use super::hold_out::motions;
+use super::separation::bending::BendingLaw;
 use crate::error::Result;
 use crate::numerics::regression::least_squares;
 

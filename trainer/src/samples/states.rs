@@ -46,6 +46,8 @@ pub struct States {
     pub averages: Averages,
     /// Velocity of each state.
     pub velocity: Vec<f64>,
+    /// Range of velocities that each state stands for; zero where the velocity is even.
+    pub span: Vec<f64>,
     /// For each row, the weight of cells in which the velocity turns round.
     pub turning: Vec<f64>,
     /// For each state the row (as its place in `rows`) that is nearest to it.
@@ -212,6 +214,7 @@ impl States {
                 }
                 for (share, velocity) in pieces(edges[cell], edges[cell + 1]) {
                     self.velocity.push(velocity);
+                    self.span.push(share * (edges[cell + 1] - edges[cell]).abs());
                     self.nearest.push(first + nearest);
                     shares.push(share);
                 }
@@ -226,6 +229,7 @@ impl States {
                     self.turning.push(0.0);
                     self.averages.push(self.velocity.len(), std::iter::once(1.0));
                     self.velocity.push(velocity[row]);
+                    self.span.push(0.0);
                     self.nearest.push(self.rows.len());
                 }
                 Kind::Bent(window) => {

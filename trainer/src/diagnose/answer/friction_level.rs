@@ -4,6 +4,7 @@
 use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::outcome::{Estimate, Evidence, Finding};
 use crate::diagnose::answer::stated_probability::WITHOUT_RIVAL;
+use crate::diagnose::comparison::reference::sliding_friction;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::hypotheses::label::Label;
@@ -111,7 +112,8 @@ impl Change {
 
     fn finding(&self, workbench: &Workbench, evidence: Evidence, score: f64) -> Finding {
         let effect = EffectId::FrictionLevel;
-        let given = sliding_friction(workbench);
+        let state = &workbench.prepared.state;
+        let given = sliding_friction(&state.base_friction, state.top_speed()).unwrap_or_default();
         let names = [
             ("coulomb_torque", "F_c", "coulomb_torque_change", "dF_c", Dimension::Torque),
             ("viscous_coefficient", "F_v", "viscous_coefficient_change", "dF_v", Dimension::TorquePerVelocity),
@@ -182,17 +184,4 @@ fn rivals(
         })
     };
     [CommandDelay, ActuatorGain, SupplyOrDutyLimit, DeadBand].into_iter().filter(is_rival).collect()
-}
-
-/// Coulomb and viscous friction of the reference where it slides: a straight line through its friction over speed.
-fn sliding_friction(workbench: &Workbench) -> [f64; 2] {
-    let state = &workbench.prepared.state;
-    let top = state.top_speed();
-    let sliding = |velocity: f64| (SLIDING_SPEED_SHARE * top..=top).contains(&velocity.abs());
-    let curve: Vec<(f64, f64)> =
-        state.base_friction.iter().copied().filter(|(velocity, _)| sliding(*velocity)).collect();
-    let columns = [curve.iter().map(|(v, _)| v.signum()).collect(), curve.iter().map(|(v, _)| *v).collect()];
-    let target: Vec<f64> = curve.iter().map(|(_, torque)| *torque).collect();
-    let line = least_squares(&columns, &target, std::slice::from_ref(&(0..curve.len())));
-    line.map_or([0.0; 2], |line| [line[0], line[1]])
 }

@@ -3,8 +3,8 @@
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, friction_basis, raw_columns};
 use crate::diagnose::comparison::delay::position_error_energy;
 use crate::diagnose::comparison::reference::{Comparison, tabulated_velocities};
-use crate::diagnose::comparison::relaxation::{self, relaxation_time};
-use crate::diagnose::comparison::sign_width::{add_soft_sign, fit_sign_width};
+use crate::diagnose::comparison::soft_sign::add_soft_sign;
+use crate::diagnose::comparison::turn_over::TurnOver;
 use crate::diagnose::preparation::states::{Prepared, channel_filter};
 use crate::numerics::least_squares::{dot, fit_residual, least_squares, residual};
 use crate::numerics::statistics::root_mean_square;
@@ -57,17 +57,20 @@ impl Base {
     /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) -> Option<Self> {
-        fit_sign_width(prepared, comparison, kind);
+        let turn_over = TurnOver::of_recording(prepared, comparison, kind);
+        if let Some(TurnOver { lead_s, width }) = turn_over {
+            prepared.state.turn_over_at(lead_s, width);
+        }
         let raw = raw_columns(&prepared.state, comparison, kind);
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();
         let target = prepared.filtered(&prepared.friction_torque);
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, comparison, &raw);
-        if comparison.is_with_fitted_model() {
-            // A fitted law is a function of the velocity alone, whatever solver made the recording that it was fitted to.
-            let column =
-                |time| prepared.filtered(&relaxation::column(&prepared.state, prepared.state.sign_velocity, time));
-            columns.extend(relaxation_time(prepared, &columns, &target, 0.0).map(column));
+        if let (BaseKind::Reference, Some(_), Some(law)) = (kind, turn_over, &comparison.reference) {
+            // A fitted law is a function of the velocity alone, as soft as its own data told, whatever solver made the recording.
+            let state = &prepared.state;
+            let softer = law.sign(state).map(|own| state.map(|i| state.sign[i] - own[i]));
+            columns.extend(softer.map(|column| prepared.filtered(&column)));
         }
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);

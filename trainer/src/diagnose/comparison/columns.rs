@@ -35,6 +35,9 @@ pub(crate) fn friction_basis(kind: BaseKind, velocity: f64, sign: f64, top_speed
 /// the smoothed sign, a wider one would take up the Stribeck effect.
 pub(crate) const SOFT_SIGN_WIDTH_RATIO: f64 = 3.0;
 
+/// Step over which the smoothed sign is differentiated by its width and lead, as a ratio: small beside one, large beside rounding.
+const STEP_RATIO: f64 = 1.01;
+
 /// The columns of the parameters and the nuisances behind the common filter.
 pub(crate) fn filtered_columns(
     prepared: &Prepared,
@@ -43,7 +46,7 @@ pub(crate) fn filtered_columns(
 ) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
-    columns.push(sharpness(prepared));
+    columns.extend(prepared.turns_over_sharply().then(|| sharpness(prepared)));
     if let Some(reference) = &comparison.reference {
         columns.extend(reference.replayed_residual.iter().map(|residual| prepared.filtered(residual)));
     }
@@ -75,15 +78,33 @@ pub(crate) fn raw_columns(
 }
 
 /// Change of the smoothed sign and of the acceleration with the width of the filter: they carry the differentiation bias.
-pub(crate) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
+pub(crate) fn differentiation_bias(prepared: &Prepared) -> Vec<Vec<f64>> {
     let state = &prepared.state;
-    let narrow_sign = state.averaged_sign(&prepared.narrow_velocity, state.sign_velocity);
+    let led = state.led_velocity(state.sign_lead_s);
+    let narrow_velocity = state.map(|i| led[i] + prepared.narrow_velocity[i] - state.velocity[i]);
+    let narrow_sign = state.averaged_sign(&narrow_velocity, state.sign_velocity);
     let sign = state.map(|i| narrow_sign[i] - state.sign[i]);
     let acceleration = state.map(|i| prepared.narrow_acceleration[i] - state.acceleration[i]);
-    // The smoothed sign stands for a jump: its width is a nuisance too.
-    let wide_sign = state.averaged_sign(&state.velocity, SOFT_SIGN_WIDTH_RATIO * state.sign_velocity);
-    let width = state.map(|i| wide_sign[i] - state.sign[i]);
-    vec![prepared.filtered(&sign), prepared.filtered(&acceleration), prepared.filtered(&width)]
+    vec![prepared.filtered(&sign), prepared.filtered(&acceleration)]
+}
+
+/// What is uncertain of how friction turns over. A smoothed sign that stands for a jump may be wider; a width and a lead that a recording
+/// shows are as uncertain as their estimates.
+fn turn_over_error(prepared: &Prepared) -> Vec<Vec<f64>> {
+    let (state, lead_s) = (&prepared.state, prepared.state.sign_lead_s);
+    let moved = |lead_s: f64, width: f64| {
+        let sign = state.averaged_sign(&state.led_velocity(lead_s), width);
+        prepared.filtered(&state.map(|i| sign[i] - state.sign[i]))
+    };
+    let ratio = if prepared.turns_over_sharply() { SOFT_SIGN_WIDTH_RATIO } else { STEP_RATIO };
+    let mut errors = vec![moved(lead_s, ratio * state.sign_velocity)];
+    errors.extend((lead_s > 0.0).then(|| moved(STEP_RATIO * lead_s, state.sign_velocity)));
+    errors
+}
+
+/// The nuisances of every model: the bias of differentiation and the error of the turn-over.
+pub(crate) fn nuisances(prepared: &Prepared) -> Vec<Vec<f64>> {
+    [differentiation_bias(prepared), turn_over_error(prepared)].concat()
 }
 
 /// A law from elsewhere turns its friction over as sharply as it was made to, and between two samples at one of them: what is

@@ -2,7 +2,7 @@
 
 use crate::diagnose::comparison::columns::{BaseKind, filtered_columns, raw_columns};
 use crate::diagnose::comparison::reference::Comparison;
-use crate::diagnose::comparison::sign_width::fit_sign_width;
+use crate::diagnose::comparison::turn_over::TurnOver;
 use crate::diagnose::preparation::position_error::position_error_torque;
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, orthonormal, project_out, rows_in};
@@ -17,7 +17,9 @@ const SHIFTED_ERROR_RATIO: f64 = 0.98;
 /// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole
 /// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more.
 pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison, kind: BaseKind) -> f64 {
-    fit_sign_width(&mut prepared, comparison, kind);
+    if let Some(found) = TurnOver::of_recording(&prepared, comparison, kind) {
+        prepared.state.turn_over_at(found.lead_s, found.width);
+    }
     let prepared = &prepared;
     let state = &prepared.state;
     let raw = raw_columns(state, comparison, kind);

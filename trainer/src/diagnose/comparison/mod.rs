@@ -6,6 +6,6 @@ pub(crate) mod delay;
 pub mod from_model;
 pub(crate) mod reference;
 pub(crate) mod relaxation;
-pub(crate) mod sign_width;
 pub mod simulation;
+pub(crate) mod soft_sign;
 pub(crate) mod turn_over;

@@ -3,7 +3,9 @@
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
-use crate::physics::EffectId;
+use crate::numerics::least_squares::least_squares;
+use crate::physics::{EffectId, JointState, friction_at};
+use crate::samples::SLIDING_SPEED_SHARE;
 
 /// A law at the states of a recording.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +34,16 @@ pub struct Reference {
     pub sign_lead_s: f64,
     /// Velocity below which its friction turns over.
     pub sign_width: f64,
+}
+
+impl Reference {
+    /// The sign with which its friction turns over at the states of a recording, from what it has beside viscous friction over the Coulomb
+    /// torque at which it slides. `None` where it has none.
+    pub(crate) fn sign(&self, state: &JointState) -> Option<Vec<f64>> {
+        let [coulomb, viscous] = sliding_friction(&self.friction, state.top_speed())?;
+        let sign = |v: f64| ((friction_at(&self.friction, v) - viscous * v) / coulomb).clamp(-1.0, 1.0);
+        (coulomb > 0.0).then(|| state.map(|i| sign(state.velocity[i])))
+    }
 }
 
 /// Where a law is asked for more than it was fitted on: there it holds its last value, and the difference is its own.
@@ -121,4 +133,14 @@ pub(crate) fn tabulated_velocities(reach: f64) -> impl Iterator<Item = f64> {
         let x = f64::from(k) / 120.0;
         reach * x * x * x
     })
+}
+
+/// Coulomb torque and viscous coefficient of a tabulated friction where the joint slides, up to a top speed: a straight line over speed.
+pub(crate) fn sliding_friction(friction: &[(f64, f64)], top_speed: f64) -> Option<[f64; 2]> {
+    let sliding = |velocity: f64| (SLIDING_SPEED_SHARE * top_speed..=top_speed).contains(&velocity.abs());
+    let curve: Vec<(f64, f64)> = friction.iter().copied().filter(|(velocity, _)| sliding(*velocity)).collect();
+    let columns = [curve.iter().map(|(v, _)| v.signum()).collect(), curve.iter().map(|(v, _)| *v).collect()];
+    let target: Vec<f64> = curve.iter().map(|(_, torque)| *torque).collect();
+    let line = least_squares(&columns, &target, std::slice::from_ref(&(0..curve.len())))?;
+    Some([line[0], line[1]])
 }

@@ -1,16 +1,11 @@
-//! Coulomb friction as solvers of constraints have it: near rest it turns over before the velocity does.
-//!
-//! A constraint opposes the velocity that the joint is about to have, so that its friction has the sign of `v + t_r a`. MuJoCo's
-//! `frictionloss` asks for the acceleration `-b v` with `b = 2 / (dmax timeconst)` of `solref` and `solimp` (MuJoCo documentation,
-//! "Computation", solver parameters), which is `t_r = 1 / b`, 9.5 ms by default; constraints of velocities at the end of a step have the step.
+//! Coulomb friction as solvers of constraints have it: near rest it turns over before the velocity does
+//! ([`lead`](crate::samples::lead)).
 
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{dot, least_squares, residual};
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::physics::JointState;
-
-/// Relaxation times that are tried, s: from a short step of a simulation to a soft constraint; each is twice the one before.
-pub(crate) const TRIED_S: [f64; 8] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064];
+use crate::samples::lead::TRIED_S;
 
 /// Torque that a relaxation time adds for each unit of Coulomb friction.
 pub(crate) fn column(state: &JointState, sign_velocity: f64, relaxation_s: f64) -> Vec<f64> {

@@ -42,7 +42,9 @@ pub(crate) fn refined(
         let mut columns = side.whitened(&side.filtered(hypotheses, (label, shape), state), noise);
         columns.iter_mut().for_each(|column| project_out(column, &basis, &all));
         let mut asked = moments(&columns, &rest, &all);
-        asked[0] -= side.product_with_own_noise(hypotheses, label, shape);
+        if let Some(first) = asked.get_mut(0) {
+            *first -= side.product_with_own_noise(hypotheses, label, shape);
+        }
         let solution = solve_symmetric(&gram(&columns, &all), &asked)?;
         let is_possible = !hypothesis.only_positive() || solution.iter().all(|value| *value > 0.0);
         is_possible.then(|| 0.5 * solution.dot(&asked)).filter(|value| value.is_finite())

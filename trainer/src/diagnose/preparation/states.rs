@@ -32,6 +32,8 @@ pub struct Prepared {
     pub blocks: Vec<Block>,
     /// Sample ranges that no row is taken from: they decide nothing, and what is told of the written model is computed on them.
     pub sealed: Vec<Range<usize>>,
+    /// Width of the smoothed sign that the recording resolves.
+    pub(crate) sharp_sign_velocity: f64,
     /// Velocity behind a narrower filter, for the nuisance columns of the differentiation bias.
     pub narrow_velocity: Vec<f64>,
     /// Acceleration behind a narrower filter.
@@ -124,8 +126,9 @@ impl Prepared {
             rotary: signals.rotary,
             resolution: signals.position_resolution,
         };
-        let least_width = (4.0 * velocity_noise).max(SIGN_WIDTH_SHARE * state.top_speed());
-        state.turn_over_within(least_width.max(f64::MIN_POSITIVE));
+        let resolved_width = (4.0 * velocity_noise).max(SIGN_WIDTH_SHARE * state.top_speed());
+        let sharp_sign_velocity = resolved_width.max(f64::MIN_POSITIVE);
+        state.turn_over_within(sharp_sign_velocity);
         state.memory =
             MemoryAxes::follow(&state.position, &state.velocity, segments, period, 0.5 * state.sign_velocity);
         state.gravity = match &signals.load {
@@ -156,6 +159,7 @@ impl Prepared {
             rows,
             blocks,
             sealed,
+            sharp_sign_velocity,
             narrow_velocity,
             narrow_acceleration,
             friction_torque,
@@ -171,6 +175,11 @@ impl Prepared {
     /// Several series behind it.
     pub(crate) fn filtered_all(&self, series: &[Vec<f64>]) -> Vec<Vec<f64>> {
         series.iter().map(|series| self.filtered(series)).collect()
+    }
+
+    /// Whether friction turns over as sharply as the recording resolves, and not as it shows.
+    pub(crate) fn turns_over_sharply(&self) -> bool {
+        self.state.sign_velocity <= self.sharp_sign_velocity
     }
 
     /// A series at the working rows, unfiltered.

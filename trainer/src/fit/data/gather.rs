@@ -116,7 +116,7 @@ pub(in crate::fit) fn gather(recordings: &[Recording], joint: &Joint, request: &
         None => {
             let states = states(recordings, &preparation, &samples, &moving)?;
             let separation = match &states {
-                Some(states) => separate_averaged(&samples, joint, &states.rows, (&states.velocity, &states.averages)),
+                Some(states) => separate_averaged(&samples, joint, states),
                 None => separate(&samples, joint),
             };
             let separation = separation.map_err(|error| error.in_file(label))?;
@@ -196,9 +196,11 @@ fn rows_of(pieces: &[Range<usize>], rows: &[usize]) -> Vec<Range<usize>> {
 }
 
 impl Material {
-    /// What the law at the velocity of each row and the rigid body have to explain: the target without the bend.
+    /// What the law at the velocity of each row and the rigid body have to explain: the target without the bend and what friction adds that turns over
+    /// before the velocity.
     pub(in crate::fit) fn target_at_velocity(&self) -> Vec<f64> {
-        self.rows.iter().map(|&row| self.target[row] - self.bend[row]).collect()
+        let lead = |row: usize| self.separation.as_ref().map_or(0.0, |separation| separation.lead[row]);
+        self.rows.iter().map(|&row| self.target[row] - self.bend[row] - lead(row)).collect()
     }
 
     /// The values of a column at the rows that are learnt from.
@@ -207,13 +209,16 @@ impl Material {
     }
 
     /// Columns that no part of law or rigid body stands for, with name and unit of their coefficient: what the torque's delay, as far as it is
-    /// not known, makes of the rigid body; and what stiction makes of a reversal. A joint that stops for a moment within a sample is held by as much
+    /// not known, makes of the rigid body; friction that turns over before the velocity; and what stiction makes of a reversal. A joint that stops for a moment within a sample is held by as much
     /// as its inertia would have taken, so that friction goes with the acceleration there.
     pub(in crate::fit) fn artefacts(&self) -> Vec<(&'static str, String, Vec<f64>)> {
         let unit = self.samples.actuator_unit;
         let mut artefacts = Vec::new();
         if let Some(rate) = self.rate_of_rigid_body().filter(|_| self.torque_delay_s != 0.0) {
             artefacts.push(("torque_advance", "s".to_owned(), rate));
+        }
+        if let Some(separation) = &self.separation {
+            artefacts.push(("turn_over_lead", String::new(), self.pick(&separation.lead)));
         }
         if let Some((states, acceleration)) = self.states.as_ref().zip(self.samples.acceleration.as_deref()) {
             let held = states.turning.iter().zip(self.pick(acceleration)).map(|(turning, a)| turning * a).collect();

@@ -14,7 +14,7 @@ mod turn_over;
 use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
 use crate::diagnose::comparison::relaxation::{self, relaxation_time};
-use crate::diagnose::comparison::turn_over::TurnOver;
+use crate::diagnose::comparison::turn_over::{LEAST_ROWS, TurnOver};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::rows::Lock;
@@ -31,8 +31,6 @@ pub use simulated_effects::FindEffects;
 use simulated_effects::{SimulatedEffects, simulated_effects};
 use turn_over::turn_over;
 
-/// Least rows of motion from which a law is learned.
-const LEAST_ROWS: usize = 100;
 /// Least travel in rad over which gravity can be told from an offset.
 const GRAVITY_TRAVEL_RAD: f64 = 0.2;
 /// Knots over speed that are tried: a simulation without noise bears many, a short or noisy one few.

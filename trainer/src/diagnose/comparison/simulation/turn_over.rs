@@ -7,7 +7,7 @@
 use super::InverseLaw;
 use crate::diagnose::comparison::turn_over::TurnOver;
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::least_squares::{gram, moments, orthonormal, project_out, solve_symmetric};
+use crate::numerics::least_squares::{explained_energy, orthonormal, project_out};
 
 /// Least lead that is told from the sampling's own delay, samples: half a sample is the difference between the begin of a step and its mean.
 const LEAST_LEAD: f64 = 0.5;
@@ -23,14 +23,13 @@ pub(super) fn turn_over(law: &InverseLaw, prepared: &Prepared) -> TurnOver {
     let basis = orthonormal(&fixed, &runs);
     let mut target = prepared.filtered(&prepared.torque);
     project_out(&mut target, &basis, &runs);
-    let explained = |lead_s: f64, width: f64| {
-        let mut columns = prepared.filtered_all(&columns_at(lead_s, width)[..law.knots]);
+    let explained = |at: TurnOver| {
+        let mut columns = prepared.filtered_all(&columns_at(at.lead_s, at.width)[..law.knots]);
         columns.iter_mut().for_each(|column| project_out(column, &basis, &runs));
-        let asked = moments(&columns, &target, &runs);
-        let solution = solve_symmetric(&gram(&columns, &runs), &asked)?;
-        Some(solution.dot(&asked)).filter(|value| value.is_finite())
+        explained_energy(&columns, &target, &runs)
     };
-    let Some(found) = TurnOver::most_explained(least, explained) else { return TurnOver { lead_s: 0.0, width: least } };
+    let sharp = TurnOver { lead_s: 0.0, width: least };
+    let Some(found) = TurnOver::most_explained(least, true, explained) else { return sharp };
     let is_resolved = found.lead_s > LEAST_LEAD * state.period;
     TurnOver { lead_s: if is_resolved { found.lead_s } else { 0.0 }, ..found }
 }

@@ -1,15 +1,16 @@
 //! Takes the rigid body off the actuator's torque: given parameters are subtracted, the others identified together
 //! with a friction law that is free to bend (linear least squares; Swevers et al. 1997).
 
-use super::Samples;
 use super::bending::BendingLaw;
+use super::lead::added_by_lead;
 use crate::error::{Error, Result, codes};
 use crate::joint::Joint;
-use crate::numerics::averages::Averages;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::least_squares::weighted;
 use crate::numerics::regression::least_squares;
 use crate::recording::Axis;
+use crate::samples::Samples;
+use crate::samples::states::States;
 
 /// Gravity is asked for where the position covers at least this, rad; below, it cannot be told from an offset.
 const GRAVITY_RANGE_RAD: f64 = 0.5;
@@ -103,7 +104,9 @@ pub struct Separation {
     pub rigid_body: Vec<f64>,
     /// What friction averaged over the states of a sample is more than friction at its velocity; zero where it is not averaged.
     pub bend: Vec<f64>,
-    /// Actuator minus rigid body and bend: friction with everything that is not yet explained.
+    /// What friction adds that turns over before the velocity, and softly; zero everywhere where that does not show.
+    pub lead: Vec<f64>,
+    /// Actuator minus rigid body, bend and lead: friction with everything that is not yet explained.
     pub friction: Vec<f64>,
     /// Root mean square of what the bending friction law leaves.
     pub rmse: f64,
@@ -196,26 +199,27 @@ pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
 /// `FRK-D009` when actuator or velocity is missing, `FRK-D014` as [`given_torque`], `FRK-D016` without motion.
 pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
     let moving = moving_samples(samples.require_velocity()?);
-    separate_by(samples, joint, &moving, &|law, velocity| law.columns(velocity))
+    separate_by(samples, joint, &moving, (&|law, velocity| law.columns(velocity), None))
 }
 
-/// The same on some rows, each of which averages the law over states of such velocities.
+/// The same on rows that average the law over states.
 ///
 /// # Errors
 /// As [`separate`].
-pub(crate) fn separate_averaged(
-    samples: &Samples,
-    joint: &Joint,
-    rows: &[usize],
-    (velocity, averages): (&[f64], &Averages),
-) -> Result<Separation> {
-    separate_by(samples, joint, rows, &|law, _| law.averaged_columns(velocity, averages))
+pub(crate) fn separate_averaged(samples: &Samples, joint: &Joint, states: &States) -> Result<Separation> {
+    let averaged = |law: &BendingLaw, _: &[f64]| law.averaged_columns(&states.velocity, &states.averages);
+    separate_by(samples, joint, &states.rows, (&averaged, Some(states)))
 }
 
 /// Columns of a law at the moving rows, from their velocity.
 type Columns<'a> = dyn Fn(&BendingLaw, &[f64]) -> Vec<Vec<f64>> + 'a;
 
-fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: &Columns<'_>) -> Result<Separation> {
+fn separate_by(
+    samples: &Samples,
+    joint: &Joint,
+    moving: &[usize],
+    (law_columns, states): (&Columns<'_>, Option<&States>),
+) -> Result<Separation> {
     let actuator = samples.actuator.as_deref().ok_or_else(|| {
         Error::new(&codes::MISSING_COLUMN, "separating friction needs the torque, force or current of the actuator")
             .in_column("torque_Nm")
@@ -230,6 +234,10 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
     let mut columns: Vec<Vec<f64>> = own_column.iter().map(|term| pick(&term.column)).collect();
     columns.extend(law_columns(&law, &moving_velocity));
     let target: Vec<f64> = moving.iter().map(|&i| actuator[i] - given[i]).collect();
+    let with_law = columns.len();
+    let motion = states.zip(samples.acceleration.as_deref().map(pick));
+    let lead = motion.and_then(|(states, acceleration)| added_by_lead(&columns, &target, (states, &acceleration)));
+    columns.extend(lead);
     let fit = least_squares(&columns, &target, &even_blocks(target.len(), ERROR_BLOCKS));
 
     let mut parameters = Vec::with_capacity(terms.len());
@@ -240,6 +248,7 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
     if own_column.len() < terms.len() {
         let mut weights = vec![0.0; own_column.len()];
         weights.extend(law.even_part(&moving_velocity));
+        weights.resize(columns.len(), 0.0);
         let (value, standard_error) = fit.combination(&weights);
         parameters.push(Parameter { kind: TermKind::TorqueOffset, value, standard_error });
     }
@@ -250,17 +259,22 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
         }
     }
     let mut bend = vec![0.0; samples.len()];
-    let curve = &fit.coefficients[own_column.len()..];
-    let averaged = weighted(&columns[own_column.len()..], curve);
-    let at_velocity = weighted(&law.columns(&moving_velocity), curve);
+    let of_law = own_column.len()..with_law;
+    let averaged = weighted(&columns[of_law.clone()], &fit.coefficients[of_law.clone()]);
+    let at_velocity = weighted(&law.columns(&moving_velocity), &fit.coefficients[of_law]);
     for ((&row, averaged), at_velocity) in moving.iter().zip(averaged).zip(at_velocity) {
         bend[row] = averaged - at_velocity;
     }
-    let taken_off = rigid_body.iter().zip(&bend).map(|(body, bend)| body + bend);
+    let mut lead = vec![0.0; samples.len()];
+    if let Some((column, coefficient)) = columns.get(with_law).zip(fit.coefficients.get(with_law)) {
+        moving.iter().zip(column).for_each(|(&row, added)| lead[row] = coefficient * added);
+    }
+    let taken_off = (0..samples.len()).map(|row| rigid_body[row] + bend[row] + lead[row]);
     let friction = actuator.iter().zip(taken_off).map(|(total, off)| total - off).collect();
     // Of a few constant speeds the law itself has shapes to spare between them.
     let rank_deficiency = if fit.rank_deficiency > 0 {
-        let of_law = least_squares(&columns[own_column.len()..], &target, &even_blocks(target.len(), ERROR_BLOCKS));
+        let of_law =
+            least_squares(&columns[own_column.len()..with_law], &target, &even_blocks(target.len(), ERROR_BLOCKS));
         fit.rank_deficiency.saturating_sub(of_law.rank_deficiency)
     } else {
         0
@@ -276,6 +290,7 @@ fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], law_columns: 
         given,
         rigid_body,
         bend,
+        lead,
         friction,
         rmse: fit.rmse,
         rank_deficiency,
