@@ -15,12 +15,30 @@ const LONGEST_DELAY_S: f64 = 0.03;
 const SHIFTED_ERROR_RATIO: f64 = 0.98;
 
 /// The delay of the torque against the position (s) with which the base explains most of it; found by shifting the torque by whole
-/// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more.
-pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison, kind: BaseKind) -> f64 {
-    if let Some(found) = TurnOver::of_recording(&prepared, comparison, kind) {
-        prepared.state.turn_over_at(found.lead_s, found.width);
-    }
-    let prepared = &prepared;
+/// samples, up to [`LONGEST_DELAY_S`], and a parabola between them. 0 where a shift explains no more. Friction that turns over before the velocity
+/// may pass for an early torque, and an early torque for such friction: what leaves less of the torque is taken.
+pub(crate) fn delay_by_shifting(prepared: Prepared, comparison: &Comparison, kind: BaseKind) -> f64 {
+    let leading = TurnOver::of_recording(&prepared, comparison, kind);
+    let with = |turn_over: Option<TurnOver>| {
+        let mut prepared = prepared.clone();
+        if let Some(TurnOver { lead_s, width }) = turn_over {
+            prepared.state.turn_over_at(lead_s, width);
+        }
+        shift(&prepared, comparison, kind)
+    };
+    let leads = leading.is_some_and(|found| found.lead_s > 0.0);
+    let in_step = leading.map(|found| TurnOver { lead_s: 0.0, ..found });
+    let shifts = [Some(with(leading)), leads.then(|| with(in_step))];
+    shifts.into_iter().flatten().min_by(|a, b| a.left.total_cmp(&b.left)).map_or(0.0, |shift| shift.delay_s)
+}
+
+/// A shift of the torque, and the energy that the base leaves with it.
+struct Shift {
+    delay_s: f64,
+    left: f64,
+}
+
+fn shift(prepared: &Prepared, comparison: &Comparison, kind: BaseKind) -> Shift {
     let state = &prepared.state;
     let raw = raw_columns(state, comparison, kind);
     let columns = filtered_columns(prepared, comparison, &raw);
@@ -44,11 +62,11 @@ pub(crate) fn delay_by_shifting(mut prepared: Prepared, comparison: &Comparison,
         let explained = unshifted - left[*best];
         explained > (1.0 - SHIFTED_ERROR_RATIO) * unshifted && explained > position_error_energy(prepared, comparison)
     };
-    let Some(best) = best.filter(is_clear) else { return 0.0 };
+    let Some(best) = best.filter(is_clear) else { return Shift { delay_s: 0.0, left: unshifted } };
     let [before, here, after] = [left[best - 1], left[best], left[best + 1]];
     let bend = before - 2.0 * here + after;
     let between = if bend > 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
-    (best as f64 - longest as f64 + between) * state.period
+    Shift { delay_s: (best as f64 - longest as f64 + between) * state.period, left: here }
 }
 
 /// Energy on open rows that a delay can explain by itself: the drive answers to the encoder's grain some samples later.
