@@ -5,7 +5,6 @@ pub(crate) mod columns;
 pub(crate) mod delay;
 pub mod from_model;
 pub(crate) mod reference;
-pub(crate) mod relaxation;
 pub mod simulation;
 pub(crate) mod soft_sign;
 pub(crate) mod turn_over;

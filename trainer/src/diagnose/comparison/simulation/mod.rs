@@ -2,6 +2,7 @@
 //! nor sampling nor length of the two recordings have to agree (Atkeson, An and Hollerbach 1986 for the linear form).
 
 mod curvature_prior;
+mod relaxation;
 #[cfg(test)]
 mod relaxation_tests;
 mod replay;
@@ -13,7 +14,6 @@ mod turn_over;
 
 use crate::diagnose::comparison::columns::nuisances;
 use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
-use crate::diagnose::comparison::relaxation::{self, relaxation_time};
 use crate::diagnose::comparison::turn_over::{LEAST_ROWS, TurnOver};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
@@ -25,6 +25,7 @@ use crate::numerics::least_squares::{least_squares, residual, weighted};
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState};
 use curvature_prior::CurvaturePrior;
+use relaxation::relaxation_time;
 use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
@@ -38,10 +39,6 @@ const KNOTS: [usize; 4] = [5, 9, 17, 33];
 
 /// Noise of a simulation over that of the recording below which what a law leaves of it is the error of the law's formulas.
 const QUIET_NOISE_RATIO: f64 = 0.5;
-
-/// Least share of what a law leaves otherwise that a relaxation of the simulator's constraints has to explain: most of what a solver gets
-/// wrong near rest, where elasticity and memories of another kind leave more.
-const LEAST_RELAXATION_SHARE: f64 = 0.3;
 
 /// Why no law can be learned from a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -149,7 +146,7 @@ impl InverseLaw {
     fn relaxed(self, prepared: &Prepared) -> Self {
         let columns = self.with_nuisances(prepared, &self.columns(&prepared.state));
         let torque = prepared.filtered(&prepared.torque);
-        Self { relaxation_s: relaxation_time(prepared, &columns, &torque, LEAST_RELAXATION_SHARE), ..self }
+        Self { relaxation_s: relaxation_time(prepared, &columns, &torque), ..self }
     }
 
     /// The law with its coefficients, at as many knots as the simulation bears.

@@ -1,7 +1,7 @@
 //! How the friction of a simulation turns over with the direction.
 //!
 //! Solvers of constraints oppose the velocity that the joint is about to have, and no more than what stops it: MuJoCo's `frictionloss` is
-//! `clamp(9 M b (v + a / b), -F, F)` with `b` of [`relaxation`](crate::diagnose::comparison::relaxation), so that both the time by which
+//! `clamp(9 M b (v + a / b), -F, F)` with `b` of [`relaxation`](super::relaxation), so that both the time by which
 //! it is ahead and the width of its turn depend on inertia and level. Smoothed signs of other simulators have a width and no lead.
 
 use super::InverseLaw;

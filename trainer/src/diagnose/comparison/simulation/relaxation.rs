@@ -7,21 +7,20 @@ use crate::numerics::pattern_search::{Movable, climb};
 use crate::physics::JointState;
 use crate::samples::lead::TRIED_S;
 
+/// Least share of what a law leaves otherwise that a relaxation of the simulator's constraints has to explain: most of what a solver gets
+/// wrong near rest, where elasticity and memories of another kind leave more.
+const LEAST_RELAXATION_SHARE: f64 = 0.3;
+
 /// Torque that a relaxation time adds for each unit of Coulomb friction.
-pub(crate) fn column(state: &JointState, sign_velocity: f64, relaxation_s: f64) -> Vec<f64> {
+pub(super) fn column(state: &JointState, sign_velocity: f64, relaxation_s: f64) -> Vec<f64> {
     let next = state.map(|i| state.velocity[i] + relaxation_s * state.acceleration[i]);
     let [now, next] = [&state.velocity, &next].map(|velocity| state.averaged_sign(velocity, sign_velocity));
     state.map(|i| next[i] - now[i])
 }
 
 /// Relaxation time of friction beside filtered columns of a law, s; `None` where friction turns over with the velocity
-/// or after it, or where this explains no more than a share (0..1) of what the columns leave.
-pub(crate) fn relaxation_time(
-    prepared: &Prepared,
-    columns: &[Vec<f64>],
-    target: &[f64],
-    least_share: f64,
-) -> Option<f64> {
+/// or after it, or where this explains too little of what the columns leave.
+pub(super) fn relaxation_time(prepared: &Prepared, columns: &[Vec<f64>], target: &[f64]) -> Option<f64> {
     let (state, runs) = (&prepared.state, prepared.open_runs());
     let left = |columns: &[Vec<f64>]| {
         let coefficients = least_squares(columns, target, &runs)?;
@@ -38,5 +37,5 @@ pub(crate) fn relaxation_time(
     let (nearest, _) = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let free = Movable { index: 0, step: 0.2, low: TRIED_S[0].ln(), high: TRIED_S[7].ln() };
     let time = climb(&[nearest.ln()], &[free], |time| Some(-with(time[0].exp())))[0].exp();
-    (with(time) < (1.0 - least_share) * without).then_some(time)
+    (with(time) < (1.0 - LEAST_RELAXATION_SHARE) * without).then_some(time)
 }
