@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
+use super::BendingLaw;
 use super::prepare::{prepare, prepare_actuator};
 use super::rigid_body::{given_torque, terms};
-use super::separation::bending::BendingLaw;
 use super::{Preparation, SLIDING_SPEED_SHARE, Samples, top_speed};
 use crate::error::Result;
 use crate::joint::Joint;

@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use super::BendingLaw;
 use super::grid::Grid;
-use super::separation::bending::BendingLaw;
 use super::{Samples, width};
 use crate::error::{Error, Result};
 use crate::joint::Joint;

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use super::BendingLaw;
 use super::Samples;
 use super::blocks::{blocks, correlation_time};
 use super::hold_out::motions;
-use super::separation::bending::BendingLaw;
 use crate::error::Result;
 use crate::numerics::regression::least_squares;
 

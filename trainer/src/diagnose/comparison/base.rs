@@ -58,8 +58,8 @@ impl Base {
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) -> Option<Self> {
         let turn_over = TurnOver::of_recording(prepared, comparison, kind);
-        if let Some(TurnOver { lead_s, width }) = turn_over {
-            prepared.state.turn_over_at(lead_s, width);
+        if let Some(turn_over) = turn_over {
+            turn_over.turn(&mut prepared.state);
         }
         let raw = raw_columns(&prepared.state, comparison, kind);
         let names: Vec<&'static str> = raw.iter().map(|(name, _)| *name).collect();

@@ -21,8 +21,8 @@ pub(crate) fn delay_by_shifting(prepared: Prepared, comparison: &Comparison, kin
     let leading = TurnOver::of_recording(&prepared, comparison, kind);
     let with = |turn_over: Option<TurnOver>| {
         let mut prepared = prepared.clone();
-        if let Some(TurnOver { lead_s, width }) = turn_over {
-            prepared.state.turn_over_at(lead_s, width);
+        if let Some(turn_over) = turn_over {
+            turn_over.turn(&mut prepared.state);
         }
         shift(&prepared, comparison, kind)
     };

@@ -8,9 +8,10 @@ use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{
-    dot, explained_energy, fit_residual, least_squares, orthonormal, project_out, rows_in,
+    explained_by_positive, explained_energy, fit_residual, least_squares, orthonormal, project_out, rows_in,
 };
 use crate::numerics::pattern_search::{Movable, climb};
+use crate::physics::JointState;
 use crate::physics::presliding::{breakaway_distances, bristle};
 use crate::samples::lead::{SHOWN_NATS as SHOWN_LEAD_NATS, TRIED_S};
 
@@ -55,6 +56,11 @@ impl TurnOver {
         let of = |at: &[f64]| Self { lead_s: at[0], width: at[1].exp() };
         let found = of(&climb(&[nearest.lead_s, nearest.width.ln()], &free, |at| explained(of(at))));
         (found.lead_s < longest_s && found.width.ln() < widest.ln()).then_some(found)
+    }
+
+    /// Lets the friction of states turn over so.
+    pub fn turn(self, state: &mut JointState) {
+        state.turn_over_at(self.lead_s, self.width);
     }
 
     /// That of a recording, as far as it shows. Beside friction that is fitted to it this is sharp where nothing shows; beside a model that was
@@ -133,7 +139,7 @@ impl<'a> Evidence<'a> {
     fn nats(&self, at: TurnOver) -> Option<f64> {
         let runs = self.prepared.open_runs();
         let mut state = self.prepared.state.clone();
-        state.turn_over_at(at.lead_s, at.width);
+        at.turn(&mut state);
         let whitened = |column: &Vec<f64>| {
             let mut column = self.noise.whitened(&self.prepared.filtered(column), &runs);
             project_out(&mut column, &self.beside, &runs);
@@ -141,8 +147,7 @@ impl<'a> Evidence<'a> {
         };
         if let Some(law_sign) = &self.law_sign {
             let sign = whitened(&state.map(|i| state.sign[i] - law_sign[i]));
-            let share = dot(&sign, &self.target, &runs).max(0.0);
-            return Some(0.5 * share * share / dot(&sign, &sign, &runs)).filter(|nats| nats.is_finite());
+            return explained_by_positive(&sign, &self.target, &runs).map(|energy| 0.5 * energy);
         }
         let columns = raw_columns(&state, self.comparison, self.kind);
         let columns: Vec<Vec<f64>> = columns.iter().map(|(_, column)| whitened(column)).collect();

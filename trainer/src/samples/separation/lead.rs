@@ -6,7 +6,7 @@
 
 use crate::numerics::averages::Averages;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
-use crate::numerics::least_squares::{dot, orthonormal, project_out};
+use crate::numerics::least_squares::{explained_by_positive, orthonormal, project_out};
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::numerics::regression::least_squares;
 use crate::samples::states::States;
@@ -86,8 +86,7 @@ pub(super) fn added_by_lead(
     let explained = |lead: Lead| {
         let mut own = motion.added(lead);
         project_out(&mut own, &basis, &all);
-        let share = dot(&own, &left, &all).max(0.0);
-        Some(share * share / dot(&own, &own, &all)).filter(|energy| energy.is_finite())
+        explained_by_positive(&own, &left, &all)
     };
     let top = top_speed(&states.velocity);
     let widths = TRIED_WIDTH_SHARES.map(|share| share * top);

@@ -199,7 +199,7 @@ pub fn terms(samples: &Samples, joint: &Joint) -> Vec<Term> {
 /// `FRK-D009` when actuator or velocity is missing, `FRK-D014` as [`given_torque`], `FRK-D016` without motion.
 pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
     let moving = moving_samples(samples.require_velocity()?);
-    separate_by(samples, joint, &moving, (&|law, velocity| law.columns(velocity), None))
+    separate_by(samples, joint, &moving, None)
 }
 
 /// The same on rows that average the law over states.
@@ -207,19 +207,10 @@ pub fn separate(samples: &Samples, joint: &Joint) -> Result<Separation> {
 /// # Errors
 /// As [`separate`].
 pub(crate) fn separate_averaged(samples: &Samples, joint: &Joint, states: &States) -> Result<Separation> {
-    let averaged = |law: &BendingLaw, _: &[f64]| law.averaged_columns(&states.velocity, &states.averages);
-    separate_by(samples, joint, &states.rows, (&averaged, Some(states)))
+    separate_by(samples, joint, &states.rows, Some(states))
 }
 
-/// Columns of a law at the moving rows, from their velocity.
-type Columns<'a> = dyn Fn(&BendingLaw, &[f64]) -> Vec<Vec<f64>> + 'a;
-
-fn separate_by(
-    samples: &Samples,
-    joint: &Joint,
-    moving: &[usize],
-    (law_columns, states): (&Columns<'_>, Option<&States>),
-) -> Result<Separation> {
+fn separate_by(samples: &Samples, joint: &Joint, moving: &[usize], states: Option<&States>) -> Result<Separation> {
     let actuator = samples.actuator.as_deref().ok_or_else(|| {
         Error::new(&codes::MISSING_COLUMN, "separating friction needs the torque, force or current of the actuator")
             .in_column("torque_Nm")
@@ -232,7 +223,11 @@ fn separate_by(
     // The offset is no column of its own: the law holds it, and it is read off afterwards.
     let own_column: Vec<&Term> = terms.iter().filter(|term| term.kind != TermKind::TorqueOffset).collect();
     let mut columns: Vec<Vec<f64>> = own_column.iter().map(|term| pick(&term.column)).collect();
-    columns.extend(law_columns(&law, &moving_velocity));
+    let at_velocity = law.columns(&moving_velocity);
+    columns.extend(match states {
+        Some(states) => law.averaged_columns(&states.velocity, &states.averages),
+        None => at_velocity.clone(),
+    });
     let target: Vec<f64> = moving.iter().map(|&i| actuator[i] - given[i]).collect();
     let with_law = columns.len();
     let motion = states.zip(samples.acceleration.as_deref().map(pick));
@@ -261,7 +256,7 @@ fn separate_by(
     let mut bend = vec![0.0; samples.len()];
     let of_law = own_column.len()..with_law;
     let averaged = weighted(&columns[of_law.clone()], &fit.coefficients[of_law.clone()]);
-    let at_velocity = weighted(&law.columns(&moving_velocity), &fit.coefficients[of_law]);
+    let at_velocity = weighted(&at_velocity, &fit.coefficients[of_law]);
     for ((&row, averaged), at_velocity) in moving.iter().zip(averaged).zip(at_velocity) {
         bend[row] = averaged - at_velocity;
     }
