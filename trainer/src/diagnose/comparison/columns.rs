@@ -48,7 +48,7 @@ pub(crate) fn filtered_columns(
     columns.extend(nuisances(prepared));
     columns.extend(prepared.turns_over_sharply().then(|| sharpness(prepared)));
     if let Some(reference) = &comparison.reference {
-        columns.extend(reference.replayed_residual.iter().map(|residual| prepared.filtered(residual)));
+        columns.extend(reference.replayed.iter().map(|series| prepared.filtered(series)));
     }
     columns
 }

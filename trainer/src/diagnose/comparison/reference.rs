@@ -20,8 +20,9 @@ pub struct Reference {
     pub is_fitted: bool,
     /// Effects of the catalogue that it holds itself.
     pub effects: Vec<EffectId>,
-    /// What the law leaves of the simulation from which it was learned, where that is of the same motion.
-    pub replayed_residual: Option<Vec<f64>>,
+    /// What the law leaves of the simulation from which it was learned, where that is of the same motion: series that the recording may have any
+    /// share of.
+    pub replayed: Vec<Vec<f64>>,
     /// Root mean square, behind the filter, of what its formulas get wrong beside that.
     pub formula_error: f64,
     /// Torque of each direction in which the law is not sure of itself, at one standard deviation.

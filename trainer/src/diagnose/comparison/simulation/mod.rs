@@ -13,7 +13,9 @@ mod tests;
 mod turn_over;
 
 use crate::diagnose::comparison::columns::nuisances;
-use crate::diagnose::comparison::reference::{Outside, Reference, coulomb_and_viscous, tabulated_velocities};
+use crate::diagnose::comparison::reference::{
+    Outside, Reference, coulomb_and_viscous, sliding_friction, tabulated_velocities,
+};
 use crate::diagnose::comparison::turn_over::{LEAST_ROWS, TurnOver};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
@@ -99,7 +101,7 @@ pub fn learn(simulation: &Signals, real: &Signals, find_effects: FindEffects) ->
     let mut law = if holds_effects { with_effects().unwrap_or(law) } else { law };
     let rest = residual_noise(simulation, &law).filter(|rest| rest.noise < QUIET_NOISE_RATIO * noise);
     law.formula_error = rest.map_or(0.0, |rest| rest.formula_error);
-    law.replay = Some(ReplayedResidual::of(&simulation.torque, &law.torque(&prepared.state), &prepared.state));
+    law.replay = Some(ReplayedResidual::of(law.left_of(simulation, &prepared.state), &prepared.state));
     Ok(law)
 }
 
@@ -290,9 +292,17 @@ impl InverseLaw {
         })
     }
 
-    /// Whole torque of the law at the states of a recording.
-    fn torque(&self, state: &JointState) -> Vec<f64> {
-        weighted(&self.columns(state), &self.coefficients)
+    /// What the law leaves of the torque of its simulation, at each sample. Where friction turns over before the velocity the change of friction
+    /// with time beside it: by how much earlier it does goes with the step of the simulator, which a recording does not have.
+    fn left_of(&self, simulation: &Signals, state: &JointState) -> Vec<Vec<f64>> {
+        let columns = self.columns(state);
+        let torque = weighted(&columns, &self.coefficients);
+        let residual = state.map(|i| simulation.torque[i] - torque[i]);
+        let friction = weighted(&columns[..self.friction_width()], &self.coefficients[..self.friction_width()]);
+        let [_, viscous] = sliding_friction(&self.friction_curve(), self.top_speed).unwrap_or_default();
+        let turning = state.map(|i| friction[i] - viscous * state.velocity[i] + residual[i]);
+        let rate = self.relaxation_s.map(|_| state.rate_of(&turning));
+        std::iter::once(residual).chain(rate).collect()
     }
 
     /// The part of the torque that goes with acceleration, position and a given rigid body, constant torque included, from the columns
@@ -320,7 +330,7 @@ impl InverseLaw {
             rigid_body: self.rigid_body_of(&columns),
             jacobian: coulomb_and_viscous(&self.sign(state), &state.velocity),
             effects: self.effects().map(|(effect, ..)| effect).collect(),
-            replayed_residual: met.map(|met| met.torque),
+            replayed: met.map_or_else(Vec::new, |met| met.series),
             formula_error,
             uncertainty: self.uncertainty.iter().map(|direction| weighted(&columns, direction)).collect(),
             outside: Outside::default(),

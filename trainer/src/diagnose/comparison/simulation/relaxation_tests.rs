@@ -2,6 +2,7 @@
 
 use super::{learn, learn_static};
 use crate::diagnose::measurement::signals::Signals;
+use crate::numerics::least_squares::least_squares;
 
 /// 0.4 kg m2 with Coulomb friction of 2 N m that turns over `ahead` seconds before the velocity, logged every 4 ms.
 fn moving(ahead: f64) -> Signals {
@@ -32,6 +33,20 @@ fn the_relaxation_of_a_soft_constraint_is_found_and_stays_out_of_the_law() {
             assert!((friction - 2.0 * (speed / law.sign_velocity).tanh()).abs() < 0.25, "{friction} at {speed}");
         }
     }
+}
+
+/// A simulator that steps in 1 ms and a joint that it computed in 0.25 ms differ by 0.375 ms.
+#[test]
+fn a_step_of_the_simulator_shifts_where_friction_turns_over() {
+    let (simulation, real) = (moving_softly(0.0095, 0.02), moving_softly(0.0095 + 0.000_375, 0.02));
+    let law = learn(&simulation, &real, &|_| Vec::new()).unwrap();
+    let reference = law.at(&real.states());
+    let [residual, rate] = &reference.replayed[..] else { panic!("{} series", reference.replayed.len()) };
+    let left = real.states().map(|i| real.torque[i] - reference.torque[i]);
+    let runs = [10..left.len() - 10];
+    let shifted = [residual.clone(), rate.clone()];
+    let found = least_squares(&shifted, &left, &runs).unwrap();
+    assert!((found[0] - 1.0).abs() < 0.05 && (found[1] / 0.000_375 - 1.0).abs() < 0.2, "{found:?}");
 }
 
 #[test]

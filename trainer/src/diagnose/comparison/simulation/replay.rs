@@ -13,58 +13,58 @@ const SAME_MOTION_SHARE: f64 = 0.02;
 /// of a few hertz hardly lags more; larger takes another reversal for the same.
 const SAME_INSTANT_S: f64 = 0.06;
 
-/// Torque left over time, with the position and velocity at which it was left.
+/// What is left over time, with the position and velocity at which it was.
 #[derive(Clone, Debug)]
 pub(crate) struct ReplayedResidual {
     /// Time since the start, s.
     time: Vec<f64>,
     position: Vec<f64>,
     velocity: Vec<f64>,
-    torque: Vec<f64>,
+    series: Vec<Vec<f64>>,
 }
 
 /// What of it a recording meets again.
 pub(crate) struct Replay {
-    /// Torque at every sample, nothing beyond the simulation.
-    pub torque: Vec<f64>,
+    /// Each series at every sample, nothing beyond the simulation.
+    pub series: Vec<Vec<f64>>,
     /// Share of the samples within the simulation.
     pub share: f64,
 }
 
 impl ReplayedResidual {
-    /// What a law leaves of the torque of a simulation, at its states.
-    pub fn of(torque: &[f64], law: &[f64], state: &JointState) -> Self {
+    /// What a law leaves of a simulation, as series at its states.
+    pub fn of(series: Vec<Vec<f64>>, state: &JointState) -> Self {
         Self {
             time: since_start(&state.time),
             position: state.position.clone(),
             velocity: state.velocity.clone(),
-            torque: torque.iter().zip(law).map(|(torque, law)| torque - law).collect(),
+            series,
         }
     }
 
-    /// The torque at the same instants of a recording. `None` where that is of another motion.
+    /// The series at the same instants of a recording. `None` where that is of another motion.
     pub fn at(&self, state: &JointState) -> Option<Replay> {
-        let (mut torque, mut differences) = (Vec::with_capacity(state.len()), Vec::new());
+        let (mut series, mut differences) = (vec![Vec::with_capacity(state.len()); self.series.len()], Vec::new());
         let time = since_start(&state.time);
         let instants = self.same_instants(&time, state);
         for (since, position) in time.iter().zip(&state.position) {
             let since = simulated_time(*since, &instants);
             let after = self.time.partition_point(|earlier| *earlier <= since);
             if after == 0 || after == self.time.len() {
-                torque.push(0.0);
+                series.iter_mut().for_each(|series| series.push(0.0));
                 continue;
             }
             let share = (since - self.time[after - 1]) / (self.time[after] - self.time[after - 1]);
             let between = |series: &[f64]| series[after - 1] + share * (series[after] - series[after - 1]);
             differences.push(between(&self.position) - position);
-            torque.push(between(&self.torque));
+            series.iter_mut().zip(&self.series).for_each(|(met, left)| met.push(between(left)));
         }
         if differences.is_empty() {
             return None;
         }
         let difference = root_mean_square(&differences);
-        let share = differences.len() as f64 / torque.len() as f64;
-        (difference <= SAME_MOTION_SHARE * state.span()).then_some(Replay { torque, share })
+        let share = differences.len() as f64 / state.len() as f64;
+        (difference <= SAME_MOTION_SHARE * state.span()).then_some(Replay { series, share })
     }
 
     /// Instants at which the recorded joint comes to rest or starts, each with that of the simulated one, s since the start.
@@ -141,10 +141,11 @@ mod tests {
 
     #[test]
     fn what_is_left_is_met_at_the_same_time_of_the_same_motion_only() {
-        let torque: Vec<f64> = (0..400).map(f64::from).collect();
-        let left = ReplayedResidual::of(&torque, &[100.0; 400], &moving(0.0, 3.0, 0.0));
+        let torque: Vec<f64> = (0..400).map(|i| f64::from(i) - 100.0).collect();
+        let left = ReplayedResidual::of(vec![torque], &moving(0.0, 3.0, 0.0));
         let later = left.at(&moving(50.0, 3.0, 0.0)).unwrap();
-        assert!((later.torque[250] - 150.0).abs() < 1e-6 && later.torque.last() == Some(&0.0), "{}", later.torque[250]);
+        let met = &later.series[0];
+        assert!((met[250] - 150.0).abs() < 1e-6 && met.last() == Some(&0.0), "{}", met[250]);
         assert!(later.share > 0.99, "{}", later.share);
         assert!(left.at(&moving(0.0, 3.5, 0.0)).is_none());
     }
@@ -152,9 +153,9 @@ mod tests {
     #[test]
     fn what_is_left_at_a_reversal_is_met_at_the_same_reversal_where_that_comes_earlier() {
         let torque: Vec<f64> = (0..400).map(|i| f64::from(u8::from(i > 100))).collect();
-        let left = ReplayedResidual::of(&torque, &[0.0; 400], &moving(0.0, 0.3, 0.0));
+        let left = ReplayedResidual::of(vec![torque], &moving(0.0, 0.3, 0.0));
         let met = left.at(&moving(0.0, 0.3, 0.03)).unwrap();
-        let step = met.torque.iter().position(|torque| *torque > 0.5).unwrap();
+        let step = met.series[0].iter().position(|torque| *torque > 0.5).unwrap();
         assert!((97..=99).contains(&step), "{step}");
     }
 
