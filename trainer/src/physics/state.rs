@@ -2,6 +2,7 @@
 
 use super::EffectId;
 use crate::actuator::Commanded;
+use crate::numerics::mean_sign::{mean_clamped, mean_tanh};
 use crate::numerics::statistics::quantile;
 use std::ops::Range;
 
@@ -224,34 +225,47 @@ impl JointState {
     /// Smoothed sign of a velocity, averaged over each sample with the velocity linear in between: the mean of tanh, so
     /// that a reversal between two samples is not rounded to one of them.
     pub fn averaged_sign(&self, velocity: &[f64], width: f64) -> Vec<f64> {
-        let log_cosh = |x: f64| x.abs() + (-2.0 * x.abs()).exp().ln_1p();
-        let mut sign = vec![0.0; velocity.len()];
+        self.over_samples(velocity, |before, here, after| {
+            let (before, after) = (before / width, after / width);
+            if (after - before).abs() < 1e-4 { (here / width).tanh() } else { mean_tanh(before, after) }
+        })
+    }
+
+    /// The same of the velocity that the joint is about to have after a time (s).
+    pub(crate) fn leading_sign(&self, lead_s: f64, width: f64) -> Vec<f64> {
+        self.averaged_sign(&self.led_velocity(lead_s), width)
+    }
+
+    /// The same of a sign that turns over in a straight line, as constraints of solvers do up to their largest force.
+    pub(crate) fn straight_sign(&self, lead_s: f64, width: f64) -> Vec<f64> {
+        self.over_samples(&self.led_velocity(lead_s), |before, _, after| {
+            mean_clamped(before.min(after), before.max(after), width)
+        })
+    }
+
+    /// A value for each sample by the velocities half a sample before it, in it, and half a sample after it.
+    fn over_samples(&self, velocity: &[f64], of: impl Fn(f64, f64, f64) -> f64) -> Vec<f64> {
+        let mut values = vec![0.0; velocity.len()];
         for segment in &self.segments {
             let last = segment.end - 1;
             for i in segment.clone() {
-                let before = 0.5 * (velocity[i] + velocity[i.saturating_sub(1).max(segment.start)]) / width;
-                let after = 0.5 * (velocity[i] + velocity[(i + 1).min(last)]) / width;
-                let change = after - before;
-                sign[i] = if change.abs() < 1e-4 {
-                    (velocity[i] / width).tanh()
-                } else {
-                    (log_cosh(after) - log_cosh(before)) / change
-                };
+                let before = 0.5 * (velocity[i] + velocity[i.saturating_sub(1).max(segment.start)]);
+                let after = 0.5 * (velocity[i] + velocity[(i + 1).min(last)]);
+                values[i] = of(before, velocity[i], after);
             }
         }
-        sign
+        values
     }
 
     /// Lets the smoothed sign turn below another velocity.
     pub(crate) fn turn_over_within(&mut self, velocity: f64) {
-        self.sign_velocity = velocity;
-        self.sign = self.averaged_sign(&self.led_velocity(self.sign_lead_s), velocity);
+        self.turn_over_at(self.sign_lead_s, velocity);
     }
 
     /// Lets it turn below another velocity, and a time (s) before the velocity does.
     pub(crate) fn turn_over_at(&mut self, lead_s: f64, width: f64) {
-        self.sign_lead_s = lead_s;
-        self.turn_over_within(width);
+        (self.sign_lead_s, self.sign_velocity) = (lead_s, width);
+        self.sign = self.leading_sign(lead_s, width);
     }
 
     /// The velocity that the joint is about to have after a time (s) at its acceleration; at rest it has none, and its acceleration is noise.

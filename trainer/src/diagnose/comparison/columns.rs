@@ -88,17 +88,24 @@ pub(crate) fn differentiation_bias(prepared: &Prepared) -> Vec<Vec<f64>> {
     vec![prepared.filtered(&sign), prepared.filtered(&acceleration)]
 }
 
+/// Width of a sign that turns over in a straight line over that of the hyperbolic tangent from which it differs least (least squares).
+const STRAIGHT_WIDTH_RATIO: f64 = 1.3;
+
 /// What is uncertain of how friction turns over. A smoothed sign that stands for a jump may be wider; a width and a lead that a recording
-/// shows are as uncertain as their estimates.
+/// shows are as uncertain as their estimates, and what leads may be a constraint, which is straight up to its largest force.
 fn turn_over_error(prepared: &Prepared) -> Vec<Vec<f64>> {
     let (state, lead_s) = (&prepared.state, prepared.state.sign_lead_s);
     let moved = |lead_s: f64, width: f64| {
-        let sign = state.averaged_sign(&state.led_velocity(lead_s), width);
+        let sign = state.leading_sign(lead_s, width);
         prepared.filtered(&state.map(|i| sign[i] - state.sign[i]))
     };
     let ratio = if prepared.turns_over_sharply() { SOFT_SIGN_WIDTH_RATIO } else { STEP_RATIO };
     let mut errors = vec![moved(lead_s, ratio * state.sign_velocity)];
-    errors.extend((lead_s > 0.0).then(|| moved(STEP_RATIO * lead_s, state.sign_velocity)));
+    if lead_s > 0.0 {
+        errors.push(moved(STEP_RATIO * lead_s, state.sign_velocity));
+        let straight = state.straight_sign(lead_s, STRAIGHT_WIDTH_RATIO * state.sign_velocity);
+        errors.push(prepared.filtered(&state.map(|i| straight[i] - state.sign[i])));
+    }
     errors
 }
 

@@ -85,12 +85,8 @@ impl Comparison {
 
     /// The same with the recording of the simulation from which the law was learned, as the recording's encoder would have read it.
     #[must_use]
-    pub fn beside(self, mut simulation: Signals, law: Reference) -> Self {
-        let step = self.signals.position_resolution;
-        if step > simulation.position_resolution {
-            simulation.position.iter_mut().for_each(|position| *position = (*position / step).round() * step);
-            simulation.position_resolution = step;
-        }
+    pub fn beside(self, simulation: Signals, law: Reference) -> Self {
+        let simulation = simulation.read_in_steps(self.signals.position_resolution);
         Self { simulation: Some(Box::new(Self::with(simulation, law))), ..self }
     }
 

@@ -13,6 +13,7 @@ use crate::numerics::least_squares::{
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::physics::JointState;
 use crate::physics::presliding::{breakaway_distances, bristle};
+use crate::samples::SLIDING_SPEED_SHARE;
 use crate::samples::lead::{SHOWN_NATS as SHOWN_LEAD_NATS, TRIED_S};
 
 /// Widths of the smoothed sign that are tried, over what the recording resolves; each is four times the one before.
@@ -41,14 +42,20 @@ pub(crate) struct TurnOver {
 
 impl TurnOver {
     /// With which most is explained, from the least width on and with a lead if there may be one; `None` where nothing is, or where more is
-    /// explained up to the end of what turns over.
-    pub fn most_explained(least: f64, may_lead: bool, explained: impl Fn(Self) -> Option<f64>) -> Option<Self> {
+    /// explained up to the end of what turns over, at `widest` or before.
+    pub fn most_explained(
+        least: f64,
+        widest: f64,
+        may_lead: bool,
+        explained: impl Fn(Self) -> Option<f64>,
+    ) -> Option<Self> {
         let leads = std::iter::once(0.0).chain(TRIED_S.into_iter().filter(|_| may_lead));
-        let tried = leads.flat_map(|lead_s| WIDTH_RATIOS.map(|ratio| Self { lead_s, width: ratio * least }));
+        let widths = WIDTH_RATIOS.map(|ratio| ratio * least).into_iter().filter(|width| *width < widest);
+        let tried = leads.flat_map(|lead_s| widths.clone().map(move |width| Self { lead_s, width }));
         let valued = tried.filter_map(|at| Some((at, explained(at)?)));
         let (nearest, _) = valued.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let longest_s = END_RATIO * TRIED_S[TRIED_S.len() - 1];
-        let widest = END_RATIO * WIDTH_RATIOS[WIDTH_RATIOS.len() - 1] * least;
+        let widest = widest.min(END_RATIO * WIDTH_RATIOS[WIDTH_RATIOS.len() - 1] * least);
         let step_s = (0.5 * nearest.lead_s).max(TRIED_S[0]);
         let width = Movable { index: 1, step: 0.5, low: least.ln(), high: widest.ln() };
         let lead = Movable { index: 0, step: step_s, low: 0.0, high: longest_s };
@@ -156,7 +163,10 @@ impl<'a> Evidence<'a> {
 
     /// With which most is explained from `least` on.
     fn most(&self, least: f64, may_lead: bool) -> Option<TurnOver> {
-        TurnOver::most_explained(least, may_lead, |at| self.nats(at))
+        // Beside a law a part of the friction turns over otherwise, and where the joint slides there is none of that.
+        let widest =
+            self.law_sign.as_ref().map_or(f64::INFINITY, |_| SLIDING_SPEED_SHARE * self.prepared.state.top_speed());
+        TurnOver::most_explained(least, widest, may_lead, |at| self.nats(at))
     }
 
     fn value(&self, at: TurnOver) -> f64 {

@@ -17,7 +17,7 @@ const TURN_OVER_STEP_S: f64 = 0.0005;
 /// evaluates friction at the begin of a step, and the steps of recording and simulation may differ. `None` where it turns over with it.
 fn earlier_turn_over(prepared: &Prepared) -> Option<Vec<f64>> {
     let state = &prepared.state;
-    let sign = |lead_s: f64| state.averaged_sign(&state.led_velocity(lead_s), state.sign_velocity);
+    let sign = |lead_s: f64| state.leading_sign(lead_s, state.sign_velocity);
     let lead_s = Some(state.sign_lead_s).filter(|lead_s| *lead_s > 0.0)?;
     let (from, to) = (sign(lead_s - TURN_OVER_STEP_S), sign(lead_s + TURN_OVER_STEP_S));
     Some(prepared.filtered(&state.map(|i| to[i] - from[i])))

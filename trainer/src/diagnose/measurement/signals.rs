@@ -138,6 +138,16 @@ impl Signals {
         Self { period, segments, time, position, torque, rotary: true, ..Self::default() }
     }
 
+    /// The same signals as an encoder with a step would have read the position, where their own is finer.
+    #[must_use]
+    pub fn read_in_steps(mut self, step: f64) -> Self {
+        if step > self.position_resolution {
+            self.position.iter_mut().for_each(|position| *position = (*position / step).round() * step);
+            self.position_resolution = step;
+        }
+        self
+    }
+
     /// The same signals with the torque, recorded late by `delay` (s; negative where early), put back to its time; what has no torque
     /// then is cut off the segments.
     pub fn realigned(&self, delay: f64) -> Self {

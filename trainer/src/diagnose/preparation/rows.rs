@@ -4,6 +4,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::numerics::filter::windowed_sinc::ZeroPhase;
 use crate::numerics::least_squares::rows_in;
 use crate::physics::JointState;
+use crate::samples::SLIDING_SPEED_SHARE;
 use std::ops::Range;
 
 /// Working samples a period of the cut-off: fine enough for the transition of the filter.
@@ -178,15 +179,20 @@ fn runs_of_motion(
     runs
 }
 
-/// Samples at which the encoder shows no motion over four milliseconds: the joint sticks, if only for a moment.
-pub(crate) fn standstill(signals: &Signals) -> Vec<bool> {
+/// Samples at which the encoder shows no motion over four milliseconds, or over as long as it takes to show that of a joint that slides, by its top
+/// speed: the joint sticks, if only for a moment.
+pub(crate) fn standstill(signals: &Signals, top_speed: f64) -> Vec<bool> {
     const WINDOW_S: f64 = 0.004;
+    /// Steps of the encoder that tell no motion: one is rounding, and the half lies between one and two.
+    const STEPS_OF_REST: f64 = 1.5;
+    let still = STEPS_OF_REST * signals.position_resolution;
+    let shown_s = still / (SLIDING_SPEED_SHARE * top_speed).max(f64::MIN_POSITIVE);
     let mut stuck = vec![false; signals.position.len()];
-    let steps = ((WINDOW_S / signals.period).round() as usize).max(1);
+    let steps = ((WINDOW_S.max(shown_s) / signals.period).round() as usize).max(1);
     for segment in &signals.segments {
         for begin in segment.start..segment.end.saturating_sub(steps) {
             let moved = (signals.position[begin + steps] - signals.position[begin]).abs();
-            if moved <= 1.5 * signals.position_resolution {
+            if moved <= still {
                 stuck[begin + steps / 2..=begin + steps.div_ceil(2)].fill(true);
             }
         }

@@ -146,8 +146,11 @@ impl Prepared {
             None => signals.torque.clone(),
         };
         let unsure = hesitation(&state.velocity, state.sign_velocity, segments);
-        let mut left_out: Vec<bool> =
-            standstill(signals).into_iter().zip(unsure).map(|(stuck, unsure)| stuck || unsure).collect();
+        let mut left_out: Vec<bool> = standstill(signals, state.top_speed())
+            .into_iter()
+            .zip(unsure)
+            .map(|(stuck, unsure)| stuck || unsure)
+            .collect();
         left_out.iter_mut().zip(known.outside).for_each(|(left_out, outside)| *left_out |= outside);
         let Division { rows, blocks, sealed } = divide(&state, &left_out, &filter, lock);
         Self {

@@ -7,6 +7,7 @@
 use crate::numerics::averages::Averages;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::least_squares::{explained_by_positive, orthonormal, project_out};
+use crate::numerics::mean_sign::mean_clamped;
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::numerics::regression::least_squares;
 use crate::samples::states::States;
@@ -51,20 +52,11 @@ impl Motion {
     /// What a lead adds to friction for each unit of Coulomb torque at the rows.
     fn added(&self, Lead { time_s, width }: Lead) -> Vec<f64> {
         let added = self.states.iter().map(|&[velocity, span, acceleration]| {
-            mean_sign(velocity + time_s * acceleration, span, width) - mean_sign(velocity, span, 0.0)
+            let mean = |middle: f64, width: f64| mean_clamped(middle - 0.5 * span, middle + 0.5 * span, width);
+            mean(velocity + time_s * acceleration, width) - mean(velocity, 0.0)
         });
         self.averages.over(&added.collect::<Vec<f64>>())
     }
-}
-
-/// Mean over velocities within `span` of one in their middle, of a sign that turns over in a straight line within `width` of zero.
-fn mean_sign(middle: f64, span: f64, width: f64) -> f64 {
-    let (least, most) = (middle - 0.5 * span, middle + 0.5 * span);
-    if most <= -width || least >= width {
-        return middle.signum();
-    }
-    let integral = |v: f64| if v.abs() < width { 0.5 * (v * v / width + width) } else { v.abs() };
-    if span > 0.0 { (integral(most) - integral(least)) / span } else { (middle / width).clamp(-1.0, 1.0) }
 }
 
 /// What friction that turns over before the velocity, and softly, adds for each unit of Coulomb torque at the rows of the states. `None` where a
@@ -117,17 +109,6 @@ mod tests {
     use crate::samples::states::states;
     use crate::samples::{Preparation, Request, prepare};
 
-    #[test]
-    fn the_mean_sign_is_that_of_many_velocities() {
-        let asked = [(0.1, 0.5, 0.0), (-0.05, 0.2, 0.08), (0.3, 0.1, 0.2), (0.02, 0.0, 0.05), (0.0, 0.1, 0.3)];
-        for (middle, span, width) in asked {
-            let sign = |v: f64| if width > 0.0 { (v / width).clamp(-1.0, 1.0) } else { v.signum() };
-            let velocity = |k: i32| middle + span * ((f64::from(k) + 0.5) / 1e4 - 0.5);
-            let mean = (0..10_000).map(|k| sign(velocity(k))).sum::<f64>() / 1e4;
-            assert!((mean_sign(middle, span, width) - mean).abs() < 1e-3, "{middle} {span} {width}");
-        }
-    }
-
     /// A body of 0.5 kg m2 with Coulomb torque of 2 N m and viscous friction, for a minute at 250 Hz, whose friction has the sign that the velocity is
     /// about to have after a time (s), within a velocity.
     fn separated(lead_s: f64, width: f64) -> Separation {
@@ -139,9 +120,8 @@ mod tests {
             let velocity = |t: f64| sum(t, |a, w, t| a * w * (w * t).cos());
             let acceleration = |t: f64| sum(t, |a, w, t| -a * w * w * (w * t).sin());
             let torque = |t: f64| {
-                2.0 * mean_sign(velocity(t) + lead_s * acceleration(t), 0.0, width)
-                    + 0.3 * velocity(t)
-                    + 0.5 * acceleration(t)
+                let led = velocity(t) + lead_s * acceleration(t);
+                2.0 * mean_clamped(led, led, width) + 0.3 * velocity(t) + 0.5 * acceleration(t)
             };
             // A torque is the mean over the sample around its instant.
             let mean = (0..20).map(|k| torque(t + 0.004 * ((f64::from(k) + 0.5) / 20.0 - 0.5))).sum::<f64>() / 20.0;

@@ -100,7 +100,11 @@ fn with_simulation(
     let simulated = as_recorded(computed, &real[0], joint)?;
     let mut signals = joined((real, told), joint)?;
     let told_simulation = told_simulation.as_slice();
-    let simulation = joined((std::slice::from_ref(&simulated), told_simulation), joint)?;
+    let mut simulation = joined((std::slice::from_ref(&simulated), told_simulation), joint)?;
+    if told.is_empty() {
+        // What the grain of the encoder makes of the recording's law it makes of the simulation's.
+        simulation = simulation.read_in_steps(signals.position_resolution);
+    }
     let state = states(&signals, &real[0])?;
     // What a commanded joint has to put out, which is what its gear carries, is all of the law.
     let is_static = in_one_model && told_simulation.is_empty();

@@ -243,7 +243,7 @@ impl InverseLaw {
 
     /// Smoothed sign of its friction.
     fn sign(&self, state: &JointState) -> Vec<f64> {
-        state.averaged_sign(&state.led_velocity(self.lead_s), self.sign_velocity)
+        state.leading_sign(self.lead_s, self.sign_velocity)
     }
 
     fn columns(&self, state: &JointState) -> Vec<Vec<f64>> {

@@ -1,7 +1,9 @@
 //! Simulations whose friction turns over before the velocity, with it and after it.
 
 use super::{learn, learn_static};
+use crate::diagnose::comparison::reference::Comparison;
 use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::rows::Lock;
 use crate::numerics::least_squares::least_squares;
 
 /// 0.4 kg m2 with Coulomb friction of 2 N m that turns over `ahead` seconds before the velocity, logged every 4 ms.
@@ -43,9 +45,9 @@ fn a_step_of_the_simulator_shifts_where_friction_turns_over() {
     let reference = law.at(&real.states());
     let [residual, rate] = &reference.replayed[..] else { panic!("{} series", reference.replayed.len()) };
     let left = real.states().map(|i| real.torque[i] - reference.torque[i]);
-    let runs = [10..left.len() - 10];
-    let shifted = [residual.clone(), rate.clone()];
-    let found = least_squares(&shifted, &left, &runs).unwrap();
+    let prepared = Comparison::from(real).prepare(Lock::Nothing);
+    let shifted = [residual, rate].map(|series| prepared.filtered(series));
+    let found = least_squares(&shifted, &prepared.filtered(&left), &prepared.open_runs()).unwrap();
     assert!((found[0] - 1.0).abs() < 0.05 && (found[1] / 0.000_375 - 1.0).abs() < 0.2, "{found:?}");
 }
 

@@ -29,7 +29,7 @@ pub(super) fn turn_over(law: &InverseLaw, prepared: &Prepared) -> TurnOver {
         explained_energy(&columns, &target, &runs)
     };
     let sharp = TurnOver { lead_s: 0.0, width: least };
-    let Some(found) = TurnOver::most_explained(least, true, explained) else { return sharp };
+    let Some(found) = TurnOver::most_explained(least, f64::INFINITY, true, explained) else { return sharp };
     let is_resolved = found.lead_s > LEAST_LEAD * state.period;
     TurnOver { lead_s: if is_resolved { found.lead_s } else { 0.0 }, ..found }
 }
