@@ -24,6 +24,8 @@ pub struct Traces {
     pub after: Vec<f64>,
     /// Torque of each finding, in their order.
     pub effects: Vec<Vec<f64>>,
+    /// What base and effects leave together over the deviation that is expected of it: of the noise, and of what is fitted.
+    pub expected_ratio: Vec<f64>,
     /// Whether the row was locked away from fitting and choosing.
     pub locked: Vec<bool>,
     /// Whether friction keeps its sign as far as the row's filter reaches.
@@ -34,12 +36,12 @@ pub struct Traces {
     pub run_starts: Vec<usize>,
 }
 
-/// What the locked stretch with the most is left with: what happened in it once, no open row saw.
+/// What the locked stretch with the most, over what is expected, is left with: what happened in it once, no open row saw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstLocked {
     /// Its root mean square.
     pub rms: f64,
-    /// The same over that of the open stretch with the most.
+    /// Over what is expected of noise and fit, and then over that of the open stretch with the most.
     pub over_open: f64,
     /// From and to, in s.
     pub when_s: [f64; 2],
@@ -65,12 +67,15 @@ impl Traces {
             .filter_map(|channel| Some((channel.name(), prepared.at_rows(&channel.series(state)?))))
             .filter(|(_, values)| varies(values))
             .collect();
+        let after = rest(workbench, improved);
+        let ratio = |(left, fitted): (&f64, &f64)| left / improved.noise.rms.hypot(*fitted).max(f64::MIN_POSITIVE);
         Self {
+            expected_ratio: after.iter().zip(&improved.torque_deviation).map(ratio).collect(),
             time: prepared.at_rows(&state.time),
             velocity: prepared.at_rows(&state.velocity),
             torque: prepared.filtered(&prepared.torque),
             before: rest(workbench, baseline),
-            after: rest(workbench, improved),
+            after,
             effects,
             locked,
             sign_is_sure: prepared.sign_is_sure(),
@@ -115,17 +120,19 @@ impl Traces {
             let pieces = starts.map(move |start| start..(start + usual_length.max(1)).min(end));
             pieces.filter(|piece| 4 * sure(piece).count() > usual_length)
         };
-        let rms = |piece: Range<usize>| {
-            let energy: f64 = sure(&piece).map(|row| self.after[row].powi(2)).sum();
-            ((energy / sure(&piece).count() as f64).sqrt(), piece)
+        let rms = |series: &[f64], piece: &Range<usize>| {
+            let energy: f64 = sure(piece).map(|row| series[row].powi(2)).sum();
+            (energy / sure(piece).count() as f64).sqrt()
         };
+        // What no open row is like is fitted by guess, and off by as much.
+        let over_expected = |piece: Range<usize>| (rms(&self.expected_ratio, &piece), piece);
         let worst = |stretches: Vec<(usize, usize)>| {
-            stretches.into_iter().flat_map(pieces).map(rms).max_by(|a, b| a.0.total_cmp(&b.0))
+            stretches.into_iter().flat_map(pieces).map(over_expected).max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let of_open = worst(open).map_or(0.0, |(rms, _)| rms);
-        worst(shut).map(|(rms, piece)| WorstLocked {
-            over_open: rms / of_open.max(f64::MIN_POSITIVE),
-            rms,
+        let of_open = worst(open).map_or(0.0, |(ratio, _)| ratio);
+        worst(shut).map(|(ratio, piece)| WorstLocked {
+            over_open: ratio / of_open.max(f64::MIN_POSITIVE),
+            rms: rms(&self.after, &piece),
             when_s: [self.time[piece.start], self.time[piece.end - 1]],
         })
     }
@@ -164,7 +171,8 @@ mod tests {
         let locked = (0..104).map(|i| i >= 80).collect();
         let sign_is_sure = (0..104).map(|i| !reversal.contains(&i)).collect();
         let run_starts = vec![0, 20, 40, 60, 80, 100];
-        Traces { time: vec![0.0; 104], after, locked, sign_is_sure, run_starts, ..Traces::default() }
+        let expected_ratio = after.iter().map(|left| left / 0.1).collect();
+        Traces { time: vec![0.0; 104], after, expected_ratio, locked, sign_is_sure, run_starts, ..Traces::default() }
             .worst_locked()
             .unwrap()
             .over_open

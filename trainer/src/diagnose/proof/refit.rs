@@ -9,6 +9,7 @@ use crate::diagnose::search::accepted::{Accepted, others};
 use crate::numerics::covariance;
 use crate::numerics::least_squares::{dot, least_squares, residual, rows_in, weighted};
 use crate::physics::{EffectId, Shape};
+use nalgebra::DVector;
 
 /// The joint refit of base and effects.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct Refit {
     pub base_deviation: Vec<f64>,
     /// The effects.
     pub effects: Vec<Fitted>,
+    /// Deviation of the fitted torque at every working row by that of the coefficients; rows that nothing like them is fitted to have a large one.
+    pub torque_deviation: Vec<f64>,
     /// Noise of what is left.
     pub noise: Noise,
     /// Whether it is a plain least-squares fit, because what is left is the error of formulas rather than noise.
@@ -139,8 +142,14 @@ pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refi
     for (row, (index, slot)) in (columns.len()..).zip(owners) {
         effects[index].shape_deviation[slot] = Some(deviation(row));
     }
+    let of_fitted = covariance.view((0, 0), (columns.len(), columns.len()));
+    let torque_deviation = |row: usize| {
+        let torque = DVector::from_fn(columns.len(), |i, _| columns[i][row]);
+        torque.dot(&(of_fitted * &torque)).max(0.0).sqrt()
+    };
     Some(Refit {
         base: solution[..base_width].to_vec(),
+        torque_deviation: (0..workbench.prepared.rows.len()).map(torque_deviation).collect(),
         base_deviation: (0..base_width).map(deviation).collect(),
         effects,
         noise,
