@@ -116,10 +116,11 @@ pub(crate) fn explained_energy(columns: &[Vec<f64>], target: &[f64], runs: &[Ran
     Some(solution.dot(&asked)).filter(|energy| energy.is_finite())
 }
 
-/// Energy of `target` that one column explains over runs with a coefficient that is not negative; `None` of a column that is nothing.
-pub(crate) fn explained_by_positive(column: &[f64], target: &[f64], runs: &[Range<usize>]) -> Option<f64> {
-    let share = dot(column, target, runs).max(0.0);
-    Some(share * share / dot(column, column, runs)).filter(|energy| energy.is_finite())
+/// Energy of `target` that one column explains over runs with a coefficient from nought to `most`; `None` of a column that is nothing.
+pub(crate) fn explained_up_to(most: f64, column: &[f64], target: &[f64], runs: &[Range<usize>]) -> Option<f64> {
+    let (together, own) = (dot(column, target, runs), dot(column, column, runs));
+    let coefficient = (together / own).clamp(0.0, most);
+    Some(coefficient * (2.0 * together - coefficient * own)).filter(|energy| energy.is_finite())
 }
 
 /// What a fit leaves: target less the weighted columns.

@@ -57,8 +57,7 @@ impl Base {
     /// Builds and fits the base, and writes the predicted torque and the friction curve into the states.
     /// `None` when the recording cannot determine it (no motion).
     pub fn fit(prepared: &mut Prepared, comparison: &Comparison, kind: BaseKind) -> Option<Self> {
-        let turn_over = TurnOver::of_recording(prepared, comparison, kind);
-        if let Some(turn_over) = turn_over {
+        if let Some(turn_over) = TurnOver::of_recording(prepared, comparison, kind) {
             turn_over.turn(&mut prepared.state);
         }
         let raw = raw_columns(&prepared.state, comparison, kind);
@@ -66,12 +65,6 @@ impl Base {
         let target = prepared.filtered(&prepared.friction_torque);
         let runs = prepared.open_runs();
         let mut columns = filtered_columns(prepared, comparison, &raw);
-        if let (BaseKind::Reference, Some(_), Some(law)) = (kind, turn_over, &comparison.reference) {
-            // A fitted law is a function of the velocity alone, as soft as its own data told, whatever solver made the recording.
-            let state = &prepared.state;
-            let softer = law.sign(state).map(|own| state.map(|i| state.sign[i] - own[i]));
-            columns.extend(softer.map(|column| prepared.filtered(&column)));
-        }
         let coefficients = least_squares(&columns, &target, &runs)?;
         predict(prepared, comparison, kind, &raw, &coefficients);
         add_soft_sign(prepared, &mut columns, &target);

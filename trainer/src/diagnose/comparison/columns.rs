@@ -46,7 +46,12 @@ pub(crate) fn filtered_columns(
 ) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = raw.iter().map(|(_, column)| prepared.filtered(column)).collect();
     columns.extend(nuisances(prepared));
-    columns.extend(prepared.turns_over_sharply().then(|| sharpness(prepared)));
+    // A fitted law is a function of the velocity alone, as soft as its own data told, whatever made the recording.
+    let fitted = comparison.reference.as_ref().filter(|law| law.is_fitted);
+    match fitted.and_then(|law| law.turned_otherwise(&prepared.state)) {
+        Some(otherwise) => columns.push(prepared.filtered(&otherwise)),
+        None => columns.extend(prepared.turns_over_sharply().then(|| sharpness(prepared))),
+    }
     if let Some(reference) = &comparison.reference {
         columns.extend(reference.replayed.iter().map(|series| prepared.filtered(series)));
     }

@@ -38,12 +38,12 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The sign with which its friction turns over at the states of a recording, from what it has beside viscous friction over the Coulomb
-    /// torque at which it slides. `None` where it has none.
-    pub(crate) fn sign(&self, state: &JointState) -> Option<Vec<f64>> {
+    /// Torque by which its friction would differ if it turned over as the smoothed sign of the states does: by nothing where the joint slides.
+    /// From what the law has beside viscous friction, up to the Coulomb torque at which it slides; `None` where it has none.
+    pub(crate) fn turned_otherwise(&self, state: &JointState) -> Option<Vec<f64>> {
         let [coulomb, viscous] = sliding_friction(&self.friction, state.top_speed())?;
-        let sign = |v: f64| ((friction_at(&self.friction, v) - viscous * v) / coulomb).clamp(-1.0, 1.0);
-        (coulomb > 0.0).then(|| state.map(|i| sign(state.velocity[i])))
+        let turning = |v: f64| (friction_at(&self.friction, v) - viscous * v).clamp(-coulomb, coulomb);
+        (coulomb > 0.0).then(|| state.map(|i| coulomb * state.sign[i] - turning(state.velocity[i])))
     }
 }
 

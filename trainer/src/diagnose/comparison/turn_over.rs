@@ -4,11 +4,11 @@
 //! oppose the velocity that the joint is about to have ([`lead`](crate::samples::lead)).
 
 use crate::diagnose::comparison::columns::{BaseKind, differentiation_bias, raw_columns, sharpness};
-use crate::diagnose::comparison::reference::Comparison;
+use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::least_squares::{
-    explained_by_positive, explained_energy, fit_residual, least_squares, orthonormal, project_out, rows_in,
+    explained_energy, explained_up_to, fit_residual, least_squares, orthonormal, project_out, rows_in,
 };
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::physics::JointState;
@@ -94,8 +94,8 @@ struct Evidence<'a> {
     beside: Vec<Vec<f64>>,
     /// Whitened torque less what that explains.
     target: Vec<f64>,
-    /// The sign with which the friction of a law turns over, where that is what is compared with.
-    law_sign: Option<Vec<f64>>,
+    /// The law, where one is compared with.
+    law: Option<&'a Reference>,
 }
 
 impl<'a> Evidence<'a> {
@@ -118,9 +118,7 @@ impl<'a> Evidence<'a> {
         let sharply = raw_columns(state, comparison, kind);
         let filtered: Vec<Vec<f64>> = sharply.iter().map(|(_, column)| prepared.filtered(column)).collect();
         let coefficients = least_squares(&[&filtered[..], &beside].concat(), &target, &runs)?;
-        let mut law_sign = None;
         if kind == BaseKind::Reference {
-            law_sign = Some(comparison.reference.as_ref()?.sign(state)?);
             beside.extend(filtered);
             beside.push(sharpness(prepared));
         }
@@ -139,10 +137,11 @@ impl<'a> Evidence<'a> {
         let beside = orthonormal(&beside.iter().map(white).collect::<Vec<_>>(), &runs);
         let mut target = white(&target);
         project_out(&mut target, &beside, &runs);
-        Some(Self { prepared, comparison, kind, noise, beside, target, law_sign })
+        let law = comparison.reference.as_ref().filter(|_| kind == BaseKind::Reference);
+        Some(Self { prepared, comparison, kind, noise, beside, target, law })
     }
 
-    /// Log likelihood (nats) that friction explains if it turns over so; beside a law, friction that opposes the motion.
+    /// Log likelihood (nats) that friction explains if it turns over so; beside a law, if a share of the law's does.
     fn nats(&self, at: TurnOver) -> Option<f64> {
         let runs = self.prepared.open_runs();
         let mut state = self.prepared.state.clone();
@@ -152,9 +151,10 @@ impl<'a> Evidence<'a> {
             project_out(&mut column, &self.beside, &runs);
             column
         };
-        if let Some(law_sign) = &self.law_sign {
-            let sign = whitened(&state.map(|i| state.sign[i] - law_sign[i]));
-            return explained_by_positive(&sign, &self.target, &runs).map(|energy| 0.5 * energy);
+        if let Some(law) = self.law {
+            // No more than all of the law's friction turns over otherwise.
+            let otherwise = whitened(&law.turned_otherwise(&state)?);
+            return explained_up_to(1.0, &otherwise, &self.target, &runs).map(|energy| 0.5 * energy);
         }
         let columns = raw_columns(&state, self.comparison, self.kind);
         let columns: Vec<Vec<f64>> = columns.iter().map(|(_, column)| whitened(column)).collect();
@@ -164,8 +164,7 @@ impl<'a> Evidence<'a> {
     /// With which most is explained from `least` on.
     fn most(&self, least: f64, may_lead: bool) -> Option<TurnOver> {
         // Beside a law a part of the friction turns over otherwise, and where the joint slides there is none of that.
-        let widest =
-            self.law_sign.as_ref().map_or(f64::INFINITY, |_| SLIDING_SPEED_SHARE * self.prepared.state.top_speed());
+        let widest = self.law.map_or(f64::INFINITY, |_| SLIDING_SPEED_SHARE * self.prepared.state.top_speed());
         TurnOver::most_explained(least, widest, may_lead, |at| self.nats(at))
     }
 

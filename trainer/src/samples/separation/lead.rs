@@ -6,7 +6,7 @@
 
 use crate::numerics::averages::Averages;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
-use crate::numerics::least_squares::{explained_by_positive, orthonormal, project_out};
+use crate::numerics::least_squares::{explained_up_to, orthonormal, project_out};
 use crate::numerics::mean_sign::mean_clamped;
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::numerics::regression::least_squares;
@@ -78,7 +78,7 @@ pub(super) fn added_by_lead(
     let explained = |lead: Lead| {
         let mut own = motion.added(lead);
         project_out(&mut own, &basis, &all);
-        explained_by_positive(&own, &left, &all)
+        explained_up_to(f64::INFINITY, &own, &left, &all)
     };
     let top = top_speed(&states.velocity);
     let widths = TRIED_WIDTH_SHARES.map(|share| share * top);
