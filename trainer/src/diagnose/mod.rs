@@ -20,8 +20,6 @@ mod realign;
 mod relock;
 pub(crate) mod request;
 pub(crate) mod run;
-#[cfg(test)]
-mod run_tests;
 pub(crate) mod search;
 
 pub use advice::{Limits, Plan, Question, plan};

@@ -28,18 +28,6 @@ pub(crate) struct Trial {
     pub diagnosis: Diagnosis,
 }
 
-impl Trial {
-    /// The delay that is the sampling's own (s), where it shows beside other findings alone: what those are missing from the base hid it there.
-    pub(crate) fn sampling_delay_s(&self, period_s: f64) -> Option<f64> {
-        let is_misaligned =
-            |found: &&Finding| found.effect == EffectId::TimeMisalignment && !found.fitted.coefficients.is_empty();
-        let found = self.diagnosis.findings.iter().find(is_misaligned)?;
-        let delay_s = self.delay_s + found.fitted.coefficients[0];
-        let is_own = misalignment(&self.diagnosis).is_none() && delay_s.abs() <= LONGEST_SAMPLING_DELAY * period_s;
-        is_own.then_some(delay_s)
-    }
-}
-
 /// Where the trials begin, by the shift of the torque (s) with which the base explains most of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Realignment {

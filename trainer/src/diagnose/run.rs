@@ -120,9 +120,6 @@ fn diagnose_from(delay_s: f64, comparison: &Comparison, request: &Request) -> Re
         diagnosis.map(|diagnosis| Trial { delay_s, diagnosis })
     };
     let mut trials = vec![with_delay(delay_s)?];
-    if let Some(own_s) = trials[0].sampling_delay_s(comparison.signals.period) {
-        trials = vec![with_delay(own_s)?];
-    }
     while let Some(delay_s) = next_delay_s(&trials) {
         let Ok(trial) = with_delay(delay_s) else { break };
         trials.push(trial);

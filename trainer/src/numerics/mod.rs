@@ -9,7 +9,6 @@ pub mod filter;
 pub(crate) mod hat_functions;
 pub(crate) mod jackknife;
 pub(crate) mod least_squares;
-pub(crate) mod mean_sign;
 pub(crate) mod pattern_search;
 pub(crate) mod products;
 pub(crate) mod random;

@@ -2,7 +2,7 @@
 
 use super::EffectId;
 use crate::actuator::Commanded;
-use crate::numerics::mean_sign::{mean_clamped, mean_tanh};
+use crate::numerics::between_samples::{mean_clamped, mean_tanh};
 use crate::numerics::statistics::quantile;
 use std::ops::Range;
 

@@ -179,6 +179,20 @@ mod tests {
     }
 
     #[test]
+    fn a_row_that_no_open_row_is_like_may_be_off_by_as_much_as_its_fit_is_unsure() {
+        let over_open = |unsure: f64| {
+            let after: Vec<f64> = (0..40).map(|row| if row == 30 { 1.0 } else { 0.1 }).collect();
+            let expected = |row: usize| if row == 30 { 0.1_f64.hypot(unsure) } else { 0.1 };
+            let expected_ratio = after.iter().enumerate().map(|(row, left)| left / expected(row)).collect();
+            let (locked, sign_is_sure) = ((0..40).map(|row| row >= 20).collect(), vec![true; 40]);
+            let traces =
+                Traces { time: vec![0.0; 40], after, expected_ratio, locked, sign_is_sure, ..Traces::default() };
+            Traces { run_starts: vec![0, 20], ..traces }.worst_locked().map_or(0.0, |worst| worst.over_open)
+        };
+        assert!(over_open(0.0) > 2.0 && over_open(1.0) < 1.1, "{} {}", over_open(0.0), over_open(1.0));
+    }
+
+    #[test]
     fn a_locked_stretch_sticks_out_by_more_than_the_open_ones_and_by_more_than_a_reversal() {
         assert!(locked_over_open(85..95, 0..0) > 5.0);
         assert!([0..0, 45..55, 101..103].into_iter().all(|events| locked_over_open(events, 0..0) <= 1.0));

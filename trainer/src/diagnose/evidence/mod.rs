@@ -1,6 +1,5 @@
 //! How strongly the rows ask for a candidate. Knows nothing of the order in which candidates are tried.
 
-pub(crate) mod formula_error;
 pub(crate) mod law_uncertainty;
 pub(crate) mod measurement_noise;
 pub(crate) mod overdispersion;

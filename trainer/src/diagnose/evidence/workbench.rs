@@ -81,7 +81,7 @@ impl<'a> Workbench<'a> {
     }
 
     /// Unfiltered columns of a label and shape at states of the rows.
-    pub(crate) fn raw_columns(&self, state: &JointState, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
+    fn raw_columns(&self, state: &JointState, label: &Label, shape: &[f64]) -> Vec<Vec<f64>> {
         match label {
             Label::Named(effect) => self.hypothesis(*effect).map(|h| h.columns(state, shape)).unwrap_or_default(),
             Label::Generic(rival) => rival.columns(state, shape),
@@ -150,14 +150,9 @@ impl<'a> Workbench<'a> {
     }
 
     pub(crate) fn bench(&self, base: Vec<Vec<f64>>, noise: &Noise) -> Bench {
-        self.bench_with_errors(base, &[], noise)
-    }
-
-    /// The same beside errors of the formulas of effects in the base, filtered, at one standard deviation.
-    pub(crate) fn bench_with_errors(&self, base: Vec<Vec<f64>>, formula_errors: &[Vec<f64>], noise: &Noise) -> Bench {
         let target = self.whitened(std::slice::from_ref(&self.base.target), noise).swap_remove(0);
-        let uncertain = [&self.base.uncertainty[..], formula_errors].concat();
-        Bench::new(self.whitened(&base, noise), self.whitened(&uncertain, noise), target, self.prepared.open_blocks())
+        let uncertain = self.whitened(&self.base.uncertainty, noise);
+        Bench::new(self.whitened(&base, noise), uncertain, target, self.prepared.open_blocks())
     }
 
     /// White noise of what the base leaves: what is assumed before the noise is known.

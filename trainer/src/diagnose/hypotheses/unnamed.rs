@@ -225,7 +225,7 @@ pub(crate) fn generic_rivals(state: &JointState) -> Vec<Generic> {
 }
 
 /// Cosine series of the rank-transformed channel times the factor, up to an order.
-pub(crate) fn cosines(series: &[f64], knots: &[f64], factor: &[f64], order: usize) -> Vec<Vec<f64>> {
+fn cosines(series: &[f64], knots: &[f64], factor: &[f64], order: usize) -> Vec<Vec<f64>> {
     let rank = rank_transform(series, knots);
     // cos(j x) by the Chebyshev recurrence.
     let base: Vec<f64> = rank.iter().map(|u| (std::f64::consts::PI * u).cos()).collect();
@@ -243,7 +243,7 @@ const QUANTILES: usize = 512;
 const RANKED_SAMPLES: usize = 16 * QUANTILES;
 
 /// Quantiles of what a series takes in motion.
-pub(crate) fn rank_knots(series: &[f64], at_rest: &[bool]) -> Vec<f64> {
+fn rank_knots(series: &[f64], at_rest: &[bool]) -> Vec<f64> {
     let moving: Vec<f64> = series.iter().zip(at_rest).filter(|(_, rest)| !**rest).map(|(value, _)| *value).collect();
     let all = if moving.is_empty() { series } else { &moving };
     let mut sorted: Vec<f64> = all.iter().copied().step_by((all.len() / RANKED_SAMPLES).max(1)).collect();

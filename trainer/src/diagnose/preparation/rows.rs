@@ -257,6 +257,19 @@ mod tests {
         assert_eq!((0..velocity.len()).filter(|&i| slow[i]).collect::<Vec<_>>(), expected);
     }
 
+    /// An encoder of 12 bits at 1 kHz shows a step in 3 ms of a joint that does 0.5 rad/s.
+    #[test]
+    fn a_joint_that_slides_does_not_stand_still_behind_a_coarse_encoder_and_one_that_is_held_does() {
+        let step = std::f64::consts::TAU / 4096.0;
+        let position = |i: i32| if i < 1000 { 5e-4 * f64::from(i) } else { 0.5 };
+        let read = (0..2000).map(|i| (position(i) / step).round() * step).collect();
+        let time = (0..2000).map(|i| 1e-3 * f64::from(i)).collect();
+        let signals = Signals { position_resolution: step, ..Signals::without_gap(1e-3, time, read, vec![0.0; 2000]) };
+        let stuck = standstill(&signals, 2.0);
+        let share = |rows: Range<usize>| rows.clone().filter(|row| stuck[*row]).count() as f64 / rows.len() as f64;
+        assert!(share(10..980) < 0.1 && share(1010..1990) == 1.0, "{} {}", share(10..980), share(1010..1990));
+    }
+
     #[test]
     fn as_much_is_sealed_of_short_blocks_in_fewer_and_longer_parts() {
         let tenths = |block: usize| [0, 1, 2, 3, 4, 5].map(|index| sealed_tenths(block, 10, index));

@@ -65,7 +65,7 @@ impl<'a> Search<'a> {
         accepted: &[Accepted],
         null: &mut Option<NullDraws>,
     ) -> (Round<'_, 'a>, Vec<Scored>, Option<Accepted>) {
-        let round = Round::new(self, accepted);
+        let round = Round::new(self, self.workbench.base_with_tangents(accepted.iter().map(Accepted::term)));
         let mut table = round.score_table(accepted);
         if table.first().is_some_and(|best| best.score > self.settings.candidate_score) {
             // Drawn once: later rounds change the base by a few columns only, and the tails hardly.

@@ -1,6 +1,5 @@
 //! One round of the search: the noise as it stands, every hypothesis weighed, the leaders refined, all ranked.
 
-use crate::diagnose::evidence::formula_error::formula_errors;
 use crate::diagnose::evidence::overdispersion::overdispersion;
 use crate::diagnose::evidence::score::{Bench, GroupEvidence, VariantEvidence};
 use crate::diagnose::evidence::workbench::Workbench;
@@ -44,17 +43,14 @@ pub(crate) struct Round<'s, 'a> {
 }
 
 impl<'s, 'a> Round<'s, 'a> {
-    /// Beside the base and what was accepted, with the errors of its formulas.
-    pub(crate) fn new(search: &'s Search<'a>, accepted: &[Accepted]) -> Self {
-        let base = search.workbench.base_with_tangents(accepted.iter().map(Accepted::term));
-        let errors = formula_errors(search.workbench, accepted.iter().map(Accepted::term));
+    pub(crate) fn new(search: &'s Search<'a>, base: Vec<Vec<f64>>) -> Self {
         // Noise from the base and the two best candidates: from the bare base the effect would pass for noise, and a slow
         // effect for colour. So the first candidates are chosen as if the noise were white.
         let mut noise = search.workbench.white_noise();
         let mut explained = Vec::new();
         let mut left = Vec::new();
         for _ in 0..2 {
-            let (bench, variants) = weigh_all(search.workbench, (base.clone(), &errors), &noise, false);
+            let (bench, variants) = weigh_all(search.workbench, base.clone(), &noise, false);
             if explained.is_empty() {
                 let largest = |(group, tested): (&Group, &Vec<Option<VariantEvidence>>)| {
                     let tested =
@@ -72,7 +68,7 @@ impl<'s, 'a> Round<'s, 'a> {
             noise = search.workbench.noise_of(&left);
         }
         let left = search.workbench.whitened(&[left], &noise).swap_remove(0);
-        let (bench, variants) = weigh_all(search.workbench, (base, &errors), &noise, true);
+        let (bench, variants) = weigh_all(search.workbench, base, &noise, true);
         let alone = bench.alone();
         Self { search, noise, bench, alone, variants, left, explained }
     }
@@ -264,13 +260,8 @@ impl<'s, 'a> Round<'s, 'a> {
 }
 
 /// Whitens the design, group by group, and weighs every variant, held-out folds only where asked for.
-fn weigh_all(
-    workbench: &Workbench,
-    (base, errors): (Vec<Vec<f64>>, &[Vec<f64>]),
-    noise: &Noise,
-    folds: bool,
-) -> (Bench, Tested) {
-    let bench = workbench.bench_with_errors(base, errors, noise);
+fn weigh_all(workbench: &Workbench, base: Vec<Vec<f64>>, noise: &Noise, folds: bool) -> (Bench, Tested) {
+    let bench = workbench.bench(base, noise);
     let (design, runs) = (&workbench.design, bench.runs());
     let tested = |group: &Group| {
         let first = group.variants.iter().map(|variant| variant.columns.start).min().unwrap_or(0);

@@ -5,9 +5,9 @@
 //! "Computation", solver parameters), which is `t_r = 1 / b`, 9.5 ms by default; constraints of velocities at the end of a step have the step.
 
 use crate::numerics::averages::Averages;
+use crate::numerics::between_samples::mean_clamped;
 use crate::numerics::jackknife::{ERROR_BLOCKS, even_blocks};
 use crate::numerics::least_squares::{explained_up_to, orthonormal, project_out};
-use crate::numerics::mean_sign::mean_clamped;
 use crate::numerics::pattern_search::{Movable, climb};
 use crate::numerics::regression::least_squares;
 use crate::samples::states::States;
