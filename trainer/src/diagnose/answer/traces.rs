@@ -70,7 +70,7 @@ impl Traces {
         let after = rest(workbench, improved);
         let ratio = |(left, fitted): (&f64, &f64)| left / improved.noise.rms.hypot(*fitted).max(f64::MIN_POSITIVE);
         Self {
-            expected_ratio: after.iter().zip(&improved.torque_deviation).map(ratio).collect(),
+            expected_ratio: after.iter().zip(&improved.torque_deviation(workbench)).map(ratio).collect(),
             time: prepared.at_rows(&state.time),
             velocity: prepared.at_rows(&state.velocity),
             torque: prepared.filtered(&prepared.torque),

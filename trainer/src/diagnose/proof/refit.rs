@@ -9,7 +9,7 @@ use crate::diagnose::search::accepted::{Accepted, others};
 use crate::numerics::covariance;
 use crate::numerics::least_squares::{dot, least_squares, residual, rows_in, weighted};
 use crate::physics::{EffectId, Shape};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// The joint refit of base and effects.
 #[derive(Clone, Debug)]
@@ -20,8 +20,8 @@ pub struct Refit {
     pub base_deviation: Vec<f64>,
     /// The effects.
     pub effects: Vec<Fitted>,
-    /// Deviation of the fitted torque at every working row by that of the coefficients; rows that nothing like them is fitted to have a large one.
-    pub torque_deviation: Vec<f64>,
+    /// Covariance of the coefficients of base and effects.
+    pub covariance: DMatrix<f64>,
     /// Noise of what is left.
     pub noise: Noise,
     /// Whether it is a plain least-squares fit, because what is left is the error of formulas rather than noise.
@@ -29,6 +29,16 @@ pub struct Refit {
 }
 
 impl Refit {
+    /// Deviation of the fitted torque at every working row by that of the coefficients; rows that nothing like them is fitted to have a large one.
+    pub(crate) fn torque_deviation(&self, workbench: &Workbench) -> Vec<f64> {
+        let columns = workbench.base_with(self.effects.iter().map(|effect| (&effect.label, &effect.shape[..])));
+        let deviation = |row: usize| {
+            let torque = DVector::from_fn(columns.len(), |i, _| columns[i][row]);
+            torque.dot(&(&self.covariance * &torque)).max(0.0).sqrt()
+        };
+        (0..workbench.prepared.rows.len()).map(deviation).collect()
+    }
+
     /// The same with the parameters of a reference back where they were given: nuisances and effects stay.
     pub(crate) fn with_base_as_given(&self, workbench: &Workbench) -> Self {
         let mut given = self.clone();
@@ -142,14 +152,9 @@ pub(crate) fn refit(workbench: &Workbench, accepted: &[Accepted]) -> Option<Refi
     for (row, (index, slot)) in (columns.len()..).zip(owners) {
         effects[index].shape_deviation[slot] = Some(deviation(row));
     }
-    let of_fitted = covariance.view((0, 0), (columns.len(), columns.len()));
-    let torque_deviation = |row: usize| {
-        let torque = DVector::from_fn(columns.len(), |i, _| columns[i][row]);
-        torque.dot(&(of_fitted * &torque)).max(0.0).sqrt()
-    };
     Some(Refit {
         base: solution[..base_width].to_vec(),
-        torque_deviation: (0..workbench.prepared.rows.len()).map(torque_deviation).collect(),
+        covariance: covariance.view((0, 0), (columns.len(), columns.len())).clone_owned(),
         base_deviation: (0..base_width).map(deviation).collect(),
         effects,
         noise,

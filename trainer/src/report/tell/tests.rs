@@ -57,7 +57,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
     let refit = || Refit {
         base: Vec::new(),
         base_deviation: Vec::new(),
-        torque_deviation: Vec::new(),
+        covariance: nalgebra::DMatrix::zeros(0, 0),
         effects: Vec::new(),
         noise: crate::diagnose::Noise::white(0, 1.0),
         plain: false,
