@@ -145,7 +145,7 @@ mod tests {
     use crate::actuator::Kind;
 
     fn ramp() -> Commanded {
-        let command = |i: i32| Command { reference: f64::from(i), kp: 2.0, enabled: true, ..Command::default() };
+        let command = |i: i32| Command { reference: f64::from(i), kp: Some(2.0), enabled: true, ..Command::default() };
         let mut commanded = Commanded::of((0..5).map(command).collect(), Actuator::ideal(Kind::Pd));
         commanded.append(commanded.clone());
         commanded

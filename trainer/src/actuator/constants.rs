@@ -38,13 +38,15 @@ pub enum Constant {
     DeadBand,
     /// Time from the command to its effect, s.
     Delay,
+    /// Time from the motion to what a controller makes of it, s.
+    FeedbackDelay,
     /// Speed at which the firmware lets the reference move at most, rad/s.
     VelocityLimit,
 }
 
 impl Constant {
     /// Every constant, in the order of the variants.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::TorqueConstant,
         Self::Resistance,
         Self::TorquePerVolt,
@@ -59,6 +61,7 @@ impl Constant {
         Self::TorqueLimit,
         Self::DeadBand,
         Self::Delay,
+        Self::FeedbackDelay,
         Self::VelocityLimit,
     ];
 
@@ -80,6 +83,7 @@ impl Constant {
             Self::TorqueLimit => "torque_limit_Nm",
             Self::DeadBand => "dead_band_rad",
             Self::Delay => "delay_s",
+            Self::FeedbackDelay => "feedback_delay_s",
             Self::VelocityLimit => "velocity_limit_rad_s",
         }
     }
@@ -102,6 +106,9 @@ impl Constant {
             Self::TorqueLimit => "largest torque",
             Self::DeadBand => "position error up to which nothing happens",
             Self::Delay => "from the command to its effect",
+            Self::FeedbackDelay => {
+                "from the motion to what the controller makes of it: its period and a half, and the filter of its velocity"
+            }
             Self::VelocityLimit => "speed at which the reference moves at most",
         }
     }
@@ -111,7 +118,7 @@ impl Constant {
     pub fn rule(self) -> &'static str {
         match self {
             Self::DutyLimit => "this has to lie above 0 and not above 1",
-            Self::Delay => "this has to lie between 0 and 1 s",
+            Self::Delay | Self::FeedbackDelay => "this has to lie between 0 and 1 s",
             _ if self.may_be_zero() => "this has to be a finite number, zero or above",
             _ => "this has to be a finite number above zero",
         }
@@ -120,12 +127,13 @@ impl Constant {
     /// Whether an actuator can have it.
     #[must_use]
     pub fn allows(self, value: f64) -> bool {
-        let most = if matches!(self, Self::DutyLimit | Self::Delay) { 1.0 } else { f64::MAX };
+        let most = if matches!(self, Self::DutyLimit | Self::Delay | Self::FeedbackDelay) { 1.0 } else { f64::MAX };
         value <= most && (value > 0.0 || value == 0.0 && self.may_be_zero())
     }
 
     fn may_be_zero(self) -> bool {
-        matches!(self, Self::BackEmf | Self::SupplyResistance | Self::Kp | Self::Kd | Self::DeadBand | Self::Delay)
+        use Constant::{BackEmf, DeadBand, Delay, FeedbackDelay, Kd, Kp, SupplyResistance};
+        matches!(self, BackEmf | SupplyResistance | Kp | Kd | DeadBand | Delay | FeedbackDelay)
     }
 }
 

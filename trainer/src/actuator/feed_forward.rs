@@ -93,15 +93,15 @@ impl Actuator {
         if torque == 0.0 {
             return 0.0;
         }
-        let error = command.reference - motion.position;
+        let error = self.seen_error(command, motion);
         let acted_upon = self.error(command, motion);
         let wanted = if self.kind == Kind::PositionServo {
-            let per_error = command.kp * self.error_gain;
+            let per_error = self.kp_of(command) * self.error_gain;
             let held = (per_error * acted_upon).clamp(-self.limits.duty, self.limits.duty);
             let voltage = held * command.supply / (1.0 + self.sag * held * held) + torque / self.gain;
             acted_upon + (self.duty_for(voltage, command.supply) - held) / per_error
         } else {
-            acted_upon + torque / command.kp
+            acted_upon + torque / self.kp_of(command)
         };
         let reached = if wanted == 0.0 {
             error.clamp(-self.dead_band, self.dead_band)
@@ -130,8 +130,8 @@ mod tests {
     }
 
     fn command(actuator: &Actuator, reference: f64) -> Command {
-        let (supply, kp) = (actuator.supply, actuator.kp);
-        Command { reference, supply, kp, enabled: true, ..Command::default() }
+        let supply = actuator.supply;
+        Command { reference, supply, enabled: true, ..Command::default() }
     }
 
     #[test]

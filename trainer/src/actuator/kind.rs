@@ -50,8 +50,8 @@ impl Kind {
     #[must_use]
     pub fn constants(self) -> &'static [Constant] {
         use Constant::{
-            BackEmf, DeadBand, Delay, DutyLimit, FirmwareErrorGain, FirmwareKp, Kd, Kp, Resistance, Supply,
-            SupplyResistance, TorqueConstant, TorqueLimit, TorquePerVolt, VelocityLimit,
+            BackEmf, DeadBand, Delay, DutyLimit, FeedbackDelay, FirmwareErrorGain, FirmwareKp, Kd, Kp, Resistance,
+            Supply, SupplyResistance, TorqueConstant, TorqueLimit, TorquePerVolt, VelocityLimit,
         };
         match self {
             Self::Torque => &[Delay],
@@ -67,7 +67,7 @@ impl Kind {
                 TorqueLimit,
                 Delay,
             ],
-            Self::Pd => &[Kp, Kd, TorqueLimit, DeadBand, Delay, VelocityLimit],
+            Self::Pd => &[Kp, Kd, TorqueLimit, DeadBand, Delay, FeedbackDelay, VelocityLimit],
             Self::PositionServo => &[
                 TorqueConstant,
                 Resistance,
@@ -81,6 +81,7 @@ impl Kind {
                 FirmwareErrorGain,
                 DeadBand,
                 Delay,
+                FeedbackDelay,
                 VelocityLimit,
             ],
         }

@@ -3,6 +3,7 @@
 use super::applied::{Actuator, Limits};
 use super::constants::{Constant, Constants, Known};
 use super::kind::Kind;
+use crate::numerics::Number;
 
 /// A constant in which the torque is linear and that is not given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +68,7 @@ impl Partial {
             dead_band: start(Constant::DeadBand, 0.0),
             supply: start(Constant::Supply, f64::NAN),
             delay_s: start(Constant::Delay, 0.0),
+            feedback_delay_s: start(Constant::FeedbackDelay, 0.0),
             velocity_limit: start(Constant::VelocityLimit, f64::INFINITY),
             limits: Limits {
                 duty: start(Constant::DutyLimit, 1.0),
@@ -98,7 +100,7 @@ impl Partial {
             }
         }
         let mut partial = Self { actuator, open, torque_constant, resistance };
-        partial.actuator.back_emf = given(Constant::BackEmf).unwrap_or_else(|| partial.back_emf());
+        partial.actuator.back_emf = given(Constant::BackEmf).unwrap_or_else(|| partial.back_emf(partial.actuator.gain));
         partial
     }
 
@@ -114,30 +116,35 @@ impl Partial {
 
     /// The same with a value for what is open.
     #[must_use]
-    pub fn with(mut self, open: Open, value: f64) -> Self {
-        match open {
-            Open::Gain => {
-                let lost_before = self.back_emf();
-                self.actuator.gain = value;
-                // A loss that was given as such stays.
-                if self.actuator.back_emf == lost_before {
-                    self.actuator.back_emf = self.back_emf();
-                }
-            }
-            Open::Kp => self.actuator.kp = value,
-            Open::Kd => self.actuator.kd = value,
-        }
-        self
+    pub fn with(self, open: Open, value: f64) -> Self {
+        let actuator = self.completed(self.actuator, open, value);
+        Self { actuator, ..self }
     }
 
-    /// Torque that a motor loses per velocity as far as torque constant or resistance tell it, N m s/rad; else it counts as viscous
-    /// friction.
-    fn back_emf(&self) -> f64 {
-        let gain = self.actuator.gain;
+    /// Its actuator in other numbers, with a value for what is open.
+    #[must_use]
+    pub(crate) fn completed<T: Number>(&self, mut actuator: Actuator<T>, open: Open, value: T) -> Actuator<T> {
+        match open {
+            Open::Gain => {
+                actuator.gain = value;
+                // A loss that was given as such stays.
+                if self.actuator.back_emf == self.back_emf(self.actuator.gain) {
+                    actuator.back_emf = self.back_emf(value);
+                }
+            }
+            Open::Kp => actuator.kp = value,
+            Open::Kd => actuator.kd = value,
+        }
+        actuator
+    }
+
+    /// Torque that a motor of so much torque per voltage loses per velocity as far as torque constant or resistance tell it, N m s/rad; else
+    /// it counts as viscous friction.
+    fn back_emf<T: Number>(&self, gain: T) -> T {
         match (self.actuator.kind.is_motor(), self.torque_constant, self.resistance) {
-            (true, Some(constant), _) => constant * gain,
+            (true, Some(constant), _) => gain * constant,
             (true, None, Some(resistance)) => gain * gain * resistance,
-            _ => 0.0,
+            _ => T::zero(),
         }
     }
 
@@ -160,6 +167,8 @@ impl Partial {
             Kind::Pd => vec![(Constant::Kp, actuator.kp), (Constant::Kd, actuator.kd)],
         };
         constants.push((Constant::Delay, actuator.delay_s));
+        let late = actuator.feedback_delay_s;
+        constants.extend((late > 0.0).then_some((Constant::FeedbackDelay, late)));
         constants.extend(actuator.limits.torque.is_finite().then_some((Constant::TorqueLimit, actuator.limits.torque)));
         constants
     }

@@ -27,6 +27,7 @@ struct Table {
     torque_limit_Nm: Option<Known>,
     dead_band_rad: Option<Known>,
     delay_s: Option<Known>,
+    feedback_delay_s: Option<Known>,
     velocity_limit_rad_s: Option<Known>,
 }
 
@@ -47,6 +48,7 @@ impl Table {
             Constant::TorqueLimit => self.torque_limit_Nm,
             Constant::DeadBand => self.dead_band_rad,
             Constant::Delay => self.delay_s,
+            Constant::FeedbackDelay => self.feedback_delay_s,
             Constant::VelocityLimit => self.velocity_limit_rad_s,
         }
     }

@@ -3,34 +3,43 @@
 //! Within a step the push and the dry levels are held and the equation is solved exactly, event by event: slide, reach
 //! zero, stick or break loose again. Nothing is regularised, so stiction neither creeps nor chatters.
 
+use super::Number;
+
 /// Levels of dry friction for motion to either side, N m (>= 0 each for a passive contact).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct DryLevels {
-    pub(crate) forward: f64,
-    pub(crate) backward: f64,
+pub(crate) struct DryLevels<T = f64> {
+    pub(crate) forward: T,
+    pub(crate) backward: T,
 }
 
-impl DryLevels {
-    pub(crate) fn towards(self, direction: f64) -> f64 {
+impl<T> DryLevels<T> {
+    pub(crate) fn towards(self, direction: f64) -> T {
         if direction > 0.0 { self.forward } else { self.backward }
     }
 }
 
 /// Position and velocity of an inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Motion1D {
-    pub(crate) position: f64,
-    pub(crate) velocity: f64,
+pub(crate) struct Motion1D<T = f64> {
+    pub(crate) position: T,
+    pub(crate) velocity: T,
 }
 
 /// Advances `inertia * dv/dt = push - viscous * v - dry(sign v)` by `step_s` and returns the mean dry friction torque, N m.
-pub(crate) fn advance(state: &mut Motion1D, push: f64, dry: DryLevels, viscous: f64, inertia: f64, step_s: f64) -> f64 {
-    let mut left = step_s;
-    let mut impulse = 0.0;
+pub(crate) fn advance<T: Number>(
+    state: &mut Motion1D<T>,
+    push: T,
+    dry: DryLevels<T>,
+    viscous: T,
+    inertia: T,
+    step_s: f64,
+) -> T {
+    let mut left = T::from(step_s);
+    let mut impulse = T::from(0.0);
     // At most two events fit in a step of constant push: stop, then leave the other way.
     for _ in 0..3 {
         let direction = if state.velocity != 0.0 {
-            state.velocity.signum()
+            state.velocity.re().signum()
         } else if push > dry.forward {
             1.0
         } else if push < -dry.backward {
@@ -38,23 +47,23 @@ pub(crate) fn advance(state: &mut Motion1D, push: f64, dry: DryLevels, viscous: 
         } else {
             return (impulse + push * left) / step_s;
         };
-        let friction = direction * dry.towards(direction);
+        let friction = dry.towards(direction) * direction;
         let net = push - friction;
         let stop = time_to_stop(state.velocity, net, viscous, inertia);
-        let slice = stop.map_or(left, |time| time.min(left));
+        let slice = stop.filter(|time| *time < left).unwrap_or(left);
         glide(state, net, viscous, inertia, slice);
         impulse += friction * slice;
         left -= slice;
         if left <= 0.0 {
             break;
         }
-        state.velocity = 0.0;
+        state.velocity = T::from(0.0);
     }
     impulse / step_s
 }
 
 /// Time until the velocity reaches zero under `net` torque, if it does, s.
-fn time_to_stop(velocity: f64, net: f64, viscous: f64, inertia: f64) -> Option<f64> {
+fn time_to_stop<T: Number>(velocity: T, net: T, viscous: T, inertia: T) -> Option<T> {
     if velocity * net >= 0.0 {
         return None;
     }
@@ -63,11 +72,11 @@ fn time_to_stop(velocity: f64, net: f64, viscous: f64, inertia: f64) -> Option<f
 }
 
 /// Exact motion under constant `net` torque and viscous drag.
-fn glide(state: &mut Motion1D, net: f64, viscous: f64, inertia: f64, time: f64) {
+fn glide<T: Number>(state: &mut Motion1D<T>, net: T, viscous: T, inertia: T, time: T) {
     let x = viscous * time / inertia;
     if x < 1e-9 {
         let acceleration = (net - viscous * state.velocity) / inertia;
-        state.position += (state.velocity + 0.5 * acceleration * time) * time;
+        state.position += (state.velocity + acceleration * time * 0.5) * time;
         state.velocity += acceleration * time;
         return;
     }

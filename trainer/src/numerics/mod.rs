@@ -15,3 +15,9 @@ pub(crate) mod random;
 pub mod regression;
 pub(crate) mod resolution;
 pub(crate) mod statistics;
+
+/// What a simulation computes with: plain numbers, or dual numbers that carry the derivative by one parameter along (forward accumulation, Griewank &
+/// Walther 2008). Dual numbers compare by their values and take the same branches.
+pub trait Number: num_dual::DualNum<Primitive = f64> + Copy {}
+
+impl<T: num_dual::DualNum<Primitive = f64> + Copy> Number for T {}

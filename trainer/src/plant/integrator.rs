@@ -34,7 +34,7 @@ pub(crate) fn integrate(moving: &mut MovingJoint, references: &[(Reference, f64)
                 acceleration: reference.acceleration[k],
                 gravity_torque: *gravity_torque,
             };
-            let (command, effort) = controller.command(reading, &target);
+            let (command, effort) = controller.command(reading, moving.motor.velocity, &target);
             let applied = moving.actuated(command);
             moving.see_neighbour(time);
             history.time.push(time);

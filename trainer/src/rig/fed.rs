@@ -40,9 +40,9 @@ impl FedActuator {
         self.follows_position.then_some(self.did[1] as f32)
     }
 
-    /// Takes the answer of the drive to a sample at which the joint has a reference and the drive sees a motion: tells the actuator, which
-    /// knows of it from the next sample on, and lets it act on what it was told before.
-    pub(super) fn step(&mut self, answer: &Answer, reference: Motion, motion: Motion) -> Fed {
+    /// Takes the answer of the drive to a sample at which the joint has a reference, the drive sees a motion and the joint has a velocity, rad/s:
+    /// tells the actuator, which knows of it from the next sample on, and lets it act on what it was told before.
+    pub(super) fn step(&mut self, answer: &Answer, reference: Motion, motion: Motion, velocity: f64) -> Fed {
         let compensation = f64::from(answer.compensation);
         let bare = self.servo.command(reference, 0.0, self.form, 0.0);
         let (command, told, feed_forward) = if !self.follows_position {
@@ -58,7 +58,7 @@ impl FedActuator {
             (Command { feed_forward: compensation, ..bare }, compensation, compensation)
         };
         let [acting, without] = self.told.replace([command, bare]).unwrap_or([bare, bare]);
-        self.did = [self.servo.drive(acting, motion), self.alone.drive(without, motion)];
+        self.did = [self.servo.drive(acting, motion, velocity), self.alone.drive(without, motion, velocity)];
         Fed { torque: self.did[0], told, feed_forward }
     }
 }

@@ -65,7 +65,8 @@ pub fn run(bench: &Bench, drive: &mut impl DriveUnderTest) -> Result<Vec<Row>> {
         let fed = fed_actuator.as_mut().map(|actuator| {
             let [wanted, speed] = [reference.position, reference.velocity].map(f64::from);
             let wanted = Motion { position: wanted, velocity: speed };
-            actuator.step(&answer, wanted, Motion { position, velocity: f64::from(answer.velocity) })
+            let seen = Motion { position, velocity: f64::from(answer.velocity) };
+            actuator.step(&answer, wanted, seen, moving.motor.velocity)
         });
         rows.push(Row {
             time,

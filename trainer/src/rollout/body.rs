@@ -4,6 +4,7 @@ use frikan_shared::model::RigidBody;
 
 use crate::error::{Error, Result, codes};
 use crate::joint::{Joint, Payload};
+use crate::numerics::Number;
 use crate::recording::Recording;
 
 /// Standard acceleration of free fall, m/s2.
@@ -25,15 +26,15 @@ pub fn payload(recording: &Recording, joint: &Joint) -> Option<Payload> {
 
 /// Inertia and gravity of what moves, with a constant torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Body {
+pub struct Body<T = f64> {
     /// kg m2 (kg on a linear axis).
-    pub inertia: f64,
+    pub inertia: T,
     /// Gravity torque per sine of the position, N m.
-    pub gravity_sin: f64,
+    pub gravity_sin: T,
     /// Gravity torque per cosine of the position, N m.
-    pub gravity_cos: f64,
+    pub gravity_cos: T,
     /// Constant torque that the actuator has to overcome, N m.
-    pub offset: f64,
+    pub offset: T,
 }
 
 impl Body {
@@ -68,10 +69,12 @@ impl Body {
             "a forward simulation needs an inertia above zero: that of the image, or of a payload of joint.toml";
         Err(Error::new(&codes::MISSING_PARAMETER, message).in_column("inertia").with_value(whole.inertia.to_string()))
     }
+}
 
+impl<T: Number> Body<T> {
     /// Both together.
     #[must_use]
-    pub fn with(&self, other: &Self) -> Self {
+    pub fn with(&self, other: &Body) -> Self {
         Self {
             inertia: self.inertia + other.inertia,
             gravity_sin: self.gravity_sin + other.gravity_sin,
@@ -82,11 +85,8 @@ impl Body {
 
     /// Torque of gravity at a position, rad: N m.
     #[must_use]
-    pub fn gravity(&self, position: f64) -> f64 {
-        if self.gravity_sin == 0.0 && self.gravity_cos == 0.0 {
-            return 0.0;
-        }
-        let (sine, cosine) = (libm::sin(position), libm::cos(position));
+    pub fn gravity(&self, position: T) -> T {
+        let (sine, cosine) = position.sin_cos();
         self.gravity_sin * sine + self.gravity_cos * cosine
     }
 }

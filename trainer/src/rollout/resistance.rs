@@ -6,35 +6,36 @@
 
 use frikan_shared::model::SLOW_SHARE;
 
+use crate::numerics::Number;
 use crate::numerics::dry_friction::DryLevels;
 
 /// Where a joint is, and what else friction may depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Instant {
+pub struct Instant<T = f64> {
     /// Time, s.
     pub time: f64,
     /// rad
-    pub position: f64,
+    pub position: T,
     /// rad/s
-    pub velocity: f64,
+    pub velocity: T,
     /// Torque that the gear carries, N m: that of the actuator, or of gravity under a recorded torque.
-    pub load: f64,
+    pub load: T,
     /// degrees Celsius, NaN where nobody knows.
     pub temperature: f64,
 }
 
 /// Friction around a velocity.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Levels {
-    pub(crate) dry: DryLevels,
+pub struct Levels<T = f64> {
+    pub(crate) dry: DryLevels<T>,
     /// Viscous coefficient, N m s/rad.
-    pub(crate) viscous: f64,
+    pub(crate) viscous: T,
 }
 
-/// Friction in a simulation.
-pub trait Resistance {
+/// Friction in a simulation that computes with `T`.
+pub trait Resistance<T: Number = f64> {
     /// Friction at an instant, at which a step of so many seconds begins.
-    fn levels(&mut self, at: &Instant, step_s: f64) -> Levels;
+    fn levels(&mut self, at: &Instant<T>, step_s: f64) -> Levels<T>;
 
     /// The joint begins anew.
     fn restart(&mut self) {}

@@ -2,6 +2,7 @@
 
 use crate::actuator::{Actuator, Command, Kind, RateLimited};
 use crate::error::{Error, Result, codes};
+use crate::numerics::Number;
 use crate::recording::{Quantity, Recording};
 use std::ops::Range;
 
@@ -75,7 +76,7 @@ impl Series {
             reference_velocity: at(column(Quantity::ReferenceVelocity), row, 0.0),
             feed_forward: at(column(Quantity::FeedForward), row, 0.0),
             supply: at(supply, row, actuator.supply),
-            kp: at(column(Quantity::Kp), row, actuator.kp),
+            kp: column(Quantity::Kp).map(|values| values[row]),
             enabled: at(column(Quantity::TorqueEnabled), row, 1.0) >= 0.5,
         });
         Ok(Self {
@@ -83,6 +84,32 @@ impl Series {
             temperature: column(Quantity::Temperature).map(<[f64]>::to_vec).unwrap_or_default(),
             time,
         })
+    }
+
+    /// The same with `times` rows in place of one, between which the commands lie on a cubic curve through the rows about them (Catmull & Rom 1974).
+    #[must_use]
+    pub(crate) fn on_a_curve(&self, times: usize) -> Self {
+        let (mut time, mut commands, mut temperature) = (Vec::new(), Vec::new(), Vec::new());
+        let last = self.time.len().saturating_sub(1);
+        for row in 0..self.time.len() {
+            let next = (row + 1).min(last);
+            let rows = [row.saturating_sub(1), row, next, (row + 2).min(last)].map(|row| &self.commands[row]);
+            for part in 0..if row == last { 1 } else { times } {
+                let share = part as f64 / times as f64;
+                let curve = |of: fn(&Command) -> f64| cubic(rows.map(of), share);
+                time.push(self.time[row] + share * (self.time[next] - self.time[row]));
+                temperature.extend(self.temperature.get(row));
+                commands.push(Command {
+                    effort: curve(|command| command.effort),
+                    reference: curve(|command| command.reference),
+                    reference_velocity: curve(|command| command.reference_velocity),
+                    feed_forward: curve(|command| command.feed_forward),
+                    supply: curve(|command| command.supply),
+                    ..*rows[1]
+                });
+            }
+        }
+        Self { time, commands, temperature }
     }
 
     /// One command for so many rows.
@@ -94,24 +121,42 @@ impl Series {
 
     /// What acts at a time, s, that lies at or after that of `row` and before the next; `row` may be moved back by a delay.
     #[must_use]
-    pub fn at(&self, time: f64, near: usize) -> Command {
+    pub fn at<T: Number>(&self, time: T, near: usize) -> Command<T> {
         let mut row = near.min(self.time.len().saturating_sub(1));
-        while row > 0 && self.time[row] > time {
+        while row > 0 && time < self.time[row] {
             row -= 1;
         }
-        let command = self.commands[row];
-        let Some((next, after)) = self.commands.get(row + 1).zip(self.time.get(row + 1)) else { return command };
-        let share = ((time - self.time[row]) / (after - self.time[row])).clamp(0.0, 1.0);
-        let between = |of: fn(&Command) -> f64| of(&command) + share * (of(next) - of(&command));
+        let command = &self.commands[row];
+        let next = (row + 1).min(self.commands.len() - 1);
+        let span = if next > row { self.time[next] - self.time[row] } else { f64::INFINITY };
+        let share = (time - self.time[row]) / span;
+        let share = if share < 0.0 {
+            T::zero()
+        } else if share > 1.0 {
+            T::one()
+        } else {
+            share
+        };
+        let after = &self.commands[next];
+        let between = |of: fn(&Command) -> f64| share * (of(after) - of(command)) + of(command);
         Command {
             effort: between(|command| command.effort),
             reference: between(|command| command.reference),
             reference_velocity: between(|command| command.reference_velocity),
             feed_forward: between(|command| command.feed_forward),
             supply: between(|command| command.supply),
-            ..command
+            kp: command.kp.map(T::from),
+            is_voltage: command.is_voltage,
+            enabled: command.enabled,
         }
     }
+}
+
+/// The curve through the middle two of four values at a share of the way between them, its slope at each that of the line through its neighbours.
+fn cubic([before, from, to, after]: [f64; 4], share: f64) -> f64 {
+    let (leaving, arriving) = (0.5 * (to - before), 0.5 * (after - from));
+    let way = to - from;
+    from + share * (leaving + share * (3.0 * way - 2.0 * leaving - arriving + share * (leaving + arriving - 2.0 * way)))
 }
 
 /// A reference that moves no faster than the firmware lets it.
@@ -120,4 +165,27 @@ fn rate_limited(time: &[f64], reference: &[f64], actuator: &Actuator) -> Vec<f64
     let mut before = time.first().copied().unwrap_or(0.0);
     let follow = |(now, wanted): (&f64, &f64)| limited.follow(*wanted, now - std::mem::replace(&mut before, *now));
     time.iter().zip(reference).map(follow).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_goes_through_the_rows_and_along_a_parabola_between_them() {
+        let parabola = |time: f64| 0.3 + time - 2.0 * time * time;
+        let mut series = Series::held(Command { enabled: true, ..Command::default() }, 0.1, 6);
+        for row in 0..6 {
+            series.commands[row].reference = parabola(series.time[row]);
+        }
+        let curve = series.on_a_curve(4);
+        assert_eq!(curve.time.len(), 21);
+        for row in 0..6 {
+            assert_eq!((curve.time[4 * row], curve.commands[4 * row]), (series.time[row], series.commands[row]));
+        }
+        for row in 4..16 {
+            assert!((curve.commands[row].reference - parabola(curve.time[row])).abs() < 1e-12);
+        }
+        assert!(curve.commands[7].enabled);
+    }
 }

@@ -5,6 +5,7 @@ use super::resistance::{Instant, Resistance};
 use super::series::Series;
 use crate::actuator::{Actuator, Kind, Motion};
 use crate::error::{Error, Result, codes};
+use crate::numerics::Number;
 use crate::numerics::dry_friction::{Motion1D, advance};
 use crate::recording::{GAP_PERIODS, Quantity, Recording};
 
@@ -20,20 +21,20 @@ const START_HALF_S: f64 = 0.01;
 
 /// Where a joint is, and how fast it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct State {
+pub struct State<T = f64> {
     /// rad or m
-    pub position: f64,
+    pub position: T,
     /// rad/s or m/s
-    pub velocity: f64,
+    pub velocity: T,
 }
 
 /// A joint with its actuator.
 #[derive(Clone, Copy, Debug)]
-pub struct Rig {
+pub struct Rig<T = f64> {
     /// What drives it.
-    pub actuator: Actuator,
+    pub actuator: Actuator<T>,
     /// What is driven.
-    pub body: Body,
+    pub body: Body<T>,
 }
 
 /// The recorded states of a recording.
@@ -120,28 +121,30 @@ pub fn recorded(recording: &Recording) -> Result<Vec<State>> {
     Ok((0..recording.len()).map(|row| recorded.at(row)).collect())
 }
 
-/// The motion at every row from the first of `starts` on, begun anew at each of them (row and state in order).
+/// The motion at every row from the first of `starts` on, begun anew at each of them (row and state in order). In dual numbers it is the motion
+/// with its derivative by the parameter whose derivative is one.
 ///
 /// # Errors
 /// `FRK-N004` where the motion leaves all bounds.
-pub fn simulate(
-    rig: &Rig,
+pub fn simulate<T: Number>(
+    rig: &Rig<T>,
     series: &Series,
-    resistance: &mut impl Resistance,
+    resistance: &mut impl Resistance<T>,
     starts: &[(usize, State)],
-) -> Result<Vec<State>> {
+) -> Result<Vec<State<T>>> {
     let mut states = Vec::with_capacity(series.time.len());
     let first = starts.first().map_or(series.time.len(), |(row, _)| *row);
     let mut starts = starts.iter().peekable();
-    let mut moving = Motion1D::default();
+    let mut moving = Motion1D { position: T::zero(), velocity: T::zero() };
     for row in first..series.time.len() {
         if let Some((_, state)) = starts.next_if(|(start, _)| *start == row) {
-            moving = Motion1D { position: state.position, velocity: state.velocity };
+            moving = Motion1D { position: state.position.into(), velocity: state.velocity.into() };
             resistance.restart();
         } else {
             pass(rig, series, resistance, row - 1, &mut moving);
         }
-        if moving.velocity.is_nan() || moving.velocity.abs() > RUNAWAY {
+        let speed = moving.velocity.re().abs();
+        if speed.is_nan() || speed > RUNAWAY {
             let message = "the simulated joint runs away: gains, inertia or friction cannot be those of this joint";
             return Err(Error::new(&codes::DIVERGED, message).at_row(row as u64 + 1));
         }
@@ -151,7 +154,13 @@ pub fn simulate(
 }
 
 /// From one row to the next.
-fn pass(rig: &Rig, series: &Series, resistance: &mut impl Resistance, row: usize, moving: &mut Motion1D) {
+fn pass<T: Number>(
+    rig: &Rig<T>,
+    series: &Series,
+    resistance: &mut impl Resistance<T>,
+    row: usize,
+    moving: &mut Motion1D<T>,
+) {
     let begin = series.time[row];
     let span = series.time[row + 1] - begin;
     let steps = (span / LONGEST_STEP_S - 1e-6).ceil().max(1.0);
@@ -159,9 +168,9 @@ fn pass(rig: &Rig, series: &Series, resistance: &mut impl Resistance, row: usize
     let temperature = series.temperature.get(row).copied().unwrap_or(f64::NAN);
     for step in 0..steps as usize {
         let time = begin + (step as f64 + 0.5) * step_s;
-        let command = series.at(time - rig.actuator.delay_s, row);
+        let command = series.at(-rig.actuator.delay_s + time, row);
         // Position in the middle of the step, to which stiffness and gravity are taken: of second order.
-        let position = moving.position + 0.5 * step_s * moving.velocity;
+        let position = moving.position + moving.velocity * (0.5 * step_s);
         let applied = rig.actuator.apply(&command, Motion { position, velocity: moving.velocity });
         let gravity = rig.body.gravity(position);
         // What the gear carries: the torque of the motor where that is known, else what gravity asks of it.
@@ -169,7 +178,7 @@ fn pass(rig: &Rig, series: &Series, resistance: &mut impl Resistance, row: usize
         let at = Instant { time, position, velocity: moving.velocity, load, temperature };
         let levels = resistance.levels(&at, step_s);
         let push = applied.torque - gravity - rig.body.offset;
-        advance(moving, push, levels.dry, levels.viscous + applied.damping, rig.body.inertia, step_s);
+        advance(moving, push, levels.dry, levels.viscous + applied.damping, rig.body.inertia + applied.inertia, step_s);
     }
 }
 
@@ -179,13 +188,15 @@ mod tests {
     use crate::actuator::Command;
     use crate::numerics::dry_friction::DryLevels;
     use crate::rollout::Levels;
+    use num_dual::Dual64;
 
     /// Coulomb friction of 0.5 N m.
     struct Coulomb;
 
-    impl Resistance for Coulomb {
-        fn levels(&mut self, _: &Instant, _: f64) -> Levels {
-            Levels { dry: DryLevels { forward: 0.5, backward: 0.5 }, viscous: 0.0 }
+    impl<T: Number> Resistance<T> for Coulomb {
+        fn levels(&mut self, _: &Instant<T>, _: f64) -> Levels<T> {
+            let level = T::from(0.5);
+            Levels { dry: DryLevels { forward: level, backward: level }, viscous: T::zero() }
         }
     }
 
@@ -201,6 +212,36 @@ mod tests {
         assert!(under(0.499, body, 100).iter().all(|state| *state == State { position: 0.2, velocity: 0.0 }));
         let free = under(0.7, body, 101)[100];
         assert!((free.velocity - 2.0).abs() < 1e-9 && (free.position - 1.2).abs() < 1e-9, "{free:?}");
+    }
+
+    /// The gain and the delay of a controller under a ramp of its reference, and the inertia that it moves.
+    #[test]
+    fn dual_numbers_carry_the_derivative_of_the_motion() {
+        let rows = 100;
+        let mut series = Series::held(Command { enabled: true, ..Command::default() }, 0.01, rows);
+        for (row, command) in series.commands.iter_mut().enumerate() {
+            command.reference = 0.2 + 0.4 * (0.08 * row as f64).sin();
+        }
+        let end = |[kp, delay, inertia]: [Dual64; 3]| {
+            let pd = Actuator { kd: 0.5, feedback_delay_s: 0.001, ..Actuator::ideal(Kind::Pd) };
+            let actuator = Actuator { kp, delay_s: delay, ..pd.lifted() };
+            let [zero, gravity] = [0.0, 2.0].map(Dual64::from);
+            let body = Body { inertia, gravity_sin: gravity, gravity_cos: zero, offset: zero };
+            let starts = [(0, State { position: 0.2, velocity: 0.0 })];
+            simulate(&Rig { actuator, body }, &series, &mut Coulomb, &starts).unwrap()[rows - 1].position
+        };
+        let at = [20.0, 0.0137, 0.1];
+        for moved in 0..at.len() {
+            let with = |value: f64, slope: f64| {
+                let mut constants = at.map(Dual64::from);
+                constants[moved] = Dual64::new(value, slope);
+                end(constants)
+            };
+            let step = 1e-5 * at[moved];
+            let slope = (with(at[moved] + step, 0.0).re - with(at[moved] - step, 0.0).re) / (2.0 * step);
+            let carried = with(at[moved], 1.0).eps;
+            assert!((carried - slope).abs() < 1e-4 * slope.abs(), "{moved}: {carried} {slope}");
+        }
     }
 
     #[test]

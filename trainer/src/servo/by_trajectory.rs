@@ -4,10 +4,11 @@ use frikan_shared::model::{Input, Law, RigidBody};
 use frikan_shared::pool::Pool;
 use frikan_shared::units::{Quantity, Unit};
 
+use super::candidate::{Candidate, What, place};
 use super::commanded::Commanded;
 use super::friction::{GearFriction, Terms};
 use super::identified::Identified;
-use super::shooting::{Candidate, Shot, What, moved, place, shoot};
+use super::shooting::{Shot, moved, shoot};
 use super::torque_space::open_constants;
 use crate::actuator::{Constant, Open};
 use crate::compile::host_model::HostModel;
@@ -67,7 +68,8 @@ pub(super) fn by_trajectory(
     let (torque, speed) = (root_mean_square(&applied), top_speed(&velocities));
     let is_open = |constant| joint.actuator.constants.get(&constant).is_none_or(|known| known.given().is_none());
     let kind = joint.actuator.kind;
-    let delay_is_open = is_open(Constant::Delay);
+    let follows = kind.follows_position();
+    let delays_are_open = [follows && is_open(Constant::Delay), follows && is_open(Constant::FeedbackDelay)];
     let range = applied.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
     let limit = (kind.is_motor() && is_open(Constant::TorqueLimit)).then_some(FIRST_LIMIT * range);
     let window_s = default_window_s(kind);
@@ -81,12 +83,15 @@ pub(super) fn by_trajectory(
             begin.friction.stribeck = 0.0;
         }
         let begin = Candidate { torque_limit: limit.map(|limit| gain * limit), ..begin };
-        let delay_is_open = delay_is_open && kind.follows_position();
-        let moved = moved(&begin, open, [torque, speed], terms, identified.has_own_gravity, delay_is_open);
+        let moved = moved(&begin, open, [torque, speed], terms, identified.has_own_gravity, delays_are_open);
         let first = shoot(&commanded, begin, &moved, Some(FIRST_WINDOW_S));
         let whole = first.and_then(|first| match window_s {
             Some(window) if window <= FIRST_WINDOW_S => Ok(first),
             window => shoot(&commanded, first.candidate, &moved, window),
+        });
+        let whole = whole.map(|mut shot| {
+            shot.forget_unlearned(&moved);
+            shot
         });
         match whole {
             Ok(shot) if best.as_ref().is_none_or(|best| shot.mae < best.mae) => best = Some(shot),
@@ -143,6 +148,7 @@ fn begin(
         open: values,
         back_emf: identified.back_emf,
         delay_s: identified.partial.actuator.delay_s,
+        feedback_delay_s: identified.partial.actuator.feedback_delay_s,
         torque_limit: None,
     }
 }
@@ -189,7 +195,7 @@ fn told(identified: &Identified, shot: &Shot, open: &[Open]) -> Identified {
             after.set(*constant, value);
         }
     }
-    after.set_rest(shot.candidate.back_emf, shot.candidate.delay_s, shot.candidate.torque_limit);
+    after.set_rest(&shot.candidate);
     after
 }
 
@@ -200,6 +206,7 @@ fn parameters(shot: &Shot, joint: &Joint) -> Vec<Parameter> {
             What::Actuator(constant) => super::torque_space::described(kind, *constant),
             What::BackEmf => ("back_emf", "k²/R", "N m s/rad"),
             What::Delay => ("delay", "T_d", "s"),
+            What::FeedbackDelay => ("feedback_delay", "T_f", "s"),
             What::TorqueLimit => ("torque_limit", "τ_max", "N m"),
             What::Inertia => ("inertia", "J", "kg m²"),
             What::Offset => ("torque_offset", "τ_0", "N m"),

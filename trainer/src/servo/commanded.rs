@@ -11,7 +11,7 @@ pub(super) struct Commanded<'a> {
     pub(super) recording: &'a Recording,
     pub(super) partial: Partial,
     pub(super) payload: Option<Payload>,
-    series: Series,
+    pub(super) series: Series,
     states: Vec<State>,
 }
 
@@ -33,22 +33,10 @@ impl<'a> Commanded<'a> {
     /// What the actuator makes of the recorded commands and motion, row by row.
     pub(super) fn applied(&self, actuator: &Actuator) -> Vec<Applied> {
         let row = |(row, state): (usize, &State)| {
-            let mut command = self.series.at(self.series.time[row] - actuator.delay_s, row);
-            if !self.has(Quantity::Kp) {
-                command.kp = actuator.kp;
-            }
+            let command = self.series.at(self.series.time[row] - actuator.delay_s, row);
             actuator.apply(&command, Motion { position: state.position, velocity: state.velocity })
         };
         self.states.iter().enumerate().map(row).collect()
-    }
-
-    /// The commands for an actuator with other constants.
-    pub(super) fn series_for(&self, actuator: &Actuator) -> Series {
-        let mut series = self.series.clone();
-        if !self.has(Quantity::Kp) {
-            series.commands.iter_mut().for_each(|command| command.kp = actuator.kp);
-        }
-        series
     }
 
     /// Whether a quantity is recorded.

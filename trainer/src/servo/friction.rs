@@ -1,6 +1,7 @@
 //! The friction of a joint that is identified by its trajectories: what servo gears have (Duclusaud et al. 2024), each term with a meaning.
 
 use crate::law::{Expr, KnownForm, Unary};
+use crate::numerics::Number;
 use crate::numerics::dry_friction::DryLevels;
 use crate::rollout::{Instant, Levels, Resistance};
 
@@ -9,17 +10,17 @@ pub const FLANK_SHARE: f64 = 3e-4;
 
 /// Friction = (coulomb + stribeck exp(-(v/v_s)²) + load |τ|) sign(v) + viscous v, with τ the torque of the actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GearFriction {
+pub struct GearFriction<T = f64> {
     /// N m
-    pub coulomb: f64,
+    pub coulomb: T,
     /// What friction is more at rest than in motion, N m.
-    pub stribeck: f64,
+    pub stribeck: T,
     /// Speed over which it falls, rad/s.
-    pub stribeck_velocity: f64,
+    pub stribeck_velocity: T,
     /// N m s/rad
-    pub viscous: f64,
+    pub viscous: T,
     /// Share of the torque that the gear carries.
-    pub load: f64,
+    pub load: T,
 }
 
 /// Terms beside Coulomb and viscous friction.
@@ -41,9 +42,9 @@ impl Terms {
     }
 }
 
-impl Resistance for GearFriction {
-    fn levels(&mut self, at: &Instant, _: f64) -> Levels {
-        let slow = libm::exp(-(at.velocity / self.stribeck_velocity).powi(2));
+impl<T: Number> Resistance<T> for GearFriction<T> {
+    fn levels(&mut self, at: &Instant<T>, _: f64) -> Levels<T> {
+        let slow = (-(at.velocity / self.stribeck_velocity).powi(2)).exp();
         let level = self.coulomb + self.stribeck * slow + self.load * at.load.abs();
         Levels { dry: DryLevels { forward: level, backward: level }, viscous: self.viscous }
     }

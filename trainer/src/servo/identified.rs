@@ -1,5 +1,6 @@
 //! What recordings tell of an actuator.
 
+use super::candidate::Candidate;
 use crate::actuator::{Actuator, Known, Open, Partial};
 use crate::joint::Joint;
 use crate::parameter::Parameter;
@@ -24,8 +25,8 @@ pub struct Identified {
     pub(super) open: Vec<Open>,
     /// Loss of a motor by its velocity where the recordings tell it from viscous friction, N m s/rad.
     pub(super) back_emf: Option<f64>,
-    /// Delay where that was identified, s.
-    pub(super) delay_s: Option<f64>,
+    /// Delays of command and feedback where they were identified, s.
+    pub(super) delays_s: Option<[f64; 2]>,
     /// Largest torque of a motor where that was identified, N m.
     pub(super) torque_limit: Option<f64>,
     /// Friction of the gear per torque of its actuator.
@@ -44,7 +45,7 @@ impl Identified {
             values: Vec::new(),
             open: Vec::new(),
             back_emf: None,
-            delay_s: None,
+            delays_s: None,
             torque_limit: None,
             load: 0.0,
         }
@@ -73,16 +74,18 @@ impl Identified {
         self.partial = self.partial.clone().with(open, value);
     }
 
-    /// The same with another loss, delay and limit.
-    pub(super) fn set_rest(&mut self, back_emf: Option<f64>, delay_s: f64, torque_limit: Option<f64>) {
-        (self.back_emf, self.delay_s, self.torque_limit) = (back_emf, Some(delay_s), torque_limit);
+    /// The same with another loss, other delays and another limit.
+    pub(super) fn set_rest(&mut self, candidate: &Candidate) {
+        (self.back_emf, self.torque_limit) = (candidate.back_emf, candidate.torque_limit);
+        self.delays_s = Some([candidate.delay_s, candidate.feedback_delay_s]);
         self.partial.actuator = self.with_rest(self.partial.actuator);
     }
 
-    /// An actuator with the loss, the delay and the limit that were identified.
+    /// An actuator with the loss, the delays and the limit that were identified.
     fn with_rest(&self, mut actuator: Actuator) -> Actuator {
         actuator.back_emf = self.back_emf.unwrap_or(actuator.back_emf);
-        actuator.delay_s = self.delay_s.unwrap_or(actuator.delay_s);
+        [actuator.delay_s, actuator.feedback_delay_s] =
+            self.delays_s.unwrap_or([actuator.delay_s, actuator.feedback_delay_s]);
         actuator.limits.torque = self.torque_limit.unwrap_or(actuator.limits.torque);
         actuator
     }

@@ -7,11 +7,13 @@
 mod adopt;
 mod as_torque;
 mod by_trajectory;
+mod candidate;
 mod commanded;
 mod friction;
 #[cfg(test)]
 mod hanging_leg;
 mod identified;
+mod intervals;
 mod known_torque;
 mod run;
 mod shooting;

@@ -101,6 +101,28 @@ fn the_gains_of_a_controller_are_found() {
     assert!((found.partial.actuator.kd - 0.08).abs() < 0.02, "{}", found.partial.actuator.kd);
 }
 
+/// A controller that sees the motion late takes viscous friction: kp times the delay, in first order.
+#[test]
+fn viscous_friction_is_no_better_known_than_when_the_controller_sees_the_motion() {
+    let pd = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 6.0\nkd_Nms_rad = 0.08\n";
+    let late = "feedback_delay_s = 0.0004\n";
+    let columns: [Column; 1] = [("reference_position_rad", swing)];
+    let recording = recorded("a.csv", &format!("{pd}{late}{PAYLOAD}"), &columns, &format!("{pd}{PAYLOAD}"));
+    let viscous = |joint: &str| {
+        let recordings = std::slice::from_ref(&recording);
+        let fitted = fit_servo(recordings, &[], &Joint::parse(joint).unwrap(), &quick(), &|_| ()).unwrap();
+        let parameters = fitted.outcome.parameters;
+        parameters.into_iter().find(|parameter| parameter.name == "viscous_coefficient").unwrap()
+    };
+    let [known, unknown] = [format!("{pd}{late}{PAYLOAD}"), format!("{pd}{PAYLOAD}")].map(|joint| viscous(&joint));
+    println!("{known:?} {unknown:?}");
+    let holds = |found: &crate::parameter::Parameter, truth: f64| (found.ci95[0]..found.ci95[1]).contains(&truth);
+    let truth = FRICTION.viscous;
+    assert!(holds(&unknown, truth) && unknown.ci95[1] - unknown.ci95[0] > 0.005, "{unknown:?}");
+    assert!((known.value - unknown.value - 6.0 * 0.0004).abs() < 2e-4, "{known:?} {unknown:?}");
+    assert!(known.ci95[1] - known.ci95[0] < 0.005, "{known:?}");
+}
+
 #[test]
 fn without_a_scale_the_constant_is_not_determined_and_named() {
     let truth = format!("[actuator]\nkind = \"current\"\ntorque_constant_Nm_A = 0.9\n{PAYLOAD}");

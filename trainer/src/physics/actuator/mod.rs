@@ -32,7 +32,7 @@ fn missing_torque(state: &JointState, otherwise: impl Fn(&Commanded) -> Commande
 fn by_gain(actuator: &Actuator, command: &Command, applied: &Applied) -> f64 {
     match actuator.kind {
         Kind::Torque => 0.0,
-        Kind::Pd => applied.by_kp * command.kp,
+        Kind::Pd => applied.by_kp * actuator.kp_of(command),
         Kind::Current | Kind::DcMotor | Kind::PositionServo => applied.by_gain * actuator.gain,
     }
 }

@@ -55,9 +55,9 @@ impl Controller {
         }
     }
 
-    /// Torque for the sample that begins now, N m, from the encoder reading, and what the drive writes down as commanded: the torque, or what
-    /// an actuator without torque sensor is told.
-    pub(crate) fn command(&mut self, measured: f64, target: &Target) -> (f64, f64) {
+    /// Torque for the sample that begins now, N m, from the encoder reading of a motor at a velocity, rad/s, and what the drive writes down as
+    /// commanded: the torque, or what an actuator without torque sensor is told.
+    pub(crate) fn command(&mut self, measured: f64, velocity: f64, target: &Target) -> (f64, f64) {
         let raw = self.previous.map_or(0.0, |previous| (measured - previous) * self.rate);
         self.previous = Some(measured);
         self.velocity += self.smoothing * (raw - self.velocity);
@@ -73,7 +73,8 @@ impl Controller {
             let reference = Motion { position: target.position, velocity: target.velocity };
             let form = FeedForward::of(servo.actuator().kind)[0];
             let command = servo.command(reference, limited, form, self.velocity);
-            return (servo.drive(command, Motion { position: measured, velocity: self.velocity }), command.effort);
+            let seen = Motion { position: measured, velocity: self.velocity };
+            return (servo.drive(command, seen, velocity), command.effort);
         }
         let torque = round_to(limited, self.resolution);
         (torque, torque)
