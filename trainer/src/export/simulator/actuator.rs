@@ -78,6 +78,10 @@ impl SimulatedActuator {
         if self.delay_s > 0.0 && !delays {
             left_out.push(format!("its delay of {} ms", digits(1e3 * self.delay_s)));
         }
+        if self.actuator.feedback_delay_s > 0.0 {
+            let late = digits(1e3 * self.actuator.feedback_delay_s);
+            left_out.push(format!("that its controller sees the motion {late} ms late"));
+        }
         if self.actuator.dead_band > 0.0 {
             left_out.push(format!("its dead band of {} rad", digits(self.actuator.dead_band)));
         }
