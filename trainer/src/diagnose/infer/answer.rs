@@ -47,13 +47,14 @@ impl Inferred {
         sets
     }
 
-    /// The members of the likeliest set that are more likely than not to be missing; and effects that do not exceed the least
-    /// torque with 95 %, with their torque (root mean square).
+    /// The members of the likeliest set that are more likely than not to be missing, the largest torque first; and effects that do not exceed
+    /// the least torque with 95 %, with their torque (root mean square).
     pub fn accepted(&self) -> (Vec<Accepted>, Vec<(EffectId, f64)>) {
         let Some(set) = self.posterior.likeliest() else { return (Vec::new(), Vec::new()) };
         let told =
             set.members.iter().zip(&self.sizes).filter_map(|(m, size)| self.told(*m, set).map(|told| (told, *size)));
-        let (large, small): (Vec<_>, Vec<_>) = told.partition(|(_, size)| size.least >= self.least);
+        let (mut large, small): (Vec<_>, Vec<_>) = told.partition(|(_, size)| size.least >= self.least);
+        large.sort_by(|(_, a), (_, b)| b.torque.total_cmp(&a.torque));
         let small = small.into_iter().map(|(accepted, size)| (accepted.effect(), size.torque)).collect();
         (large.into_iter().map(|(accepted, _)| accepted).collect(), small)
     }
