@@ -3,6 +3,7 @@
 //! A law of commands, an inertia and a delay all read the position, so that its noise biases them (errors in variables; Fuller 1987). Where a recording
 //! is compared with a simulation, one that was measured alike is biased alike.
 
+use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
@@ -13,12 +14,17 @@ use crate::recording::{Quantity, Recording};
 
 /// Products of the fourth difference's weights 1, -4, 6, -4, 1 so many rows apart, summed: what noise of that correlation has of its variance.
 const LAGGED_PRODUCTS: [f64; 5] = [70.0, -56.0, 28.0, -8.0, 1.0];
-/// Largest pole that is looked for: noise slower than twenty rows is a motion.
+/// Largest pole that is looked for, and steps to it: noise slower than twenty rows is a motion.
 const LARGEST_POLE: f64 = 0.95;
+const POLES: u32 = 95;
+/// Rows apart at which differences are taken, up to so many.
+const MOST_STRIDE: i32 = 8;
+/// Powers of the stride with which a motion grows in them: of a smooth one the fourth derivative, and jumps of the acceleration where friction turns over.
+const MOTION_POWERS: [i32; 2] = [8, 5];
 /// Differences count up to so many of their usual size: an impact is no noise, and heavy tails are.
 const MOST_DEVIATIONS: f64 = 8.0;
-/// Bisections of the pole: to a millionth.
-const BISECTIONS: usize = 20;
+/// Share of the finest differences that counts as next to no noise.
+const LEAST_SHARE: f64 = 1e-6;
 /// Seed of the noise that is added: one recording, one answer.
 const SEED: u64 = 1;
 
@@ -43,9 +49,8 @@ impl PositionNoise {
         let longest = grid.segments.iter().max_by_key(|segment| segment.points)?;
         let values = grid.values(longest, time, position);
         let step = recording.health.position_resolution.unwrap_or(0.0);
-        let [fine, coarse] = [1, 2].map(|stride| fourth_difference_variance(&values, stride));
-        let pole = pole(coarse / fine);
-        let variance = (fine / gain(pole) - step * step / 12.0).max(0.0);
+        let (variance, pole) = variance_and_pole(&values);
+        let variance = (variance - step * step / 12.0).max(0.0);
         Some(Self { variance, pole, period_s: grid.period_s, step })
     }
 
@@ -91,18 +96,64 @@ fn gain(pole: f64) -> f64 {
     LAGGED_PRODUCTS[0] + lagged.sum::<f64>()
 }
 
-/// The pole at which differences over two rows have this variance over that of differences over one.
-fn pole(ratio: f64) -> f64 {
-    let of = |pole: f64| gain(pole * pole) / gain(pole);
-    let (mut low, mut high) = (0.0, LARGEST_POLE);
-    if !ratio.is_finite() || ratio <= of(low) {
-        return low;
+/// Variance and pole of the noise of a position, with what a motion adds to its differences: means over the poles by their likelihood, as few of the
+/// differences tell a slow noise from a slower one.
+fn variance_and_pole(values: &[f64]) -> (f64, f64) {
+    let strides = 1..=MOST_STRIDE;
+    let differences: Vec<f64> =
+        strides.clone().map(|stride| fourth_difference_variance(values, stride as usize)).collect();
+    if differences.iter().any(|variance| !(*variance > 0.0 && variance.is_finite())) {
+        return (0.0, 0.0);
     }
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        *(if of(middle) < ratio { &mut low } else { &mut high }) = middle;
+    // Shares of the differences, so that every stride counts by its relative error; the error of longer strides is larger.
+    let of = |power: &dyn Fn(i32) -> f64| -> Vec<f64> {
+        let shares = strides.clone().zip(&differences);
+        shares.map(|(stride, variance)| power(stride) / variance / f64::from(stride).sqrt()).collect()
+    };
+    let motion = MOTION_POWERS.map(|power| of(&|stride| f64::from(stride).powi(power)));
+    let target = of(&|stride| differences[stride as usize - 1]);
+    // Relative variance of a mean square of fourth differences: twice the sum of their squared correlations over the rows.
+    let squares: f64 = LAGGED_PRODUCTS[1..].iter().map(|product| (product / LAGGED_PRODUCTS[0]).powi(2)).sum();
+    let relative_variance = 2.0 * (1.0 + 2.0 * squares) / values.len() as f64;
+    let tried: Vec<(f64, f64, f64)> = (0..=POLES)
+        .map(|step| {
+            let pole = LARGEST_POLE * f64::from(step) / f64::from(POLES);
+            let columns = [of(&|stride| gain(pole.powi(stride))), motion[0].clone(), motion[1].clone()];
+            let (variance, misfit) = share_of_noise(&columns, &target);
+            (pole, variance, -0.5 * misfit / relative_variance)
+        })
+        .collect();
+    let best = tried.iter().map(|(_, _, likelihood)| *likelihood).fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = tried.iter().map(|(_, _, likelihood)| (likelihood - best).exp()).collect();
+    let mean = |value: &dyn Fn(f64, f64) -> f64| {
+        let sum: f64 =
+            tried.iter().zip(&weights).map(|((pole, variance, _), weight)| weight * value(*pole, *variance)).sum();
+        sum / weights.iter().sum::<f64>()
+    };
+    let pole = mean(&|pole, _| pole);
+    // What acts on a joint is its slow part. A pole at which there is no noise counts as one with next to none.
+    let least = LEAST_SHARE * differences[0] / LAGGED_PRODUCTS[0];
+    let slow = mean(&|pole, variance| (variance.max(least) * (1.0 + pole) / (1.0 - pole)).ln()).exp();
+    (slow * (1.0 - pole) / (1.0 + pole), pole)
+}
+
+/// The first of the coefficients, none of them negative, with which columns come closest to a target, and the squares that are left: the best of all
+/// sets of columns of which none gets a negative one.
+fn share_of_noise(columns: &[Vec<f64>; 3], target: &[f64]) -> (f64, f64) {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut best = (0.0, f64::INFINITY);
+    for set in 1_u32..8 {
+        let chosen: Vec<&Vec<f64>> =
+            (0..3).filter(|place| set & (1 << place) != 0).map(|place| &columns[place]).collect();
+        let gram = DMatrix::from_fn(chosen.len(), chosen.len(), |i, j| product(chosen[i], chosen[j]));
+        let moments = DVector::from_fn(chosen.len(), |i, _| product(chosen[i], target));
+        let Some(solved) = gram.cholesky().map(|factor| factor.solve(&moments)) else { continue };
+        let misfit = product(target, target) - solved.dot(&moments);
+        if solved.iter().all(|coefficient| *coefficient >= 0.0) && misfit < best.1 {
+            best = (if set & 1 == 1 { solved[0] } else { 0.0 }, misfit);
+        }
     }
-    0.5 * (low + high)
+    best
 }
 
 #[cfg(test)]
@@ -127,7 +178,7 @@ mod tests {
 
     #[test]
     fn deviation_and_pole_come_back() {
-        for (deviation, pole) in [(1e-4, 0.0), (1e-3, 0.3), (1e-3, 0.6)] {
+        for (deviation, pole) in [(1e-4, 0.0), (1e-3, 0.3), (1e-3, 0.6), (1e-3, 0.75)] {
             let found = PositionNoise::of(&swing(250.0, deviation, pole)).unwrap();
             assert!((found.variance.sqrt() / deviation - 1.0).abs() < 0.15, "{deviation} {pole}: {found:?}");
             assert!((found.pole - pole).abs() < 0.15, "{deviation} {pole}: {found:?}");
