@@ -279,29 +279,43 @@ impl Joint {
     }
 }
 
-/// What a drive logs of its samples: positions at some of them, a current or duty as its mean about each, since one sample of it holds what the
-/// differentiated encoder makes of its counts.
+/// What a drive logs of its samples, as CSV: every column as [`logged_column`] has it.
 fn logged(samples: &str) -> String {
     let mut lines = samples.lines();
     let head = lines.next().unwrap_or_default();
-    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    let averaged: Vec<usize> =
-        head.split(',').enumerate().filter(|(_, name)| ["current_A", "duty"].contains(name)).map(|(k, _)| k).collect();
-    let mean = |rows: &[Vec<&str>], column: usize, at: usize| {
-        let about = &rows[at.saturating_sub(SAMPLES_PER_ROW / 2)..(at + SAMPLES_PER_ROW / 2).min(rows.len())];
-        let sum: f64 = about.iter().map(|row| row[column].parse::<f64>().expect("it is a number")).sum();
-        (sum / about.len() as f64).to_string()
-    };
+    let mut columns: Vec<(&str, Vec<f64>)> = head.split(',').map(|name| (name, Vec::new())).collect();
+    for line in lines {
+        for ((_, values), cell) in columns.iter_mut().zip(line.split(',')) {
+            values.push(cell.parse().expect("it is a number"));
+        }
+    }
+    let logged: Vec<Vec<f64>> = columns.iter().map(|(name, values)| logged_column(name, values)).collect();
     let mut text = format!("{head}\n");
-    for at in (0..rows.len()).step_by(SAMPLES_PER_ROW) {
-        let means: Vec<String> = averaged.iter().map(|&column| mean(&rows, column, at)).collect();
-        let kept = rows[at].iter().enumerate().map(|(column, cell)| {
-            averaged.iter().position(|&other| other == column).map_or(*cell, |place| &means[place])
-        });
-        text += &kept.collect::<Vec<_>>().join(",");
+    for row in 0..logged.first().map_or(0, Vec::len) {
+        text += &logged.iter().map(|values| values[row].to_string()).collect::<Vec<_>>().join(",");
         text.push('\n');
     }
     text
+}
+
+/// What a drive logs of the samples of a column: a current or duty as its mean about each row, since one sample of it holds what the
+/// differentiated encoder makes of its counts; of the others the sample at the row.
+#[must_use]
+pub fn logged_column(name: &str, samples: &[f64]) -> Vec<f64> {
+    if ["current_A", "duty"].contains(&name) {
+        return mean_about_rows(samples);
+    }
+    samples.iter().step_by(SAMPLES_PER_ROW).copied().collect()
+}
+
+/// Mean of the samples about each row of the log.
+#[must_use]
+pub fn mean_about_rows(samples: &[f64]) -> Vec<f64> {
+    let mean = |at: usize| {
+        let about = &samples[at.saturating_sub(SAMPLES_PER_ROW / 2)..(at + SAMPLES_PER_ROW / 2).min(samples.len())];
+        about.iter().sum::<f64>() / about.len() as f64
+    };
+    (0..samples.len()).step_by(SAMPLES_PER_ROW).map(mean).collect()
 }
 
 /// A printed parameter over its truth, and whether its interval holds that.

@@ -4,7 +4,7 @@ use clap::Parser;
 use frikan_tests::concealed::afterwards::{Afterwards, FEED_FORWARD};
 use frikan_tests::concealed::summary::Row;
 use frikan_tests::concealed::tables::report;
-use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, page, run};
+use frikan_tests::concealed::{Case, Hidden, PAIRS, advised, afterwards, page, run, servo};
 use frikan_trainer::diagnose::BaseKind;
 use frikan_trainer::plant::{CATALOGUE, NoiseKind, OUTSIDE};
 use rayon::prelude::*;
@@ -45,6 +45,10 @@ struct Arguments {
     /// Seeds of the other trajectories of the same joint; the confounded recordings go with them.
     #[arg(long, default_value_t = 0)]
     afterwards: u64,
+    /// Draws of each effect, and eight times as many controls, of the same joint with a torque column and under each kind of actuator that
+    /// records none.
+    #[arg(long, default_value_t = 0)]
+    servo: u64,
     /// Title of the page.
     #[arg(long, default_value = "Effects concealed in simulated recordings")]
     title: String,
@@ -55,7 +59,8 @@ struct Arguments {
 
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
-    let outcomes: Vec<Result<Row, String>> = page::counted(&cases(&arguments), |case| {
+    let cases = cases(&arguments);
+    let outcomes: Vec<Result<Row, String>> = page::counted(&cases, |case| {
         run(case).map(|outcome| Row::of(&outcome)).map_err(|error| format!("{case}: {error}"))
     });
     let (rows, errors): (Vec<_>, Vec<_>) = outcomes.into_iter().partition(Result::is_ok);
@@ -64,6 +69,9 @@ fn main() -> std::io::Result<()> {
     let mut text = report(&arguments.title, &rows, &errors, &page::command("concealed-suite"));
     if arguments.afterwards > 0 {
         text += &beyond(&arguments);
+    }
+    if arguments.servo > 0 {
+        text += &servos(&arguments, cases.len());
     }
     page::put(&text, arguments.output.as_deref())
 }
@@ -81,6 +89,16 @@ fn beyond(arguments: &Arguments) -> String {
         .filter_map(|case| said(advised::run(&case, arguments.first_seed)).map(|advised| (case, advised)))
         .collect();
     afterwards::table(&later) + &advised::table(&confounded)
+}
+
+/// The same joint with a torque column and under actuators, on seeds behind those of `before` cases.
+fn servos(arguments: &Arguments, before: usize) -> String {
+    let hidden =
+        servo::effects().filter(|name| arguments.only.is_empty() || arguments.only.iter().any(|only| only == name));
+    let draws = hidden.map(Some).chain([None; 8]).flat_map(|hidden| (0..arguments.servo).map(move |_| hidden));
+    let seeded: Vec<_> = page::seeds(arguments.first_seed).skip(before).zip(draws).collect();
+    let told = page::counted(&seeded, |(seed, hidden)| servo::draw(*hidden, *seed, &servo::Source::ALL));
+    servo::table(&told.into_iter().flatten().filter_map(said).collect::<Vec<_>>())
 }
 
 /// The result, or nothing and what was wrong on standard error.

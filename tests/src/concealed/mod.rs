@@ -9,6 +9,7 @@ pub mod false_alarms;
 pub mod intervals;
 pub mod page;
 pub mod semi_real;
+pub mod servo;
 pub mod simulated;
 pub mod summary;
 pub mod symbolic;
@@ -136,6 +137,8 @@ pub fn joint_of(case: &Case) -> plant::Joint {
     joint
 }
 
+/// Amplitude with which the search for the wanted strength begins.
+const FIRST_AMPLITUDE: f64 = 0.3;
 /// Largest number of passes in which the amplitude is brought to the wanted strength.
 const PASSES: usize = 6;
 
@@ -173,15 +176,22 @@ fn amplitude_for(joint: &plant::Joint, name: &'static str, wanted: f64, case: &C
         return Ok(1.0);
     }
     let without = plant::simulate(joint, case.seed)?.truth.effect_torque;
-    let mut amplitude = 0.3f64;
+    amplitude_reaching(wanted, FIRST_AMPLITUDE, |amplitude| {
+        let recording = plant::conceal(joint, name, amplitude, case.seed)?;
+        let torque: Vec<f64> =
+            recording.truth.effect_torque.iter().zip(&without).map(|(both, one)| both - one).collect();
+        Ok(reach(&recording, &torque, joint, case).map_or(0.0, |strength| strength.lambda))
+    })
+}
+
+/// Amplitude at which the non-centrality comes within a tenth of the wanted one, as far as a few passes bring it there from a first one.
+fn amplitude_reaching<E>(wanted: f64, first: f64, mut lambda_at: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
+    let mut amplitude = first;
     // Non-centrality goes with the square of a torque; of a compliance or a play with another power, which two passes show.
     let mut power = 2.0;
     let mut before: Option<(f64, f64)> = None;
     for _ in 0..PASSES {
-        let recording = plant::conceal(joint, name, amplitude, case.seed)?;
-        let torque: Vec<f64> =
-            recording.truth.effect_torque.iter().zip(&without).map(|(both, one)| both - one).collect();
-        let lambda = reach(&recording, &torque, joint, case).map_or(0.0, |s| s.lambda).max(1e-3);
+        let lambda = lambda_at(amplitude)?.max(1e-3);
         if (wanted / lambda - 1.0).abs() < 0.1 {
             break;
         }

@@ -40,6 +40,7 @@ use crate::report::tell::{Story, tell};
 use crate::report::{self, DiagnosisPage};
 use crate::samples::PositionNoise;
 use crate::servo::{Identified, Load};
+pub use commanded::signals;
 use commanded::{Commands, under_torque};
 use compare::{Compared, Simulated, comparison};
 use improvement::improved_image;
