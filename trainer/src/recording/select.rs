@@ -126,6 +126,13 @@ impl Recording {
         self.with_health()
     }
 
+    /// The same with the channels without a quantity of another recording of as many rows: motions of other joints.
+    #[must_use]
+    pub(crate) fn beside_unnamed_of(mut self, other: &Self) -> Self {
+        self.channels.extend(other.channels.iter().filter(|channel| channel.quantity.is_none()).cloned());
+        self
+    }
+
     /// The same with another position, rad or m, one value a row.
     #[must_use]
     pub(crate) fn with_position(mut self, position: Vec<f64>) -> Self {

@@ -61,13 +61,16 @@ pub(crate) fn known_torque(
         Load::None | Load::OfActuator => (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect(),
     };
     let torque = whole.iter().enumerate().map(|(row, torque)| torque - carried(row)).collect();
+    let is_diagnosed = load == Load::OfPayload;
     let load = match load {
         Load::None => None,
         Load::OfActuator => Some(whole),
         Load::OfPayload => commanded.payload.is_some().then(|| (0..recording.len()).map(carried).collect()),
     };
     let others = load.map(|load| (Quantity::LoadTorque.name().to_owned(), load)).into_iter().collect();
-    Ok(recording.clone().with_torque(torque, others))
+    let known = recording.clone().with_torque(torque, others);
+    // An effect may go with the motion of another joint.
+    Ok(if is_diagnosed { known.beside_unnamed_of(recording) } else { known })
 }
 
 /// Velocity at a row by the rows beside it, rad/s.
@@ -93,4 +96,29 @@ pub(super) fn without_payload(mut outcome: Outcome, identified: &Identified, ref
     outcome.parameters.splice(0..0, identified.parameters.iter().cloned());
     outcome.remarks.extend(identified.remarks.iter().cloned());
     Ok(outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::torque_space::as_given;
+    use super::*;
+    use crate::recording::parse;
+
+    #[test]
+    fn motions_of_other_joints_stay_for_a_diagnosis() {
+        let pd = "[actuator]\nkind = \"pd\"\nkp_Nm_rad = 20\nkd_Nms_rad = 1\n";
+        let joint = Joint::parse(pd).unwrap();
+        let rows: String = (0..400)
+            .map(|i| {
+                let time = 0.01 * f64::from(i);
+                format!("{time},{},{},{}\n", (3.0 * time).sin(), (3.0 * time).sin() + 0.1, (2.0 * time).cos())
+            })
+            .collect();
+        let text = format!("time_s,position_rad,reference_position_rad,joint2_position_rad\n{rows}");
+        let recording = parse("a.csv", text.as_bytes(), &joint).unwrap();
+        let given = as_given(&recording, &joint).unwrap();
+        let known = |load| known_torque(&recording, &joint, &given, 0.0, load).unwrap();
+        assert!(known(Load::OfPayload).named("joint2_position_rad").is_some());
+        assert!(known(Load::None).named("joint2_position_rad").is_none());
+    }
 }

@@ -1,6 +1,7 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
 use crate::actuator::Commanded;
+use crate::actuator::Kind;
 use crate::diagnose::measurement::other_joints::other_positions;
 use crate::error::Result;
 use crate::joint::Joint;
@@ -118,8 +119,10 @@ impl Signals {
         if let Some(actuator) = actuator.filter(|_| is_given && signals.rigid_body.is_none()) {
             let per_torque = joint.actuator_per_torque(actuator.unit)?;
             let phase = body.gravity_phase_rad.unwrap_or(0.0);
-            // Beside a given inertia, a recorded load torque stands for the gravity that is not given.
-            let gravity: Option<Vec<f64>> = match (body.gravity_torque_nm, &signals.load) {
+            // Beside a given inertia, a recorded load torque stands for the gravity that is not given. That of a commanded joint is what its payload
+            // takes, which is off its torque already.
+            let recorded_load = signals.load.as_ref().filter(|_| joint.actuator.kind == Kind::Torque);
+            let gravity: Option<Vec<f64>> = match (body.gravity_torque_nm, recorded_load) {
                 (Some(gravity), _) => {
                     Some(signals.position.iter().map(|q| per_torque * gravity * (q + phase).sin()).collect())
                 }
@@ -194,5 +197,23 @@ mod tests {
         let error = |i: usize| (aligned.torque[i] - (order * late.time[i]).sin()).abs();
         assert!((2..197).chain(202..397).all(|i| error(i) < 0.004));
         assert!((0..199).chain(200..399).all(|i| error(i) < 0.3), "the ends of a segment");
+    }
+
+    #[test]
+    fn the_payload_of_a_commanded_joint_is_no_part_of_its_given_body() {
+        let rows: String = (0..200)
+            .map(|i| {
+                let time = 0.01 * f64::from(i);
+                format!("{time},{},1,2\n", (3.0 * time).sin())
+            })
+            .collect();
+        let text = format!("time_s,position_rad,torque_Nm,load_torque_Nm\n{rows}");
+        let body = |actuator: &str| {
+            let joint = Joint::parse(&format!("{actuator}[rigid_body]\ninertia_kgm2 = 0.5\n")).unwrap();
+            let recording = crate::recording::parse("a.csv", text.as_bytes(), &Joint::default()).unwrap();
+            Signals::of(&recording, &joint).unwrap().rigid_body.unwrap()[100]
+        };
+        let commanded = body("[actuator]\nkind = \"pd\"\nkp_Nm_rad = 20\nkd_Nms_rad = 1\n");
+        assert!((body("") - commanded - 2.0).abs() < 1e-12, "{} {commanded}", body(""));
     }
 }
