@@ -71,13 +71,17 @@ fn time_to_stop<T: Number>(velocity: T, net: T, viscous: T, inertia: T) -> Optio
     if ratio > 1e-9 { Some(inertia / viscous * ratio.ln_1p()) } else { Some(-inertia * velocity / net) }
 }
 
+/// Time over the time constant of the drag up to which a motion is a series: its next term is a part in 10^10 of what is gained.
+const SHORT: f64 = 1e-3;
+
 /// Exact motion under constant `net` torque and viscous drag.
 fn glide<T: Number>(state: &mut Motion1D<T>, net: T, viscous: T, inertia: T, time: T) {
     let x = viscous * time / inertia;
-    if x < 1e-9 {
-        let acceleration = (net - viscous * state.velocity) / inertia;
-        state.position += (state.velocity + acceleration * time * 0.5) * time;
-        state.velocity += acceleration * time;
+    if x < SHORT {
+        // The series of the exponential, as its terms cancel.
+        let gained = (net - viscous * state.velocity) / inertia * time;
+        state.position += (state.velocity + gained * (x * (x / 24.0 - 1.0 / 6.0) + 0.5)) * time;
+        state.velocity += gained * (x * (x / 6.0 - 0.5) + 1.0);
         return;
     }
     let share = -(-x).exp_m1();

@@ -86,15 +86,19 @@ impl Series {
         })
     }
 
-    /// The same with `times` rows in place of one, between which the commands lie on a cubic curve through the rows about them (Catmull & Rom 1974).
+    /// The same with `times` rows in place of one, between which the commands lie on a cubic curve through the rows about them (Catmull & Rom 1974), and
+    /// the places of its rows. Before a row of `begun`, ascending, nothing is put: the motion begins anew there.
     #[must_use]
-    pub(crate) fn on_a_curve(&self, times: usize) -> Self {
-        let (mut time, mut commands, mut temperature) = (Vec::new(), Vec::new(), Vec::new());
-        let last = self.time.len().saturating_sub(1);
+    pub(crate) fn on_a_curve(&self, times: usize, begun: &[usize]) -> (Self, Vec<usize>) {
+        let (mut time, mut commands, mut temperature, mut places) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let is_end = |row: usize| row + 1 >= self.time.len() || begun.binary_search(&(row + 1)).is_ok();
+        let after = |row: usize| if is_end(row) { row } else { row + 1 };
         for row in 0..self.time.len() {
-            let next = (row + 1).min(last);
-            let rows = [row.saturating_sub(1), row, next, (row + 2).min(last)].map(|row| &self.commands[row]);
-            for part in 0..if row == last { 1 } else { times } {
+            places.push(time.len());
+            let before = if row == 0 || is_end(row - 1) { row } else { row - 1 };
+            let next = after(row);
+            let rows = [before, row, next, after(next)].map(|row| &self.commands[row]);
+            for part in 0..if is_end(row) { 1 } else { times } {
                 let share = part as f64 / times as f64;
                 let curve = |of: fn(&Command) -> f64| cubic(rows.map(of), share);
                 time.push(self.time[row] + share * (self.time[next] - self.time[row]));
@@ -109,7 +113,7 @@ impl Series {
                 });
             }
         }
-        Self { time, commands, temperature }
+        (Self { time, commands, temperature }, places)
     }
 
     /// One command for so many rows.
@@ -178,7 +182,11 @@ mod tests {
         for row in 0..6 {
             series.commands[row].reference = parabola(series.time[row]);
         }
-        let curve = series.on_a_curve(4);
+        let (curve, places) = series.on_a_curve(4, &[0]);
+        assert_eq!(places, [0, 4, 8, 12, 16, 20]);
+        let (broken, places) = series.on_a_curve(4, &[0, 3]);
+        assert_eq!((broken.time.len(), places), (18, vec![0, 4, 8, 9, 13, 17]));
+        assert_eq!(broken.commands[9], series.commands[3]);
         assert_eq!(curve.time.len(), 21);
         for row in 0..6 {
             assert_eq!((curve.time[4 * row], curve.commands[4 * row]), (series.time[row], series.commands[row]));

@@ -125,13 +125,18 @@ pub fn recorded(recording: &Recording) -> Result<Vec<State>> {
 /// with its derivative by the parameter whose derivative is one.
 ///
 /// # Errors
-/// `FRK-N004` where the motion leaves all bounds.
+/// `FRK-N004` where the motion leaves all bounds, or a late feedback takes all of the inertia.
 pub fn simulate<T: Number>(
     rig: &Rig<T>,
     series: &Series,
     resistance: &mut impl Resistance<T>,
     starts: &[(usize, State)],
 ) -> Result<Vec<State<T>>> {
+    let late = rig.actuator.kd * rig.actuator.feedback_delay_s;
+    if rig.actuator.kind == Kind::Pd && rig.body.inertia <= late {
+        let message = "a controller that sees the motion so late takes all of the inertia: kd times feedback_delay_s";
+        return Err(Error::new(&codes::DIVERGED, message).in_column("actuator.feedback_delay_s"));
+    }
     let mut states = Vec::with_capacity(series.time.len());
     let first = starts.first().map_or(series.time.len(), |(row, _)| *row);
     let mut starts = starts.iter().peekable();

@@ -23,6 +23,12 @@ const MOST_STRIDE: i32 = 8;
 const MOTION_POWERS: [i32; 2] = [8, 5];
 /// Differences count up to so many of their usual size: an impact is no noise, and heavy tails are.
 const MOST_DEVIATIONS: f64 = 8.0;
+/// Rows of a stretch for each row of a stride: ten fourth differences one behind the other.
+const LEAST_ROWS_OF_STRIDE: i32 = 40;
+/// Deviations by which the finest differences have to exceed those of the encoder's steps.
+const CLEAR_DEVIATIONS: f64 = 3.0;
+/// Parameters that are fitted to the differences: noise, pole and two powers of the motion.
+const FITTED: f64 = 4.0;
 /// Share of the finest differences that counts as next to no noise.
 const LEAST_SHARE: f64 = 1e-6;
 /// Seed of the noise that is added: one recording, one answer.
@@ -49,8 +55,7 @@ impl PositionNoise {
         let longest = grid.segments.iter().max_by_key(|segment| segment.points)?;
         let values = grid.values(longest, time, position);
         let step = recording.health.position_resolution.unwrap_or(0.0);
-        let (variance, pole) = variance_and_pole(&values);
-        let variance = (variance - step * step / 12.0).max(0.0);
+        let (variance, pole) = variance_and_pole(&values, step);
         Some(Self { variance, pole, period_s: grid.period_s, step })
     }
 
@@ -97,14 +102,23 @@ fn gain(pole: f64) -> f64 {
 }
 
 /// Variance and pole of the noise of a position, with what a motion adds to its differences: means over the poles by their likelihood, as few of the
-/// differences tell a slow noise from a slower one.
-fn variance_and_pole(values: &[f64]) -> (f64, f64) {
-    let strides = 1..=MOST_STRIDE;
-    let differences: Vec<f64> =
+/// differences tell a slow noise from a slower one. The steps of an encoder are white and no part of it.
+fn variance_and_pole(values: &[f64], step: f64) -> (f64, f64) {
+    let strides = 1..=MOST_STRIDE.min(values.len() as i32 / LEAST_ROWS_OF_STRIDE);
+    let recorded: Vec<f64> =
         strides.clone().map(|stride| fourth_difference_variance(values, stride as usize)).collect();
-    if differences.iter().any(|variance| !(*variance > 0.0 && variance.is_finite())) {
+    // Relative variance of a mean square of fourth differences: twice the sum of their squared correlations over the rows.
+    let squares: f64 = LAGGED_PRODUCTS[1..].iter().map(|product| (product / LAGGED_PRODUCTS[0]).powi(2)).sum();
+    let relative_variance = 2.0 * (1.0 + 2.0 * squares) / values.len() as f64;
+    let of_steps = LAGGED_PRODUCTS[0] * step * step / 12.0;
+    let Some(finest) = recorded.first().filter(|variance| **variance > 0.0 && variance.is_finite()) else {
+        return (0.0, 0.0);
+    };
+    if finest - of_steps < CLEAR_DEVIATIONS * relative_variance.sqrt() * finest {
         return (0.0, 0.0);
     }
+    let differences: Vec<f64> =
+        recorded.iter().map(|variance| (variance - of_steps).max(LEAST_SHARE * variance)).collect();
     // Shares of the differences, so that every stride counts by its relative error; the error of longer strides is larger.
     let of = |power: &dyn Fn(i32) -> f64| -> Vec<f64> {
         let shares = strides.clone().zip(&differences);
@@ -112,19 +126,19 @@ fn variance_and_pole(values: &[f64]) -> (f64, f64) {
     };
     let motion = MOTION_POWERS.map(|power| of(&|stride| f64::from(stride).powi(power)));
     let target = of(&|stride| differences[stride as usize - 1]);
-    // Relative variance of a mean square of fourth differences: twice the sum of their squared correlations over the rows.
-    let squares: f64 = LAGGED_PRODUCTS[1..].iter().map(|product| (product / LAGGED_PRODUCTS[0]).powi(2)).sum();
-    let relative_variance = 2.0 * (1.0 + 2.0 * squares) / values.len() as f64;
     let tried: Vec<(f64, f64, f64)> = (0..=POLES)
         .map(|step| {
             let pole = LARGEST_POLE * f64::from(step) / f64::from(POLES);
             let columns = [of(&|stride| gain(pole.powi(stride))), motion[0].clone(), motion[1].clone()];
             let (variance, misfit) = share_of_noise(&columns, &target);
-            (pole, variance, -0.5 * misfit / relative_variance)
+            (pole, variance, misfit / relative_variance)
         })
         .collect();
-    let best = tried.iter().map(|(_, _, likelihood)| *likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = tried.iter().map(|(_, _, likelihood)| (likelihood - best).exp()).collect();
+    let best = tried.iter().map(|(_, _, misfit)| *misfit).fold(f64::INFINITY, f64::min);
+    // Where no pole fits, as of a motion with other powers, none is as sure as its noise says.
+    let expected = (differences.len() as f64 - FITTED).max(1.0);
+    let scale = (best / expected).max(1.0);
+    let weights: Vec<f64> = tried.iter().map(|(_, _, misfit)| (-0.5 * (misfit - best) / scale).exp()).collect();
     let mean = |value: &dyn Fn(f64, f64) -> f64| {
         let sum: f64 =
             tried.iter().zip(&weights).map(|((pole, variance, _), weight)| weight * value(*pole, *variance)).sum();

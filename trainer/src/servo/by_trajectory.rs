@@ -8,7 +8,8 @@ use super::candidate::{Candidate, What, place};
 use super::commanded::Commanded;
 use super::friction::{GearFriction, Terms};
 use super::identified::Identified;
-use super::shooting::{Shot, moved, shoot};
+use super::moved::{Moved, moved};
+use super::shooting::{Shot, shoot};
 use super::torque_space::open_constants;
 use crate::actuator::{Constant, Open};
 use crate::compile::host_model::HostModel;
@@ -69,7 +70,8 @@ pub(super) fn by_trajectory(
     let is_open = |constant| joint.actuator.constants.get(&constant).is_none_or(|known| known.given().is_none());
     let kind = joint.actuator.kind;
     let follows = kind.follows_position();
-    let delays_are_open = [follows && is_open(Constant::Delay), follows && is_open(Constant::FeedbackDelay)];
+    let known_feedback = joint.actuator.constants.get(&Constant::FeedbackDelay).copied();
+    let feedback = if follows { Moved::feedback_delay(known_feedback) } else { None };
     let range = applied.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
     let limit = (kind.is_motor() && is_open(Constant::TorqueLimit)).then_some(FIRST_LIMIT * range);
     let window_s = default_window_s(kind);
@@ -83,7 +85,15 @@ pub(super) fn by_trajectory(
             begin.friction.stribeck = 0.0;
         }
         let begin = Candidate { torque_limit: limit.map(|limit| gain * limit), ..begin };
-        let moved = moved(&begin, open, [torque, speed], terms, identified.has_own_gravity, delays_are_open);
+        let moved = moved(
+            &begin,
+            open,
+            [torque, speed],
+            terms,
+            identified.has_own_gravity,
+            follows && is_open(Constant::Delay),
+            feedback,
+        );
         let first = shoot(&commanded, begin, &moved, Some(FIRST_WINDOW_S));
         let whole = first.and_then(|first| match window_s {
             Some(window) if window <= FIRST_WINDOW_S => Ok(first),

@@ -1,7 +1,7 @@
 //! What recordings tell of an actuator.
 
 use super::candidate::Candidate;
-use crate::actuator::{Actuator, Known, Open, Partial};
+use crate::actuator::{Actuator, Constant, Known, Open, Partial};
 use crate::joint::Joint;
 use crate::parameter::Parameter;
 use crate::samples::Preparation;
@@ -60,6 +60,10 @@ impl Identified {
             if own.given().is_none() {
                 *own = Known::Given(value);
             }
+        }
+        // Bounds give way to what was found, nothing among it.
+        if let Some(bounds) = known.actuator.constants.get_mut(&Constant::FeedbackDelay) {
+            *bounds = Known::Given(bounds.given().unwrap_or(self.partial.actuator.feedback_delay_s));
         }
         known
     }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidate::{Candidate, What};
 use super::commanded::Commanded;
-use super::shooting::{Moved, Starts};
+use super::moved::{Moved, Starts};
 use crate::error::Result;
 use crate::numerics::statistics::NORMAL_95;
 
@@ -35,34 +35,35 @@ impl Linearised {
         self.slopes[constant].iter().zip(other).zip(&self.weights).map(|((a, b), w)| a * b * w).sum()
     }
 
-    /// Half of the 95 % intervals of what is moved: those of the errors that are `left`, rad, and how far a curve through the commands in place of
-    /// the line from row to row moves the constant.
-    ///
-    /// # Errors
-    /// `FRK-N004` where the joint cannot be simulated under that curve.
+    /// Half of the 95 % intervals of what is moved: those of the errors that are `left`, rad, and how far a curve through the commands, in finer steps,
+    /// moves the constant in place of the line from row to row; where the joint can be simulated under that.
     pub(super) fn half_widths(
         &self,
         moved: &[Moved],
         (candidate, left): (&Candidate, &[f64]),
         commanded: &[Commanded<'_>],
         starts: &Starts,
-    ) -> Result<Vec<(What, f64)>> {
+    ) -> Vec<(What, f64)> {
         let variance = independent_variance(left, commanded);
         // What changes nothing takes no part and is not determined.
         let told: Vec<usize> = (0..moved.len()).filter(|&index| self.normal[(index, index)] > 0.0).collect();
         let Some(covariance) = self.normal.select_rows(&told).select_columns(&told).try_inverse() else {
-            return Ok(moved.iter().map(|constant| (constant.what, f64::INFINITY)).collect());
+            return moved.iter().map(|constant| (constant.what, f64::INFINITY)).collect();
         };
-        let by_curve = by_curve(candidate, commanded, starts)?;
-        let pull = DVector::from_iterator(told.len(), told.iter().map(|&index| self.along(index, &by_curve)));
-        let shift = &covariance * pull;
+        let shift = match by_curve(candidate, commanded, starts) {
+            Ok(by_curve) => {
+                let pull = DVector::from_iterator(told.len(), told.iter().map(|&index| self.along(index, &by_curve)));
+                &covariance * pull
+            }
+            Err(_) => DVector::zeros(told.len()),
+        };
         let of = |(index, constant): (usize, &Moved)| {
             let half = told.iter().position(|told| *told == index).map_or(f64::INFINITY, |place| {
                 NORMAL_95 * (variance * covariance[(place, place)].abs()).sqrt() + shift[place].abs()
             });
             (constant.what, constant.scale * half)
         };
-        Ok(moved.iter().enumerate().map(of).collect())
+        moved.iter().enumerate().map(of).collect()
     }
 }
 
@@ -70,10 +71,14 @@ impl Linearised {
 fn by_curve(candidate: &Candidate, commanded: &[Commanded<'_>], starts: &Starts) -> Result<Vec<f64>> {
     let mut changes = Vec::new();
     for (one, starts) in commanded.iter().zip(starts) {
-        let later: Vec<_> = starts.iter().map(|(row, state)| (FINER * row, *state)).collect();
         let line = candidate.states(one, &one.series, starts)?;
-        let curve = candidate.states(one, &one.series.on_a_curve(FINER), &later)?;
-        changes.extend(curve.iter().step_by(FINER).zip(&line).map(|(curve, line)| curve.position - line.position));
+        let begun: Vec<usize> = starts.iter().map(|(row, _)| *row).collect();
+        let (series, places) = one.series.on_a_curve(FINER, &begun);
+        let later: Vec<_> = starts.iter().map(|(row, state)| (places[*row], *state)).collect();
+        let curve = candidate.states(one, &series, &later)?;
+        let first = later.first().map_or(0, |(row, _)| *row);
+        let at_rows = places.iter().filter(|place| **place >= first).map(|place| &curve[place - first]);
+        changes.extend(at_rows.zip(&line).map(|(curve, line)| curve.position - line.position));
     }
     Ok(changes)
 }

@@ -60,8 +60,11 @@ pub(crate) fn known_torque(
         }
         Load::None | Load::OfActuator => (0..recording.len()).map(|row| applied[row].at(velocity[row])).collect(),
     };
+    // What a controller that sees the motion late takes of the inertia.
+    let late = |row: usize| applied[row].inertia * acceleration.get(row).copied().unwrap_or(0.0);
+    let whole: Vec<f64> = whole.iter().enumerate().map(|(row, torque)| torque - late(row)).collect();
     let torque = whole.iter().enumerate().map(|(row, torque)| torque - carried(row)).collect();
-    let is_diagnosed = load == Load::OfPayload;
+    let is_diagnosed = load != Load::None;
     let load = match load {
         Load::None => None,
         Load::OfActuator => Some(whole),
@@ -119,6 +122,7 @@ mod tests {
         let given = as_given(&recording, &joint).unwrap();
         let known = |load| known_torque(&recording, &joint, &given, 0.0, load).unwrap();
         assert!(known(Load::OfPayload).named("joint2_position_rad").is_some());
+        assert!(known(Load::OfActuator).named("joint2_position_rad").is_some());
         assert!(known(Load::None).named("joint2_position_rad").is_none());
     }
 }

@@ -15,6 +15,7 @@ mod hanging_leg;
 mod identified;
 mod intervals;
 mod known_torque;
+mod moved;
 mod run;
 mod shooting;
 #[cfg(test)]

@@ -8,14 +8,13 @@ use rayon::prelude::*;
 
 use super::candidate::{Candidate, What};
 use super::commanded::Commanded;
-use super::friction::Terms;
 use super::intervals::{Linearised, independent_variance};
-use crate::actuator::Open;
+use super::moved::{Moved, Starts};
 use crate::error::Result;
 use crate::numerics::statistics::{DEVIATION_PER_MEDIAN, NORMAL_95, quantile};
 use crate::rollout::{State, starts};
 
-/// Most steps, and the share by which the cost has to fall for another one.
+/// Most steps, a limit of the computing time, and the share by which the cost has to fall for another one.
 const MOST_STEPS: usize = 100;
 const LEAST_GAIN: f64 = 1e-4;
 /// A step in which every constant moves less than this share of itself is the last: without noise the cost goes on falling by a share of nothing.
@@ -23,40 +22,8 @@ const LEAST_STEP: f64 = 1e-5;
 /// Errors of the position count less than squared from this many deviations on: a joint that sticks elsewhere is no noise.
 const ROBUST_DEVIATIONS: f64 = 1.5;
 
-/// How late a controller sees the motion where nobody says it, s: a half-normal deviation. Drives close such loops at 1 to 20 kHz and act on a motion of
-/// a period and a half before (Franklin, Powell & Workman 1998), which is 0.08 to 1.5 ms.
-const FEEDBACK_DELAY_S: f64 = 0.5e-3;
 /// A constant whose interval is more than this share of what was known of it before is not determined by the recordings.
 const LEARNED_SHARE: f64 = 0.5;
-
-/// Least limit of a torque over the one where the search begins: without torque nothing moves and no constant shows.
-const LEAST_LIMIT: f64 = 0.1;
-
-/// A constant that is moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moved {
-    pub(super) what: What,
-    /// Its size, by which steps are measured.
-    pub(super) scale: f64,
-    low: f64,
-    high: f64,
-    /// Mean and deviation of what is known of it before.
-    prior: Option<(f64, f64)>,
-}
-
-impl Moved {
-    fn between(what: What, scale: f64, low: f64, high: f64) -> Self {
-        Self { what, scale, low, high, prior: None }
-    }
-
-    /// How many deviations a candidate is from what was known before.
-    fn beside_prior(&self, candidate: &Candidate) -> f64 {
-        self.prior.map_or(0.0, |(mean, deviation)| (candidate.value(self.what) - mean) / deviation)
-    }
-}
-
-/// Rows of each recording from which its recorded state is taken, with that state.
-pub(super) type Starts = Vec<Vec<(usize, State)>>;
 
 /// Where shooting ended.
 #[derive(Clone, Debug)]
@@ -86,55 +53,6 @@ impl Shot {
             prior.is_none_or(|(_, deviation)| *half < LEARNED_SHARE * NORMAL_95 * deviation)
         });
     }
-}
-
-/// Constants that are moved from a start on, with their bounds; the joint's own gravity where that is not the payload's alone. The loss by
-/// back-EMF of a motor of which nothing else is known is part of the viscous friction. Friction that falls over more than a fifth of the top speed
-/// would be Coulomb and viscous friction under other names.
-pub(super) fn moved(
-    start: &Candidate,
-    open: &[Open],
-    [torque, speed]: [f64; 2],
-    terms: Terms,
-    own_gravity: bool,
-    [delay_is_open, feedback_delay_is_open]: [bool; 2],
-) -> Vec<Moved> {
-    let positive = |what, scale: f64| Moved::between(what, scale, 0.0, f64::INFINITY);
-    let mut moved: Vec<Moved> = open
-        .iter()
-        .map(|open| {
-            let value = start.value(What::Actuator(*open)).abs().max(f64::MIN_POSITIVE);
-            Moved::between(What::Actuator(*open), value, 0.05 * value, 20.0 * value)
-        })
-        .collect();
-    moved.extend([
-        positive(What::Inertia, start.inertia.abs().max(1e-3 * torque)),
-        Moved::between(What::Offset, 0.1 * torque, -torque, torque),
-        positive(What::Coulomb, 0.1 * torque),
-    ]);
-    if terms.stribeck {
-        moved.extend([
-            positive(What::Stribeck, 0.1 * torque),
-            Moved::between(What::StribeckVelocity, 0.05 * speed, 0.005 * speed, 0.2 * speed),
-        ]);
-    }
-    moved.push(positive(What::Viscous, 0.1 * torque / speed));
-    moved.extend(terms.load.then_some(Moved::between(What::Load, 0.1, 0.0, 0.95)));
-    moved.extend(
-        start.torque_limit.map(|limit| Moved { low: LEAST_LIMIT * limit, ..positive(What::TorqueLimit, limit) }),
-    );
-    if own_gravity {
-        let free = |what| Moved::between(what, 0.1 * torque, f64::NEG_INFINITY, f64::INFINITY);
-        moved.extend([free(What::GravitySin), free(What::GravityCos)]);
-    }
-    moved.extend(start.back_emf.map(|_| positive(What::BackEmf, 0.1 * torque / speed)));
-    moved.extend(delay_is_open.then_some(Moved::between(What::Delay, 0.01, 0.0, 0.1)));
-    // Of a feedback that is late the gains take viscous friction and inertia: kp and kd times the delay (first order).
-    moved.extend(feedback_delay_is_open.then(|| Moved {
-        prior: Some((start.feedback_delay_s, FEEDBACK_DELAY_S)),
-        ..Moved::between(What::FeedbackDelay, FEEDBACK_DELAY_S, 0.0, 0.1)
-    }));
-    moved
 }
 
 /// Moves the constants from `start` on until the simulated positions are the recorded ones, begun anew every `window_s`.
@@ -185,10 +103,16 @@ pub(super) fn shoot(
             gradient[i] += independent * per_scale * constant.beside_prior(&candidate);
         }
         let at = linearised.insert(at);
+        // A constant at a bound that would go beyond it stays there, and the others move without it.
+        let is_free = |i: &usize| {
+            let (constant, value) = (&moved[*i], candidate.value(moved[*i].what));
+            !(value <= constant.low && gradient[*i] > 0.0 || value >= constant.high && gradient[*i] < 0.0)
+        };
+        let free: Vec<usize> = (0..count).filter(is_free).collect();
         let before = cost(&candidate, &left);
         let mut found = None;
         while damping < 1e8 && found.is_none() {
-            let step = step(&at.normal, &gradient, damping);
+            let step = step(&at.normal, &gradient, damping, &free);
             let trial = step.map(|step| stepped(&candidate, moved, &step));
             let tried = trial.and_then(|trial| errors(&trial).ok().map(|left| (trial, left)));
             found = tried.filter(|(trial, left)| cost(trial, left) < before);
@@ -211,7 +135,7 @@ pub(super) fn shoot(
     }
     let mae = left.iter().map(|x| x.abs()).sum::<f64>() / left.len().max(1) as f64;
     let half_widths = match linearised {
-        Some(at) => at.half_widths(moved, (&candidate, &left), commanded, &begun)?,
+        Some(at) => at.half_widths(moved, (&candidate, &left), commanded, &begun),
         None => Vec::new(),
     };
     Ok(Shot { candidate, half_widths, converged, mae })
@@ -236,13 +160,17 @@ fn slopes(
     moved.par_iter().map(slope).collect::<Vec<Result<Vec<f64>>>>().into_iter().collect()
 }
 
-fn step(normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
-    let mut damped = normal.clone();
+/// The damped step of the constants that are free, zero of the others.
+fn step(normal: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64, free: &[usize]) -> Option<DVector<f64>> {
+    let mut damped = normal.select_rows(free).select_columns(free);
     let largest = normal.diagonal().max();
-    for i in 0..damped.nrows() {
-        damped[(i, i)] += damping * normal[(i, i)].max(1e-9 * largest);
+    for (i, place) in free.iter().enumerate() {
+        damped[(i, i)] += damping * normal[(*place, *place)].max(1e-9 * largest);
     }
-    damped.cholesky().map(|factor| factor.solve(gradient))
+    let solved = damped.cholesky()?.solve(&gradient.select_rows(free));
+    let mut step = DVector::zeros(gradient.len());
+    free.iter().zip(solved.iter()).for_each(|(place, own)| step[*place] = *own);
+    Some(step)
 }
 
 fn stepped(candidate: &Candidate, moved: &[Moved], step: &DVector<f64>) -> Candidate {

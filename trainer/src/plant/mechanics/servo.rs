@@ -66,7 +66,7 @@ impl Servo {
         let before = self.velocity_before.replace(velocity).unwrap_or(velocity);
         let in_the_middle = 1.5 * velocity - 0.5 * before;
         let damped_by = if self.actuator.kind.is_motor() { in_the_middle } else { seen.velocity };
-        self.actuator.apply(&acting, seen).at(damped_by)
+        self.actuator.apply(&acting, Motion { velocity: damped_by, ..seen }).at(damped_by)
     }
 
     pub(crate) fn actuator(&self) -> &Actuator {

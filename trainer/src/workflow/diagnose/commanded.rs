@@ -41,13 +41,14 @@ pub(super) fn under_torque(
     }
 }
 
-/// Signals of one recording as a diagnosis of it by itself weighs them: of a joint that reports no torque, under what its actuator of known
-/// constants made of the commands.
+/// Signals of one recording as a diagnosis of it by itself weighs them: of a joint that reports no torque, under what its actuator made of
+/// the commands, by constants that are given or identified in it.
 ///
 /// # Errors
 /// As [`identify`] and [`Signals::of`].
 pub fn signals(recording: Recording, joint: &Joint) -> Result<Signals> {
     let actuator = actuator(std::slice::from_ref(&recording), None, joint)?;
+    let joint = &actuator.as_ref().map_or_else(|| joint.clone(), |actuator| actuator.joint(joint));
     let told = Commands::of(&recording, joint, Load::OfPayload)?;
     let mut signals = Signals::of(&under_torque(recording, joint, actuator.as_ref(), Load::OfPayload)?, joint)?;
     signals.commanded = told.map(|told| told.at(&signals));
