@@ -45,7 +45,8 @@ pub(super) fn under_torque(
 /// the commands, by constants that are given or identified in it.
 ///
 /// # Errors
-/// As [`identify`] and [`Signals::of`].
+/// `FRK-D009` and `FRK-D014` for columns and constants that are missing, `FRK-N005` for a constant that the recording does not determine, and as
+/// [`Signals::of`].
 pub fn signals(recording: Recording, joint: &Joint) -> Result<Signals> {
     let actuator = actuator(std::slice::from_ref(&recording), None, joint)?;
     let joint = &actuator.as_ref().map_or_else(|| joint.clone(), |actuator| actuator.joint(joint));
