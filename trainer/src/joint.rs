@@ -19,6 +19,7 @@ pub use columns::{ColumnMapping, Columns, Side, Simulation};
 pub use drive::{Drive, Limits};
 pub use surroundings::{Obstacle, Surroundings};
 
+use crate::actuator::Kind;
 use crate::error::{Error, Result, codes};
 use crate::files;
 
@@ -92,6 +93,12 @@ pub struct RigidBody {
 }
 
 impl Joint {
+    /// Whether a load torque beside a given inertia stands for the gravity that is not given: a recorded one does, and what the payload of a
+    /// commanded joint takes is off its torque already.
+    pub(crate) fn load_stands_for_gravity(&self) -> bool {
+        self.actuator.kind == Kind::Torque && self.rigid_body.gravity_torque_nm.is_none()
+    }
+
     /// Actuator unit per N m (or N) at the joint: 1 unless the actuator is a current, "A".
     ///
     /// # Errors

@@ -50,7 +50,7 @@ impl Linearised {
         let Some(covariance) = self.normal.select_rows(&told).select_columns(&told).try_inverse() else {
             return moved.iter().map(|constant| (constant.what, f64::INFINITY)).collect();
         };
-        let shift = match by_curve(candidate, commanded, starts) {
+        let shift = match by_curve(candidate, left, commanded, starts) {
             Ok(by_curve) => {
                 let pull = DVector::from_iterator(told.len(), told.iter().map(|&index| self.along(index, &by_curve)));
                 &covariance * pull
@@ -67,18 +67,18 @@ impl Linearised {
     }
 }
 
-/// What a curve through the commands in place of the line from row to row changes of the simulated positions, rad.
-fn by_curve(candidate: &Candidate, commanded: &[Commanded<'_>], starts: &Starts) -> Result<Vec<f64>> {
-    let mut changes = Vec::new();
+/// What a curve through the commands changes of the simulated positions, rad, whose errors along the line from row to row are `left`, rad.
+fn by_curve(candidate: &Candidate, left: &[f64], commanded: &[Commanded<'_>], starts: &Starts) -> Result<Vec<f64>> {
+    let mut changes = Vec::with_capacity(left.len());
     for (one, starts) in commanded.iter().zip(starts) {
-        let line = candidate.states(one, &one.series, starts)?;
         let begun: Vec<usize> = starts.iter().map(|(row, _)| *row).collect();
         let (series, places) = one.series.on_a_curve(FINER, &begun);
         let later: Vec<_> = starts.iter().map(|(row, state)| (places[*row], *state)).collect();
         let curve = candidate.states(one, &series, &later)?;
         let first = later.first().map_or(0, |(row, _)| *row);
         let at_rows = places.iter().filter(|place| **place >= first).map(|place| &curve[place - first]);
-        changes.extend(at_rows.zip(&line).map(|(curve, line)| curve.position - line.position));
+        changes.extend(at_rows.zip(one.positions()).map(|(curve, recorded)| curve.position - recorded));
     }
+    changes.iter_mut().zip(left).for_each(|(change, left)| *change -= left);
     Ok(changes)
 }

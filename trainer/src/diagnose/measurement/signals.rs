@@ -1,7 +1,6 @@
 //! What the diagnosis works on: one joint's signals on an even clock, before any filter.
 
 use crate::actuator::Commanded;
-use crate::actuator::Kind;
 use crate::diagnose::measurement::other_joints::other_positions;
 use crate::error::Result;
 use crate::joint::Joint;
@@ -119,9 +118,7 @@ impl Signals {
         if let Some(actuator) = actuator.filter(|_| is_given && signals.rigid_body.is_none()) {
             let per_torque = joint.actuator_per_torque(actuator.unit)?;
             let phase = body.gravity_phase_rad.unwrap_or(0.0);
-            // Beside a given inertia, a recorded load torque stands for the gravity that is not given. That of a commanded joint is what its payload
-            // takes, which is off its torque already.
-            let recorded_load = signals.load.as_ref().filter(|_| joint.actuator.kind == Kind::Torque);
+            let recorded_load = signals.load.as_ref().filter(|_| joint.load_stands_for_gravity());
             let gravity: Option<Vec<f64>> = match (body.gravity_torque_nm, recorded_load) {
                 (Some(gravity), _) => {
                     Some(signals.position.iter().map(|q| per_torque * gravity * (q + phase).sin()).collect())

@@ -3,7 +3,6 @@
 use super::commanded::Commands;
 use super::one_joint::{refuse_diverged, refuse_other_joint};
 use super::request::Against;
-use crate::actuator::Kind;
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
@@ -209,11 +208,8 @@ fn given_rigid_body(real: &Recording, joint: &Joint) -> Result<RigidBody> {
         gravity_sin: (per_torque * gravity * phase.cos()) as f32,
         gravity_cos: (per_torque * gravity * phase.sin()) as f32,
         offset: 0.0,
-        // Beside an inertia without gravity a recorded load stands for it; that of a commanded joint is off its torque.
         given_scale: f32::from(u8::from(
-            joint.actuator.kind == Kind::Torque
-                && given.gravity_torque_nm.is_none()
-                && real.channel(Quantity::LoadTorque).is_some(),
+            joint.load_stands_for_gravity() && real.channel(Quantity::LoadTorque).is_some(),
         )),
     })
 }
