@@ -34,18 +34,16 @@ const STIFFNESS_NM_RAD: f64 = 400.0;
 pub enum Source {
     /// A torque column.
     Column,
-    /// The command of an actuator, logged with the noise of the torque column.
+    /// The measured current or duty of a motor, logged with the noise of the torque column.
     Command(Kind),
-    /// The command of an actuator as it is, beside a position that is logged with noise.
+    /// The reference of a position loop as the drive computed it, beside a position that is logged with noise.
     Position(Kind),
 }
 
 impl Source {
     /// All of them, the torque column first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 5] = [
         Self::Column,
-        Self::Command(Kind::Pd),
-        Self::Command(Kind::PositionServo),
         Self::Command(Kind::Current),
         Self::Command(Kind::DcMotor),
         Self::Position(Kind::Pd),
@@ -149,8 +147,7 @@ impl Servo {
         let noise = match (source, kind) {
             (Source::Position(_), _) => ("position_rad", POSITION_NOISE_RAD_NM),
             (_, Kind::Current) => ("current_A", 1.0 / torque_constant),
-            (_, Kind::DcMotor) => ("duty", resistance / torque_constant / supply),
-            _ => ("reference_position_rad", 1.0 / STIFFNESS_NM_RAD),
+            _ => ("duty", resistance / torque_constant / supply),
         };
         Ok(Self { simulated, described, noise })
     }
@@ -266,7 +263,7 @@ impl Told {
 #[must_use]
 pub fn table(results: &[Told]) -> String {
     let mut text = String::from(
-        "\n## Joints that record no torque\n\nThe same joint, motions and effects with a torque column and under actuators of known constants, which record commands and positions\nalone. The torque is what the actuator makes of them; its noise is that of the logged command, as large as that of the torque column, or\nthat of the logged position. The amplitude is that of a non-centrality of 80 beside the noise of each. A wrong name has nothing hidden in its set.\n\n| torque | draws | named first | in the set | a wrong name | controls with nothing named | lambda, median | amplitude over that with a torque column, median |\n|---|---|---|---|---|---|---|---|\n",
+        "\n## Joints that record no torque\n\nThe same joint, motions and effects with a torque column and under actuators of known constants, which record commands and positions\nalone. The torque is what the actuator makes of them; its noise is that of the logged current or duty, as large as\nthat of the torque column, or, of a position loop, whose reference is logged as it was computed, that of the logged position. The amplitude is that of a non-centrality of 80 beside the noise of each. A wrong name has nothing hidden in its set.\n\n| torque | draws | named first | in the set | a wrong name | controls with nothing named | lambda, median | amplitude over that with a torque column, median |\n|---|---|---|---|---|---|---|---|\n",
     );
     let figure = |values: Vec<f64>| median(values).map_or("-".to_owned(), |value| format!("{value:.2}"));
     for source in Source::ALL {

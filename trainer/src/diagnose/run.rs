@@ -250,7 +250,8 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     turn_over_as_simulated(&mut prepared, comparison);
     let base = Base::fit(&mut prepared, comparison, options.base).ok_or(Refusal::Undetermined)?;
     let simulated = of_simulation(&prepared, comparison);
-    let side = simulated.as_ref().map(|(prepared, base)| Side::without_delay(prepared, base));
+    let repeats = comparison.simulation.as_ref().map_or(1.0, |simulation| simulation.repeats);
+    let side = simulated.as_ref().map(|(prepared, base)| Side::without_delay(prepared, base).standing_for(repeats));
     let real = Side::without_delay(&prepared, &base);
     let candidates = Candidates::new(&hypotheses, &real, side.as_ref());
     let (noise, delay) = torque_delay(&candidates, &real, side.as_ref(), LONGEST_SAMPLING_DELAY * period);
@@ -261,7 +262,7 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     // A torque that follows from commands and motion has their time.
     let told = delay.filter(is_more_than_grain).filter(|_| comparison.signals.commanded.is_none());
     let late_s = told.map_or(0.0, |late| late.delay_s);
-    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base));
+    let side = simulated.as_ref().map(|(prepared, base)| Side::new(prepared, base).standing_for(repeats));
     let real = shifted(&Side::new(&prepared, &base), late_s);
     let weighing = Weighing::new(&candidates, &real, side.as_ref(), &noise, friction_of(&real));
     // What a law gets wrong by itself is no effect; where the rows that it was learned from stand beside it, these tell.

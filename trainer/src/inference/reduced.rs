@@ -34,6 +34,21 @@ impl Reduced {
         }
     }
 
+    /// The same with the sum of its columns by some weights in the base: flat, as large as the rows ask for.
+    pub fn without_sum(&self, weights: &DVector<f64>) -> Self {
+        let products = &self.gram * weights;
+        let energy = weights.dot(&products);
+        if energy <= 0.0 {
+            return self.clone();
+        }
+        let moment = weights.dot(&self.moments) / energy;
+        Self {
+            gram: &self.gram - &products * products.transpose() / energy,
+            moments: &self.moments - &products * moment,
+            energy: self.energy - energy * moment * moment,
+        }
+    }
+
     /// Sum of the products over two sets of rows.
     pub fn plus(&self, other: &Self) -> Self {
         Self {
@@ -201,6 +216,16 @@ mod tests {
         assert!((reduced.moments[0] - dot(&left(&candidate), &target)).abs() < 1e-6);
         assert!((reduced.energy - dot(&left(&target), &target)).abs() < 1e-6);
         assert_eq!([reduced.gram[(1, 1)], reduced.gram[(0, 1)], reduced.moments[1]], [0.0; 3]);
+    }
+
+    #[test]
+    fn a_sum_of_columns_that_is_taken_off_is_one_of_the_base() {
+        let columns: Vec<Vec<f64>> = [3, 4, 7].map(|seed| column(seed, 300)).to_vec();
+        let sum: Vec<f64> = columns[0].iter().zip(&columns[1]).map(|(a, b)| 0.5 * a - 2.0 * b).collect();
+        let taken = Reduced::without_base(&products(&columns), 0).without_sum(&DVector::from_vec(vec![0.5, -2.0]));
+        let based = Reduced::without_base(&products(&[&[sum][..], &columns].concat()), 1);
+        assert!((&taken.gram - &based.gram).norm() < 1e-6 && (&taken.moments - &based.moments).norm() < 1e-6);
+        assert!((taken.energy - based.energy).abs() < 1e-6);
     }
 
     #[test]

@@ -24,7 +24,7 @@ use std::ops::Range;
 pub use even::EvenClock;
 pub(crate) use grid::{interpolate, told_of_clock};
 pub use plan::{Preparation, Request, VelocitySource};
-pub(crate) use position_noise::PositionNoise;
+pub(crate) use position_noise::{PositionNoise, white_position_noise};
 pub(crate) use prepare::{EveryRow, prepare_every_row_of};
 pub use prepare::{prepare, prepare_every_row};
 pub(crate) use separation::bending::BendingLaw;

@@ -59,29 +59,42 @@ impl PositionNoise {
         Some(Self { variance, pole, period_s: grid.period_s, step })
     }
 
-    /// A recording as it would be measured with this noise and these steps, as far as its position has less of both.
-    pub(crate) fn on(&self, recording: Recording) -> Recording {
-        let own = Self::of(&recording);
-        let (Some(own), Some(position)) = (own, recording.values(Quantity::Position)) else { return recording };
+    /// A recording as it would be measured with this noise and these steps, as far as its position has less of both: once with the noise and once with its
+    /// negative, on steps that lie between those of the first. What goes with the noise itself is nothing over both, and what goes with its square, as
+    /// bias does, stays (antithetic variates; Hammersley and Morton 1956).
+    pub(crate) fn on_both_ways(&self, recording: &Recording) -> [Recording; 2] {
+        let own = Self::of(recording);
+        let (Some(own), Some(position)) = (own, recording.values(Quantity::Position)) else {
+            return [recording.clone(), recording.clone()];
+        };
         let pole = self.pole.powf(own.period_s / self.period_s);
         let missing = (self.density() - own.density()).max(0.0);
         let deviation = (missing / own.period_s * (1.0 - pole) / (1.0 + pole)).sqrt();
+        let step = if self.step > own.step { self.step } else { 0.0 };
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut noise = deviation * normal(&mut random);
-        let step = if self.step > own.step { self.step } else { 0.0 };
+        let rounded = |position: f64, offset: f64| {
+            if step > 0.0 { ((position / step + offset).round() - offset) * step } else { position }
+        };
         let measured = position.iter().map(|position| {
-            let noisy = position + noise;
+            let both = (rounded(position + noise, 0.0), rounded(position - noise, 0.5));
             noise = pole * noise + deviation * (1.0 - pole * pole).sqrt() * normal(&mut random);
-            if step > 0.0 { (noisy / step).round() * step } else { noisy }
+            both
         });
-        let measured = measured.collect();
-        recording.with_position(measured)
+        let (one, other): (Vec<f64>, Vec<f64>) = measured.unzip();
+        [one, other].map(|position| recording.clone().with_position(position))
     }
 
     /// Spectral density below the pole, which rates leave as it is, rad2 s or m2 s.
     fn density(&self) -> f64 {
         self.variance * self.period_s * (1.0 + self.pole) / (1.0 - self.pole)
     }
+}
+
+/// Deviation of white noise that has as much below the pole as the noise of a position beside its steps, rad or m.
+pub(crate) fn white_position_noise(position: &[f64], step: f64) -> f64 {
+    let (variance, pole) = variance_and_pole(position, step);
+    (variance * (1.0 + pole) / (1.0 - pole)).sqrt()
 }
 
 /// Variance of fourth differences so many rows apart, which hold next to nothing of a motion.
@@ -203,9 +216,16 @@ mod tests {
     fn a_position_without_noise_gets_as_much_whatever_its_rate() {
         let noise = PositionNoise::of(&swing(250.0, 5e-4, 0.5)).unwrap();
         for rate_hz in [250.0, 500.0] {
-            let measured = noise.on(swing(rate_hz, 0.0, 0.0));
-            let found = PositionNoise::of(&measured).unwrap();
-            assert!((found.density() / noise.density() - 1.0).abs() < 0.5, "{rate_hz}: {found:?} for {noise:?}");
+            let exact = swing(rate_hz, 0.0, 0.0);
+            let measured = noise.on_both_ways(&exact);
+            for measured in &measured {
+                let found = PositionNoise::of(measured).unwrap();
+                assert!((found.density() / noise.density() - 1.0).abs() < 0.5, "{rate_hz}: {found:?} for {noise:?}");
+            }
+            let [exact, one, other] =
+                [&exact, &measured[0], &measured[1]].map(|of| of.values(Quantity::Position).unwrap());
+            let is_middle = |row: usize| (0.5 * (one[row] + other[row]) - exact[row]).abs() < 1e-12;
+            assert!((0..exact.len()).all(is_middle));
         }
     }
 }

@@ -124,9 +124,11 @@ impl Outlook {
         kept.map(|(_, column)| self.white(column)).collect()
     }
 
+    /// Columns of an effect at the states; `None` where these have none of it, as a planned motion has no commands.
     fn filtered(&self, effect: EffectId, shape: &[f64]) -> Option<Vec<Vec<f64>>> {
         let hypothesis = self.hypotheses.iter().find(|h| h.id() == effect)?;
-        Some(self.prepared.filtered_all(&hypothesis.columns(&self.prepared.state, shape)))
+        let columns = hypothesis.columns(&self.prepared.state, shape);
+        (!columns.is_empty()).then(|| self.prepared.filtered_all(&columns))
     }
 
     fn white(&self, column: &[f64]) -> Vec<f64> {

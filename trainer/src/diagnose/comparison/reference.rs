@@ -7,6 +7,11 @@ use crate::numerics::least_squares::least_squares;
 use crate::physics::{EffectId, JointState, friction_at};
 use crate::samples::SLIDING_SPEED_SHARE;
 
+/// Recordings that each row stands for of a simulation that was measured with noise and with its negative. What goes with the noise itself cancels over
+/// both, so that they tell its bias as well as many simulations would. As two times five of them they add a tenth to the variance of what is found in the
+/// recording; one simulation would double it.
+const REPEATS_OF_BOTH_WAYS: f64 = 5.0;
+
 /// A law at the states of a recording.
 #[derive(Clone, Debug, Default)]
 pub struct Reference {
@@ -65,11 +70,14 @@ pub struct Comparison {
     pub reference: Option<Reference>,
     /// The recording of the simulation with its own law at its own states, where both stand in one model.
     pub simulation: Option<Box<Comparison>>,
+    /// How many recordings with noise of their own each of its rows stands for: of a simulation that was measured without the noise's own part more
+    /// than one.
+    pub(crate) repeats: f64,
 }
 
 impl From<Signals> for Comparison {
     fn from(signals: Signals) -> Self {
-        Self { signals, reference: None, simulation: None }
+        Self { signals, reference: None, simulation: None, repeats: 1.0 }
     }
 }
 
@@ -80,14 +88,21 @@ impl Comparison {
         if signals.rigid_body.is_none() && reference.rigid_body.iter().any(|torque| *torque != 0.0) {
             signals.rigid_body = Some(reference.rigid_body.clone());
         }
-        Self { signals, reference: Some(reference), simulation: None }
+        Self { signals, reference: Some(reference), simulation: None, repeats: 1.0 }
     }
 
-    /// The same with the recording of the simulation from which the law was learned, as the recording's encoder would have read it.
+    /// The same with a simulation in one model, as the recording's encoder would have read it.
     #[must_use]
-    pub fn beside(self, simulation: Signals, law: Reference) -> Self {
-        let simulation = simulation.read_in_steps(self.signals.position_resolution);
-        Self { simulation: Some(Box::new(Self::with(simulation, law))), ..self }
+    pub fn beside(self, simulation: Self) -> Self {
+        let signals = simulation.signals.read_in_steps(self.signals.position_resolution);
+        Self { simulation: Some(Box::new(Self { signals, ..simulation })), ..self }
+    }
+
+    /// The same with a simulation that was measured as the recording was, with its noise and with the negative of that.
+    #[must_use]
+    pub(crate) fn beside_both_ways(self, simulation: Self) -> Self {
+        let simulation = Self { repeats: REPEATS_OF_BOTH_WAYS, ..simulation };
+        Self { simulation: Some(Box::new(simulation)), ..self }
     }
 
     /// The torque that needs no identification: the reference's, or the rigid body's.
@@ -115,6 +130,7 @@ impl Comparison {
             signals: self.signals.realigned(delay),
             reference: self.reference.clone(),
             simulation: self.simulation.clone(),
+            repeats: self.repeats,
         }
     }
 }

@@ -55,8 +55,14 @@ impl Inferred {
             set.members.iter().zip(&self.sizes).filter_map(|(m, size)| self.told(*m, set).map(|told| (told, *size)));
         let (mut large, small): (Vec<_>, Vec<_>) = told.partition(|(_, size)| size.least >= self.least);
         large.sort_by(|(_, a), (_, b)| b.torque.total_cmp(&a.torque));
-        let small = small.into_iter().map(|(accepted, size)| (accepted.effect(), size.torque)).collect();
-        (large.into_iter().map(|(accepted, _)| accepted).collect(), small)
+        let small = small.into_iter().map(|(accepted, size)| (accepted.effect(), size.torque));
+        let mut below: Vec<(EffectId, f64)> = Vec::new();
+        for (effect, torque) in self.below.iter().copied().chain(small) {
+            if !below.iter().any(|(known, _)| *known == effect) {
+                below.push((effect, torque));
+            }
+        }
+        (large.into_iter().map(|(accepted, _)| accepted).collect(), below)
     }
 
     /// A member with what may stand in for it; `None` where nothing is as likely.

@@ -11,7 +11,7 @@ use crate::inference::evidence::{Candidate, Model};
 use crate::inference::posterior::Posterior;
 use crate::inference::sets::{Field, Member};
 use crate::numerics::least_squares::weighted;
-use crate::physics::Hypothesis;
+use crate::physics::{EffectId, Hypothesis};
 
 /// Rounds of noise, sets and refined shapes: the second has the noise of what the first found. A limit of the computing time.
 const ROUNDS: usize = 2;
@@ -23,6 +23,8 @@ const USEFUL_NATS: f64 = 15.0;
 const REFINED_FROM: f64 = 0.01;
 /// Probability of a set from which members that tell no cause are compared with refined effects.
 const INSTEAD_FROM: f64 = 0.2;
+/// Effects below the least torque beside which the others are weighed, from which on no more are taken. A limit of the computing time: as many as two sets.
+const MOST_BELOW: usize = 8;
 /// Effects that are refined in the place of one of them. A limit of the computing time.
 const INSTEAD: usize = 4;
 
@@ -32,6 +34,8 @@ pub(crate) struct Inferred {
     pub posterior: Posterior,
     /// Torque of each member of the likeliest set beyond what base and common columns could take.
     pub sizes: Vec<Size>,
+    /// Effects that are there and below what is named, with their torque, root mean square: the others are weighed beside them.
+    pub below: Vec<(EffectId, f64)>,
     /// Torque, root mean square, that an effect has to exceed to be named.
     pub least: f64,
     /// Log evidence (nats, tempered) of each candidate alone.
@@ -82,21 +86,39 @@ pub(crate) fn infer(
         noise = Noise::fit(&left, &real.runs, &real.features_beside(&of_members, &left));
         weighing = Weighing::new(&candidates, real, simulated, &noise, friction);
     }
-    let weighed = candidates.weighed(friction, weighing.random());
     let price_at = |temper: f64| null.as_ref().map_or(FIRST_PRICE, |null| null.price(temper));
-    let field = Field { reduced: &weighing.reduced, candidates: &weighed, price: price_at(1.0), temper: 1.0 };
-    let sets = field.search();
-    let temper = temper_of(&weighing, real, &field, &sets);
-    let price = price_at(temper);
-    let field = Field { price, temper, ..field };
-    let posterior = Posterior::of(&field, field.search());
-    let best = |gains: Vec<f64>| temper * gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    let alone = gains_alone(&weighing, &weighed).into_iter().map(best).collect();
-    let sizes = posterior.likeliest().map_or(Vec::new(), |likeliest| {
-        let sizing = Sizing { candidates: &candidates, real, temper };
-        sizing.of_set(&weighing, &weighed, &likeliest.members, least)
-    });
-    Inferred { candidates, posterior, sizes, least, alone, noise, temper, price }
+    let (mut real, mut below) = (real.clone(), Vec::new());
+    loop {
+        let weighed = candidates.weighed(friction, weighing.random());
+        let field = Field { reduced: &weighing.reduced, candidates: &weighed, price: price_at(1.0), temper: 1.0 };
+        let sets = field.search();
+        let temper = temper_of(&weighing, &real, &field, &sets);
+        let price = price_at(temper);
+        let field = Field { price, temper, ..field };
+        let posterior = Posterior::of(&field, field.search());
+        let members = posterior.likeliest().map(|set| set.members.clone()).unwrap_or_default();
+        let sizing = Sizing { candidates: &candidates, real: &real, temper };
+        let sizes = sizing.of_set(&weighing, &weighed, &members, least);
+        let is_below = |(member, size): &(&Member, &Size)| {
+            size.least < least && !candidates.entries[member.candidate].is_function()
+        };
+        let small: Vec<(Member, f64)> = if below.len() < MOST_BELOW {
+            members.iter().zip(&sizes).filter(is_below).map(|(member, size)| (*member, size.torque)).collect()
+        } else {
+            Vec::new()
+        };
+        if small.is_empty() {
+            let best = |gains: Vec<f64>| temper * gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let alone = gains_alone(&weighing, &weighed).into_iter().map(best).collect();
+            return Inferred { candidates, posterior, sizes, below, least, alone, noise, temper, price };
+        }
+        for (member, torque) in small {
+            below.push((candidates.entries[member.candidate].label.effect(), torque));
+            let columns = candidates.entries[member.candidate].shapes[member.variant].columns.clone();
+            real.columns.extend(columns.map(|place| candidates.real[place].clone()));
+        }
+        weighing = Weighing::new(&candidates, &real, simulated, &noise, friction);
+    }
 }
 
 /// Nats of every shape of each candidate by itself.

@@ -35,6 +35,8 @@ pub(crate) struct Side<'a> {
     pub runs: Vec<Range<usize>>,
     /// What the variance of the noise depends on, at every row.
     pub features: Vec<Vec<f64>>,
+    /// How many recordings each row stands for.
+    pub repeats: f64,
 }
 
 impl<'a> Side<'a> {
@@ -45,7 +47,7 @@ impl<'a> Side<'a> {
             columns.pop();
         }
         let (runs, features) = (prepared.open_runs(), noise_features(prepared));
-        Self { runs, features, columns, target: base.target.clone(), prepared }
+        Self { runs, features, columns, target: base.target.clone(), prepared, repeats: 1.0 }
     }
 
     /// The open rows of a recording whose torque is in step with the motion but for a part of a sample.
@@ -56,6 +58,11 @@ impl<'a> Side<'a> {
         }
         side.columns.extend(earlier_turn_over(prepared));
         side
+    }
+
+    /// The same where each row stands for so many recordings.
+    pub fn standing_for(self, repeats: f64) -> Self {
+        Self { repeats, ..self }
     }
 
     /// Filtered columns of a label and shape at all rows; `among` are the states whose values rank those of a channel.

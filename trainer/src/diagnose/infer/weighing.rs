@@ -10,7 +10,7 @@ use crate::inference::replay::{NullEvidence, Replay};
 use crate::inference::sets::{Field, Member};
 use crate::numerics::least_squares::{dot, fit_residual, orthonormal, project_out, weighted};
 use crate::numerics::statistics::root_mean_square;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Nats of a member before noise was replayed: a likelihood ratio of 150, very strong evidence by Kass and Raftery (1995).
 pub(crate) const FIRST_PRICE: f64 = 5.0;
@@ -64,6 +64,14 @@ pub(crate) fn first_noise(candidates: &Candidates, real: &Side, simulated: Optio
     Noise::fit(&weighing.left(candidates, real, &weighed, &members), &real.runs, &real.features)
 }
 
+/// Weights of all columns with which random effects at some places explain a side: their means.
+fn explained_weights(side: &Reduced, places: &[usize], precision: &[f64]) -> Option<DVector<f64>> {
+    let means = RandomEffects::new(side, side, places.to_vec(), precision)?.means(side, side, &[]);
+    let mut weights = DVector::zeros(side.moments.len());
+    places.iter().zip(means).for_each(|(place, mean)| weights[*place] = mean);
+    Some(weights)
+}
+
 impl Weighing {
     pub fn new(candidates: &Candidates, real: &Side, simulated: Option<&Side>, noise: &Noise, friction: f64) -> Self {
         let base = real.columns.len();
@@ -73,27 +81,39 @@ impl Weighing {
             white.extend(side.whitened(std::slice::from_ref(&side.target), noise));
             white
         };
-        let white = whitened(real, &candidates.real, noise);
+        let mut white = whitened(real, &candidates.real, noise);
         let mut of_all = products(&white);
         let target = white.len() - 1;
-        for (place, own_noise) in candidates.own_noise.iter().enumerate() {
+        // A simulation that was measured with the same noise has as much of it.
+        let has_same_noise = simulated.is_some_and(|side| side.repeats > 1.0);
+        for (place, own_noise) in candidates.own_noise.iter().enumerate().filter(|_| !has_same_noise) {
             of_all[(base + place, target)] -= own_noise;
             of_all[(target, base + place)] -= own_noise;
         }
-        let of_real = Reduced::without_base(&of_all, base);
+        let mut of_real = Reduced::without_base(&of_all, base);
+        let mut by_noise = None;
         let beside = simulated.and_then(|side| {
             let noise = noise.at_rows_of(&side.features);
             let white = whitened(side, &candidates.simulated, &noise);
-            let of_simulated = Reduced::without_base(&products(&white), side.columns.len());
-            let all = of_real.plus(&of_simulated);
+            let of_simulated = Reduced::without_base(&(products(&white) * side.repeats), side.columns.len());
             // What the simulation shows by itself is there on both sides.
             let alone = candidates.weighed(friction, None);
             let field = Field { reduced: &of_simulated, candidates: &alone, price: FIRST_PRICE, temper: 1.0 };
             let shown = field.forward(MOST_SHOWN);
             let (places, precision) = candidates.shared(friction, &shown);
+            if has_same_noise {
+                // How large the noise is the recording says only so well: what it makes of the simulation is there as often as the recording asks for.
+                let weights = explained_weights(&of_simulated, &places, &precision)?;
+                of_real = of_real.without_sum(&weights);
+                by_noise = Some(weights);
+            }
+            let all = of_real.plus(&of_simulated);
             let random = RandomEffects::new(&all, &of_real, places, &precision)?;
             Some((random.integrated_out(&all, &of_real), all, random, shown))
         });
+        let of_noise = by_noise.map(|weights| weighted(&white[base..target], weights.as_slice()));
+        white.splice(base..base, of_noise);
+        let base = white.len() - 1 - candidates.real.len();
         match beside {
             Some((reduced, all, random, shown)) => {
                 Self { real: of_real, reduced, both: Some((all, random)), shown, white, base }

@@ -30,6 +30,18 @@ pub(crate) fn follow_s(before: &[f64], next: &[f64], period_s: f64) -> f64 {
 }
 
 impl Signals {
+    /// Puts another measurement of the same motion behind this one, with its own times.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    pub fn repeated(mut self, other: Signals) -> Result<Self, Unjoinable> {
+        let time = other.time.clone();
+        self.append(other)?;
+        let begin = self.time.len() - time.len();
+        self.time[begin..].copy_from_slice(&time);
+        Ok(self)
+    }
+
     /// Puts a later recording of the same joint behind this one. Where its clock began anew it is taken to follow at
     /// once; a channel that only one of both has is dropped.
     ///

@@ -1,7 +1,8 @@
 //! The choice of the common filter: as wide as the errors of the position allow.
 
 use crate::diagnose::measurement::signals::Signals;
-use crate::diagnose::preparation::position_error::encoder_noise_is_small;
+use crate::diagnose::preparation::commanded_noise::commanded_noise;
+use crate::diagnose::preparation::position_error::{encoder_noise_is_small, noise_biases};
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
 use crate::physics::JointState;
@@ -25,10 +26,11 @@ impl Prepared {
     pub fn new(signals: &Signals, known: Known, lock: Lock) -> Self {
         let rate = 1.0 / signals.period;
         let mut chosen = None;
+        let noise = commanded_noise(signals);
         for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= LARGEST_RATE_SHARE * rate) {
             let mut prepared = Self::at_cut_off(signals, cut_off, known, lock);
             prepared.quantisation_limited = chosen.is_some();
-            let fits = encoder_noise_is_small(&prepared, signals);
+            let fits = encoder_noise_is_small(&prepared, signals) && !noise_biases(&prepared, noise);
             let enough_rows = prepared.rows.len() >= 200;
             match chosen {
                 // A narrower filter that leaves too little to work on is no help.

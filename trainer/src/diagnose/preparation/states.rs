@@ -2,6 +2,7 @@
 //! aside.
 
 use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::commanded_noise::commanded_noise;
 use crate::diagnose::preparation::gravity::{gravity_of_body, slope_of_gravity, torques_of_position, without_inertia};
 use crate::diagnose::preparation::rows::{Block, Division, Lock, divide, hesitation, standstill};
 use crate::diagnose::preparation::sampling_jitter::sampling_jitter;
@@ -92,7 +93,8 @@ impl Prepared {
             |cut_off: f64| Motion::behind(&ZeroPhase::new(cut_off, period), &signals.position, segments, period);
         let narrow_velocity = narrow(NARROW_VELOCITY_RATIO * states.cut_off_hz).velocity;
         let narrow_acceleration = narrow(NARROW_ACCELERATION_RATIO * cut_off).acceleration;
-        let velocity_noise = velocity_noise(signals.position_resolution, &states, period);
+        let steps = signals.position_resolution / 12f64.sqrt();
+        let velocity_noise = velocity_noise(steps.hypot(commanded_noise(signals)), &states, period);
         let other_motion = |series: &[f64]| {
             let Motion { position, velocity, acceleration } = Motion::behind(&states, series, segments, period);
             OtherJoint { position, velocity, acceleration }
@@ -282,11 +284,11 @@ fn sharpest_motion(signals: &Signals, cut_off: f64) -> (ZeroPhase, Motion) {
     wider.into_iter().map(behind).find(is_quiet).unwrap_or(smoothest)
 }
 
-/// Deviation of the derived velocity caused by the encoder's grain.
-fn velocity_noise(resolution: f64, filter: &ZeroPhase, period: f64) -> f64 {
-    // A derivative at the cut-off: white noise of res/sqrt(12) through a low-pass of bandwidth f has the share 2 f dt.
+/// Deviation of the derived velocity by a white error of the position of some deviation.
+fn velocity_noise(error: f64, filter: &ZeroPhase, period: f64) -> f64 {
+    // A derivative at the cut-off: white noise through a low-pass of bandwidth f has the share 2 f dt.
     let bandwidth = filter.cut_off_hz;
-    resolution / 12f64.sqrt() * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
+    error * std::f64::consts::TAU * bandwidth * (2.0 * bandwidth * period / 3.0).sqrt()
 }
 
 /// Smooths a slow channel by a straight line over four seconds to each side, so that its noise and its steps do not hand

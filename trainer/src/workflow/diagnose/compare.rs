@@ -6,8 +6,8 @@ use super::request::Against;
 use crate::diagnose::comparison::from_model;
 use crate::diagnose::comparison::reference::{Comparison, Reference};
 use crate::diagnose::comparison::simulation::{InverseLaw, learn_static};
-use crate::diagnose::infer::answer::LEAST_NAMED_SHARE;
 use crate::diagnose::measurement::signals::Signals;
+use crate::diagnose::preparation::position_error::BIASING_SHARE;
 use crate::diagnose::run::learn_simulation;
 use crate::error::{Error, Result, codes};
 use crate::fit::CELLS;
@@ -20,9 +20,6 @@ use crate::workflow::recordings::{motion, units};
 use crate::workflow::source::Reading;
 use frikan_shared::image::Image;
 use frikan_shared::model::RigidBody;
-
-/// Torque by the noise of the position over the least effect from which on it biases what is found: its power is a twenty-fifth of that effect's.
-const BIASING_SHARE: f64 = 0.2;
 
 /// Time over which a filter of about 22 Hz, the widest of most recordings, averages, s.
 const PASSED_S: f64 = 0.02;
@@ -55,10 +52,10 @@ impl Compared {
 }
 
 /// A simulation: as its simulator computed it, from which its law is learned; of a commanded joint as the recording would have measured it, whose rows
-/// stand beside the recording's; and what its actuator was told.
+/// stand beside the recording's, with noise and with its negative; and what its actuator was told.
 pub(super) struct Simulated {
     pub(super) computed: Recording,
-    pub(super) measured_alike: Option<Recording>,
+    pub(super) measured_alike: Option<[Recording; 2]>,
     pub(super) told: Option<Commands>,
 }
 
@@ -119,18 +116,22 @@ fn with_simulation(
     let friction = root_mean_square(&friction.collect::<Vec<f64>>());
     let mut comparison = Comparison::with(signals, reference);
     let measured = match measured_alike {
-        Some(measured) => Some(joined((&[as_recorded(measured, &real[0], joint)?], told_simulation), joint)?),
+        Some(both) => {
+            let [one, other] = both.map(|measured| as_recorded(measured, &real[0], joint));
+            Some(measured_both_ways([&[one?], &[other?]], told_simulation, joint)?)
+        }
         None => None,
     };
-    let is_biased =
-        |measured: &Signals| noise_torque(&simulation, measured) > BIASING_SHARE * LEAST_NAMED_SHARE * friction;
+    let is_biased = |measured: &Signals| noise_torque(&simulation, measured) > BIASING_SHARE * friction;
     if in_one_model || measured.as_ref().is_some_and(is_biased) {
+        let is_measured = measured.is_some();
         let mut rows = measured.unwrap_or(simulation);
         let of_simulation = law.at(&rows.states());
         if !told_simulation.is_empty() {
             rows.load = Some(load_by_law(&rows, &of_simulation));
         }
-        comparison = comparison.beside(rows, of_simulation);
+        let simulation = Comparison::with(rows, of_simulation);
+        comparison = if is_measured { comparison.beside_both_ways(simulation) } else { comparison.beside(simulation) };
     }
     Ok((comparison, Compared::Simulation(Box::new(law), given, simulated.source())))
 }
@@ -191,6 +192,12 @@ fn joined((real, told): (&[Recording], &[Commands]), joint: &Joint) -> Result<Si
             .map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()).in_file(next.file()))?;
     }
     Ok(all)
+}
+
+/// Signals of recordings that were measured with noise and with its negative.
+fn measured_both_ways(both: [&[Recording]; 2], told: &[Commands], joint: &Joint) -> Result<Signals> {
+    let [one, other] = both.map(|recordings| joined((recordings, told), joint));
+    one?.repeated(other?).map_err(|error| Error::new(&codes::RECORDINGS_DISAGREE, error.to_string()))
 }
 
 /// The rigid body of the joint file, where it stands for the recording's own, in the unit of the actuator: then nobody else gives one.

@@ -114,7 +114,13 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
             let excerpt = stretches_to_search(std::slice::from_ref(&simulation), reading.share_of_default());
             Ok(excerpt.map_or(simulation, |mut excerpt| excerpt.swap_remove(0)))
         };
-        let measured_alike = noise.map(|noise| searched(noise.on(simulation.clone()))).transpose()?;
+        let measured_alike = match noise {
+            Some(noise) => {
+                let [one, other] = noise.on_both_ways(&simulation).map(searched);
+                Some([one?, other?])
+            }
+            None => None,
+        };
         Ok(Simulated { computed: searched(simulation)?, measured_alike, told })
     });
     let simulation = simulation.transpose()?;
