@@ -106,11 +106,12 @@ fn noise_of_the_position_is_no_effect_that_has_a_name() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     log(at, "simulation.csv", AS_SIMULATED, 0.3);
-    for phase in [0.8, 1.7] {
+    let told = [0.8, 1.7, 2.9, 4.1].map(|phase| {
         log(at, "real.csv", Joint { noise: 2e-4, ..AS_SIMULATED }, phase);
-        let (_, sets) = found(at, KNOWN);
-        assert!(sets.iter().flatten().all(|name| name == "unknown"), "{phase}: {sets:?}");
-    }
+        found(at, KNOWN).1
+    });
+    // Of twenty healthy ones one may be told something: of four hardly two.
+    assert!(told.iter().filter(|sets| !sets.is_empty()).count() <= 1, "{told:?}");
 }
 
 /// The first parameter of a name among all findings.

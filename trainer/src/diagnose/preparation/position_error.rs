@@ -48,8 +48,11 @@ pub(crate) fn noise_biases(prepared: &Prepared, noise: f64) -> bool {
     let acceleration = prepared.filtered(&prepared.state.acceleration);
     let friction = prepared.filtered(&prepared.friction_torque);
     let friction: Vec<f64> = friction.iter().zip(&acceleration).map(|(torque, a)| torque - inertia * a).collect();
-    let bias = inertia.abs() * of_noise.powi(2) / root_mean_square(&acceleration).max(f64::MIN_POSITIVE);
-    bias > BIASING_SHARE * root_mean_square(&friction)
+    // Of the acceleration's power; the inertia is underestimated by it already.
+    let acceleration = root_mean_square(&acceleration);
+    let share = of_noise.powi(2) / acceleration.powi(2);
+    let bias = inertia.abs() * acceleration * share / (1.0 - share).sqrt();
+    share >= 1.0 || bias > BIASING_SHARE * root_mean_square(&friction)
 }
 
 #[cfg(test)]
