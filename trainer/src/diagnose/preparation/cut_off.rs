@@ -28,7 +28,7 @@ impl Prepared {
         let mut chosen = None;
         let noise = commanded_noise(signals);
         for cut_off in CUT_OFFS_HZ.into_iter().filter(|hz| *hz <= LARGEST_RATE_SHARE * rate) {
-            let mut prepared = Self::at_cut_off(signals, cut_off, known, lock);
+            let mut prepared = Self::under_noise(signals, cut_off, noise, known, lock);
             prepared.quantisation_limited = chosen.is_some();
             let fits = encoder_noise_is_small(&prepared, signals) && !noise_biases(&prepared, noise);
             let enough_rows = prepared.rows.len() >= 200;
@@ -39,7 +39,7 @@ impl Prepared {
                 _ => chosen = Some(prepared),
             }
         }
-        chosen.unwrap_or_else(|| Self::at_cut_off(signals, LARGEST_RATE_SHARE * rate, known, lock))
+        chosen.unwrap_or_else(|| Self::under_noise(signals, LARGEST_RATE_SHARE * rate, noise, known, lock))
     }
 }
 

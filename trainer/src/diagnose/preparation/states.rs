@@ -84,6 +84,11 @@ const NARROW_ACCELERATION_RATIO: f64 = 0.8;
 impl Prepared {
     /// Prepares states and rows behind a given cut-off in Hz.
     pub(crate) fn at_cut_off(signals: &Signals, cut_off: f64, known: Known, lock: Lock) -> Self {
+        Self::under_noise(signals, cut_off, commanded_noise(signals), known, lock)
+    }
+
+    /// The same where the [`commanded_noise`] of the position is known.
+    pub(super) fn under_noise(signals: &Signals, cut_off: f64, noise: f64, known: Known, lock: Lock) -> Self {
         let period = signals.period;
         let segments = &signals.segments;
         let filter = ZeroPhase::new(cut_off, period);
@@ -94,7 +99,7 @@ impl Prepared {
         let narrow_velocity = narrow(NARROW_VELOCITY_RATIO * states.cut_off_hz).velocity;
         let narrow_acceleration = narrow(NARROW_ACCELERATION_RATIO * cut_off).acceleration;
         let steps = signals.position_resolution / 12f64.sqrt();
-        let velocity_noise = velocity_noise(steps.hypot(commanded_noise(signals)), &states, period);
+        let velocity_noise = velocity_noise(steps.hypot(noise), &states, period);
         let other_motion = |series: &[f64]| {
             let Motion { position, velocity, acceleration } = Motion::behind(&states, series, segments, period);
             OtherJoint { position, velocity, acceleration }
