@@ -100,18 +100,18 @@ fn what_a_simulation_of_a_commanded_joint_leaves_out_is_named_from_positions() {
     assert!(sets.iter().flatten().any(|name| name == "load_friction"), "{sets:?}");
 }
 
-/// Gain, delay, dead band and inertia all read the position, as the torque of the commands does.
+/// Gain, delay, dead band and inertia all read the position, as the torque of the commands does. The simulation makes another motion: what it
+/// does at one time is no event of the recording at that time.
 #[test]
 fn noise_of_the_position_is_no_effect_that_has_a_name() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     log(at, "simulation.csv", AS_SIMULATED, 0.3);
-    let told = [0.8, 1.7, 2.9, 4.1].map(|phase| {
+    for phase in [0.8, 1.7, 2.9, 4.1] {
         log(at, "real.csv", Joint { noise: 2e-4, ..AS_SIMULATED }, phase);
-        found(at, KNOWN).1
-    });
-    // Of twenty healthy ones one may be told something: of four hardly two.
-    assert!(told.iter().filter(|sets| !sets.is_empty()).count() <= 1, "{told:?}");
+        let (_, sets) = found(at, KNOWN);
+        assert!(sets.iter().flatten().all(|name| name == "unknown"), "{phase}: {sets:?}");
+    }
 }
 
 /// The first parameter of a name among all findings.

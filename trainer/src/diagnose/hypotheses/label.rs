@@ -29,6 +29,14 @@ impl Label {
             Self::Generic(rival) => Some(rival.channel),
         }
     }
+
+    /// Whether it is a function of the time of a recording, which is that of a simulation only where that follows the same motion.
+    pub(crate) fn is_of_time(&self) -> bool {
+        match self {
+            Self::Named(effect) => matches!(effect, EffectId::TransientEvent | EffectId::SlowDrift | EffectId::WarmUp),
+            Self::Generic(rival) => rival.channel == Channel::Time,
+        }
+    }
 }
 
 impl std::fmt::Display for Label {

@@ -63,13 +63,16 @@ pub(crate) struct Candidates {
     pub simulated: Vec<Vec<f64>>,
     /// What the noise of the recorded torque adds to the product of each column with it, both whitened.
     pub own_noise: Vec<f64>,
+    /// Whether the simulation moves at the same times as the recording: else what happens at a time of one is not there in the other.
+    one_clock: bool,
 }
 
 impl Candidates {
     /// Builds what the recording can show.
     pub fn new(hypotheses: &[Box<dyn Hypothesis + Send>], real: &Side, simulated: Option<&Side>) -> Self {
         let state = &real.prepared.state;
-        let mut candidates = Self::default();
+        let one_clock = simulated.is_some_and(|side| side.follows(real));
+        let mut candidates = Self { one_clock, ..Self::default() };
         // A delay of the torque shifts every column: it is a parameter of the whole model.
         for hypothesis in hypotheses.iter().filter(|h| h.id() != EffectId::TimeMisalignment) {
             let shapes = hypothesis.shapes(state);
@@ -118,11 +121,12 @@ impl Candidates {
     ) {
         let label = self.entries[entry].label.clone();
         let named = hypotheses.iter().find(|hypothesis| label == Label::Named(hypothesis.id()));
+        let shown_by = simulated.filter(|_| self.one_clock || !label.is_of_time());
         let built: Vec<[Vec<Vec<f64>>; 2]> = shapes
             .par_iter()
             .map(|shape| {
                 let at = |side: &Side| side.filtered(hypotheses, (&label, shape), &real.prepared.state);
-                [at(real), simulated.map(at).unwrap_or_default()]
+                [at(real), shown_by.map(at).unwrap_or_default()]
             })
             .collect();
         for (shape, [of_real, of_simulated]) in shapes.into_iter().zip(built) {
@@ -154,7 +158,8 @@ impl Candidates {
         let Some(longest) = shapes.iter().map(|shape| shape[0]).max_by(f64::total_cmp) else { return };
         let label = Label::Generic(rival);
         let at = |side: &Side| side.filtered(hypotheses, (&label, &[longest, 0.0]), &real.prepared.state);
-        let (columns, _) = self.add_columns(real, simulated, at(real), simulated.map(at).unwrap_or_default());
+        let shown_by = simulated.filter(|_| self.one_clock || !label.is_of_time());
+        let (columns, _) = self.add_columns(real, simulated, at(real), shown_by.map(at).unwrap_or_default());
         let first = longest as usize + 1 - columns.len();
         let named = |strength: f64| !shapes.iter().any(|shape| shape[1] == strength);
         let scales: Vec<(f64, f64)> = LENGTH_SCALES.into_iter().filter(|(_, strength)| !named(*strength)).collect();
@@ -220,7 +225,7 @@ impl Candidates {
     /// What `inference` weighs; beside a simulation a candidate has a coefficient on all rows too, unless a random effect stands for it.
     pub fn weighed(&self, friction: f64, random: Option<&[usize]>) -> Vec<Candidate> {
         let shared = |shaped: &Shaped| match random {
-            Some(random) if !random.contains(&shaped.columns.start) => {
+            Some(random) if !random.contains(&shaped.columns.start) && self.is_shared(shaped.columns.start) => {
                 let width = self.real.len();
                 shaped.columns.start + width..shaped.columns.end + width
             }
@@ -246,7 +251,7 @@ impl Candidates {
 
     /// The candidates with some of their shapes (places of candidate and shape) alone; unnamed functions keep theirs.
     pub fn only(&self, keep: impl Fn(Member) -> bool) -> Self {
-        let mut kept = Self::default();
+        let mut kept = Self { one_clock: self.one_clock, ..Self::default() };
         let mut moved: BTreeMap<usize, usize> = BTreeMap::new();
         let mut take = |kept: &mut Self, columns: &Range<usize>| {
             if columns.is_empty() {
@@ -274,6 +279,11 @@ impl Candidates {
         kept
     }
 
+    /// Whether the simulation shows anything of a column; true of every column without a simulation.
+    fn is_shared(&self, place: usize) -> bool {
+        self.simulated.get(place).is_none_or(|column| column.iter().any(|value| *value != 0.0))
+    }
+
     /// What recording and simulation may share, as random effects: smooth functions and the given shapes (places of candidate and shape);
     /// places of their columns, with the prior precision of each.
     pub fn shared(&self, friction: f64, shown: &[Member]) -> (Vec<usize>, Vec<f64>) {
@@ -293,8 +303,7 @@ impl Candidates {
             let Some(shaped) = entry.shapes.last() else { continue };
             let variance = Self::variance(friction, &shaped.relative_variance);
             for (place, variance) in shaped.columns.clone().zip(variance) {
-                let is_shown = self.simulated.get(place).is_none_or(|column| column.iter().any(|v| *v != 0.0));
-                if is_shown && !places.contains(&place) {
+                if self.is_shared(place) && !places.contains(&place) {
                     places.push(place);
                     precision.push(variance.recip());
                 }

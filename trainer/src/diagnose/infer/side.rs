@@ -6,6 +6,7 @@ use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{Hypothesis, JointState};
+use crate::samples::interpolate;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -58,6 +59,21 @@ impl<'a> Side<'a> {
         }
         side.columns.extend(earlier_turn_over(prepared));
         side
+    }
+
+    /// Whether it moves as another side does at the same times: most of the other's velocity is that of this one.
+    pub fn follows(&self, other: &Self) -> bool {
+        let velocities = |side: &Self| -> (Vec<f64>, Vec<f64>) {
+            let state = &side.prepared.state;
+            let mut of_rows: Vec<(f64, f64)> =
+                side.prepared.rows.iter().map(|&i| (state.time[i], state.velocity[i])).collect();
+            of_rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+            of_rows.into_iter().unzip()
+        };
+        let ((own_time, own), (time, velocity)) = (velocities(self), velocities(other));
+        let apart: Vec<f64> =
+            interpolate(&own_time, &own, &time).iter().zip(&velocity).map(|(own, other)| other - own).collect();
+        2.0 * root_mean_square(&apart).powi(2) < root_mean_square(&velocity).powi(2)
     }
 
     /// The same where each row stands for so many recordings.
