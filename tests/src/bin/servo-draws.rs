@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::Parser;
+use frikan_tests::concealed::page;
 use frikan_tests::servo_draws::{Found, Hidden, Joint, Kind};
 use frikan_trainer::files::write_whole;
 
@@ -27,7 +28,7 @@ const HIDDEN: [Hidden; 9] = [
 const HEAD: &str = "\
 # Joints that report no torque, drawn
 
-Written by `cargo run --release -p frikan-tests --bin servo-draws`; nothing below the line is typed by hand.
+Written by `COMMAND`; nothing below the line is typed by hand.
 
 Joints with drawn inertia, friction, gains and torque constants are simulated ([Simulating a joint](simulate.md)) for 40 s under drives of 20 kHz that log
 positions and commands at 500 Hz, currents and duties as their means, and no torque. `trainer fit` gets two recordings with a weighed payload each and has to find the
@@ -51,7 +52,7 @@ struct Arguments {
 
 fn main() {
     let arguments = Arguments::parse();
-    let mut page = String::from(HEAD);
+    let mut page = HEAD.replace("COMMAND", &page::command("servo-draws"));
     append_fits(&mut page, &arguments);
     append_diagnoses(&mut page, &arguments);
     write_whole(Path::new(PAGE), page.as_bytes()).expect("the page is written");
