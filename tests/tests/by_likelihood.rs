@@ -45,3 +45,37 @@ fn what_the_simulation_lacks_is_named_and_what_it_has_is_not_missing() {
     assert_eq!(first["effect"], "presliding", "{:#}", hidden["findings"]);
     assert!(first["probability"].as_f64().unwrap() > 0.9);
 }
+
+/// What the simulation shows by itself is no finding, and yet part of what the drive gets.
+#[test]
+fn what_the_simulation_holds_stays_in_its_law_and_reaches_the_image() {
+    let folder = bench();
+    let at = folder.path();
+    simulate(at, "joint.toml --effect presliding=0.5 --duration 40 --seed 3 -o real.csv");
+    simulate(at, "quiet.toml --effect presliding=0.5 --duration 40 --seed 3 -o simulated.csv");
+    let words = ["diagnose", "--quiet", "real.csv", "--simulation", "simulated.csv", "--by-likelihood", "--json", "-"];
+    let told = run(at, &[&words[..], &["-o", "improved.frk"]].concat());
+    assert_eq!(told.status, 0, "{}", told.messages);
+    let json: Value = serde_json::from_str(&told.output).unwrap();
+    assert_eq!(json["given"]["holds"], serde_json::json!(["presliding"]));
+    let shown = run(at, &["show", "improved.frk"]);
+    assert!(shown.output.contains("effect      presliding: sum of torque_i"), "{}", shown.output);
+}
+
+/// Without friction nothing shows how softly it turns over, and the level of the joint's own is not bent by that.
+#[test]
+fn a_simulation_without_friction_does_not_soften_that_of_the_joint() {
+    let folder = bench();
+    let at = folder.path();
+    let joint = std::fs::read_to_string(at.join("joint.toml")).unwrap();
+    let friction = ["coulomb_torque_Nm = 2.0", "viscous_Nm_s_rad = 1.2", "stribeck_torque_Nm = 1.0"];
+    let none = |text: String, line: &&str| text.replace(line, &format!("{} = 0.0", line.split_once(" = ").unwrap().0));
+    std::fs::write(at.join("frictionless.toml"), friction.iter().fold(joint.clone(), none)).unwrap();
+    std::fs::write(at.join("rougher.toml"), joint.replace(friction[0], "coulomb_torque_Nm = 3.0")).unwrap();
+    simulate(at, "rougher.toml --duration 40 --seed 3 -o real.csv");
+    simulate(at, "frictionless.toml --duration 40 --seed 7 -o simulated.csv");
+    let moved = &diagnosed(at, "real.csv")["base_parameters"][0];
+    assert_eq!(moved["name"], "coulomb_torque_change");
+    let change = moved["value"].as_f64().unwrap();
+    assert!((change - 3.0).abs() < 0.1, "{change}");
+}

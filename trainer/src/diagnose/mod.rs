@@ -48,6 +48,6 @@ pub use proof::locked_rows::Proof;
 pub use proof::refit::Refit;
 pub use proof::rollout::{Motion, Rollout};
 pub use request::{Options, Refusal};
-pub use run::{diagnose, learn_simulation};
+pub use run::{diagnose, diagnose_beside, learn_simulation};
 pub use search::scored::Scored;
 pub use search::thresholds::{AMBIGUITY_MARGIN_NATS, Settings};

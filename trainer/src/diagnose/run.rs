@@ -20,6 +20,7 @@ use crate::diagnose::confirmed::Confirmed;
 use crate::diagnose::evidence::measurement_noise::MeasurementNoise;
 use crate::diagnose::evidence::workbench::Workbench;
 use crate::diagnose::infer::answer::LEAST_NAMED_SHARE;
+use crate::diagnose::infer::beside_simulation::{of_simulation, turn_over_as_simulated, whole_law};
 use crate::diagnose::infer::candidates::Candidates;
 use crate::diagnose::infer::delay::{TorqueDelay, shifted, torque_delay};
 use crate::diagnose::infer::inferred::{Inferred, infer};
@@ -27,7 +28,6 @@ use crate::diagnose::infer::side::Side;
 use crate::diagnose::infer::weighing::{Weighing, friction_of};
 use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::rows::Lock;
-use crate::diagnose::preparation::states::Prepared;
 use crate::diagnose::proof::discarded::{
     Discarded, least_determined, set_aside_doubtful, set_aside_minor, set_aside_negligible, withdraw_without_shown_gain,
 };
@@ -56,11 +56,25 @@ const LEAST_ROWS: usize = 150;
 /// # Errors
 /// [`Refusal`] when the recording holds too little motion for any answer, or no torque.
 pub fn diagnose(comparison: &Comparison, options: &Options) -> Result<Diagnosis, Refusal> {
+    diagnose_with(comparison, None, *options)
+}
+
+/// Diagnoses one recording beside its simulation, both in one model, whose static `law` it is compared with; what the simulation shows
+/// beside that is told as its own.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_beside(comparison: &Comparison, law: &InverseLaw, options: &Options) -> Result<Diagnosis, Refusal> {
+    let base = BaseKind::Reference;
+    diagnose_with(comparison, Some(law), Options { by_likelihood: true, base, ..*options })
+}
+
+fn diagnose_with(comparison: &Comparison, law: Option<&InverseLaw>, options: Options) -> Result<Diagnosis, Refusal> {
     let signals = &comparison.signals;
     if let Some(&torque) = signals.torque.first().filter(|first| signals.torque.iter().all(|torque| torque == *first)) {
         return Err(Refusal::NotMeasured { torque });
     }
-    let request = Request { options: *options, as_recorded: &AsRecorded::of(signals) };
+    let request = Request { options, as_recorded: &AsRecorded::of(signals), law };
     let Some(command) = Command::of(signals) else { return diagnose_in_step(comparison, &request) };
     let limited = Comparison { signals: command.given(signals), ..comparison.clone() };
     let mut diagnosis = diagnose_in_step(&limited, &request)?;
@@ -89,6 +103,8 @@ struct Request<'a> {
     options: Options,
     /// What is wrong with the recording as it is: of a torque that was put back between its samples nobody can tell.
     as_recorded: &'a AsRecorded,
+    /// Static law of a simulation.
+    law: Option<&'a InverseLaw>,
 }
 
 /// Diagnoses with the torque put back to the time of the motion.
@@ -145,7 +161,7 @@ fn diagnose_locked(
     request: &Request,
     inferred: Option<&Inferred>,
 ) -> Result<Diagnosis, Refusal> {
-    let Request { options, as_recorded } = *request;
+    let Request { options, as_recorded, .. } = *request;
     let signals = &comparison.signals;
     let mut prepared = comparison.prepare(options.lock);
     if options.by_likelihood {
@@ -234,6 +250,7 @@ fn diagnose_locked(
         realigned_by_s: 0.0,
         baseline_refit: baseline,
         improved_refit: improved,
+        law: None,
     };
     if options.base == BaseKind::Reference && !blocked {
         judge_friction_level(&mut diagnosis, workbench, &accepted, options.least_effect);
@@ -270,7 +287,14 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
     let least = (options.least_effect.unwrap_or(LEAST_NAMED_SHARE) * friction_of(&real)).max(law_error);
     let inferred =
         infer(&hypotheses, candidates, (&real, side.as_ref()), (weighing, noise), (options.settings.seed, least));
-    let mut diagnosis = diagnose_locked(&comparison.realigned(late_s), request, Some(&inferred))?;
+    let in_step = comparison.realigned(late_s);
+    let law = whole_law(&in_step, request.law, &inferred);
+    let in_step = match &law {
+        Some(law) => Comparison { reference: Some(law.at(&in_step.signals.states())), ..in_step },
+        None => in_step,
+    };
+    let mut diagnosis = diagnose_locked(&in_step, request, Some(&inferred))?;
+    diagnosis.law = law.map(Box::new);
     diagnosis.realigned_by_s = late_s;
     match &told {
         Some(late) => diagnosis.put_first(misalignment(late), Vec::new()),
@@ -280,24 +304,6 @@ fn diagnose_by_likelihood(comparison: &Comparison, request: &Request) -> Result<
         }
     }
     Ok(diagnosis)
-}
-
-/// The simulation behind the filter of the recording, with its base.
-fn of_simulation(real: &Prepared, comparison: &Comparison) -> Option<(Prepared, Base)> {
-    let simulation = comparison.simulation.as_deref()?;
-    let cut_off = real.filter.cut_off_hz;
-    let mut prepared = Prepared::at_cut_off(&simulation.signals, cut_off, simulation.known(), Lock::Nothing);
-    prepared.state.turn_over_at(real.state.sign_lead_s, real.state.sign_velocity);
-    let base = Base::fit(&mut prepared, simulation, BaseKind::Reference)?;
-    Some((prepared, base))
-}
-
-/// Friction of the joint turns over as softly as that of its simulation, which has no noise: where this is Coulomb and viscous friction
-/// with a smoothed sign, the width of the sign is the joint's own and that of every effect of friction.
-fn turn_over_as_simulated(real: &mut Prepared, comparison: &Comparison) {
-    if let (Some(law), Some(_)) = (&comparison.reference, &comparison.simulation) {
-        real.state.turn_over_at(law.sign_lead_s, law.sign_width.max(real.state.sign_velocity));
-    }
 }
 
 /// Adds a wrong friction level of the reference to the findings; the figures before are then those of the reference as given.

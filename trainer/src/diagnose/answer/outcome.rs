@@ -4,6 +4,7 @@ use crate::diagnose::answer::location::Location;
 use crate::diagnose::answer::traces::Traces;
 use crate::diagnose::checks::note::{HealthNote, Observation};
 use crate::diagnose::comparison::columns::BaseKind;
+use crate::diagnose::comparison::simulation::InverseLaw;
 use crate::diagnose::hypotheses::channel::Channel;
 use crate::diagnose::hypotheses::fitted::Fitted;
 use crate::diagnose::infer::answer::ProbableSet;
@@ -173,6 +174,8 @@ pub struct Diagnosis {
     pub realigned_by_s: f64,
     /// Series for pictures and sentences.
     pub traces: Traces,
+    /// The law of a simulation with what it shows beside its static law; `None` where it shows nothing.
+    pub law: Option<Box<InverseLaw>>,
 }
 
 impl Diagnosis {

@@ -25,8 +25,8 @@ const END_RATIO: f64 = 2.0;
 /// Log likelihood (nats) by which a width has to show: half of what a chi-squared variable of one degree exceeds once in twenty.
 const SHOWN_NATS: f64 = 1.92;
 
-/// The same for a share of the friction with a width of its own: two degrees.
-const SHOWN_SHARE_NATS: f64 = 3.0;
+/// The same for two degrees: a share of the friction with a width of its own, or width and lead together.
+pub(crate) const SHOWN_BOTH_NATS: f64 = 3.0;
 
 /// Least rows of motion from which a law of friction is learned.
 pub(crate) const LEAST_ROWS: usize = 100;
@@ -184,7 +184,7 @@ impl<'a> Evidence<'a> {
 
     /// How a part of the friction turns over that the law does not have so, as far as there is one.
     fn shown_beside_law(&self, sharp: TurnOver) -> Option<TurnOver> {
-        let in_step = self.most(sharp.width, false).filter(|found| self.value(*found) > SHOWN_SHARE_NATS);
+        let in_step = self.most(sharp.width, false).filter(|found| self.value(*found) > SHOWN_BOTH_NATS);
         let gained = in_step.map_or(0.0, |found| self.value(found));
         self.most(sharp.width, true).filter(|found| self.value(*found) - gained > SHOWN_LEAD_NATS).or(in_step)
     }

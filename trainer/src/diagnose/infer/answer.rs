@@ -1,7 +1,9 @@
 //! What is named of the sets that were weighed, and how sure each name is.
 
+use crate::diagnose::comparison::simulation::SimulatedEffect;
 use crate::diagnose::evidence::score::GroupEvidence;
 use crate::diagnose::hypotheses::channel::Channel;
+use crate::diagnose::hypotheses::label::Label;
 use crate::diagnose::infer::inferred::Inferred;
 use crate::diagnose::search::accepted::{Accepted, Stated};
 use crate::diagnose::search::scored::Scored;
@@ -45,6 +47,16 @@ impl Inferred {
         sets.retain(|set| set.probability >= LEAST_SET_PROBABILITY);
         sets.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         sets
+    }
+
+    /// Effects of the catalogue that the simulation shows by itself.
+    pub fn shown_by_simulation(&self) -> impl Iterator<Item = SimulatedEffect> {
+        self.shown.iter().filter_map(|member| {
+            let entry = &self.candidates.entries[member.candidate];
+            let shaped = &entry.shapes[member.variant];
+            let Label::Named(effect) = entry.label else { return None };
+            Some(SimulatedEffect { effect, shape: shaped.shape.clone(), width: shaped.columns.len() })
+        })
     }
 
     /// The members of the likeliest set that are more likely than not to be missing, the largest torque first; and effects that do not exceed

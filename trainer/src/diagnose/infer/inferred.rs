@@ -32,6 +32,8 @@ const INSTEAD: usize = 4;
 pub(crate) struct Inferred {
     pub candidates: Candidates,
     pub posterior: Posterior,
+    /// Shapes that the simulation shows by itself.
+    pub shown: Vec<Member>,
     /// Torque of each member of the likeliest set beyond what base and common columns could take.
     pub sizes: Vec<Size>,
     /// Effects that are there and below what is named, with their torque, root mean square: the others are weighed beside them.
@@ -110,7 +112,8 @@ pub(crate) fn infer(
         if small.is_empty() {
             let best = |gains: Vec<f64>| temper * gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let alone = gains_alone(&weighing, &weighed).into_iter().map(best).collect();
-            return Inferred { candidates, posterior, sizes, below, least, alone, noise, temper, price };
+            let shown = weighing.shown;
+            return Inferred { candidates, posterior, shown, sizes, below, least, alone, noise, temper, price };
         }
         for (member, torque) in small {
             below.push((candidates.entries[member.candidate].label.effect(), torque));

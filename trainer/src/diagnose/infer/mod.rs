@@ -4,6 +4,7 @@
 //! the recording alone. What the simulation shows as well goes into the common one and is not missing.
 
 pub(crate) mod answer;
+pub(crate) mod beside_simulation;
 pub(crate) mod candidates;
 pub(crate) mod delay;
 pub(crate) mod inferred;

@@ -66,6 +66,7 @@ fn diagnosis(found: Finding) -> Diagnosis {
     let effect: Vec<f64> = velocity.iter().map(|v| -3.1 * v.signum() * f64::from(v.abs() < 0.05)).collect();
     let traces = Traces { time: velocity.clone(), velocity, effects: vec![effect], ..Traces::default() };
     Diagnosis {
+        law: None,
         sealed_s: Vec::new(),
         verdict: Verdict::MissingPhysics,
         health: Vec::new(),

@@ -42,6 +42,14 @@ impl Compared {
         }
     }
 
+    /// The law of a simulation.
+    pub(super) fn law(&self) -> Option<&InverseLaw> {
+        match self {
+            Self::Simulation(law, ..) => Some(law),
+            Self::Itself(_) | Self::Model(_) => None,
+        }
+    }
+
     /// Name and fingerprint of the file of a simulation.
     pub(super) fn source(&self) -> Option<(String, u64)> {
         match self {

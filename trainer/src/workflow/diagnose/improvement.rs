@@ -66,7 +66,7 @@ pub(super) fn improved_image(
     let mut provenance = fit::model::provenance(joint.name.as_deref().unwrap_or_default(), recordings, request.seed);
     let origin = match compared {
         Compared::Itself(body) => Origin::Recording(**body),
-        Compared::Simulation(law, given, _) => Origin::Simulation(law, *given),
+        Compared::Simulation(law, given, _) => Origin::Simulation(diagnosis.law.as_deref().unwrap_or(law), *given),
         Compared::Model(image) => {
             provenance.law_error = image.provenance.law_error;
             provenance.rigid_body_error = image.provenance.rigid_body_error;

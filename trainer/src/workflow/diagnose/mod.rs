@@ -149,7 +149,13 @@ pub fn diagnose(request: &Request<'_>, joint: &Joint, stage: &dyn Fn(&str)) -> R
         measured_wrong: warnings.iter().any(Warning::is_blocking),
     };
     stage("weighing every effect against the noise");
-    let mut diagnosis = run::diagnose(&comparison, &options).map_err(|refusal| refused(&refusal, real))?;
+    // That of a commanded joint is whole already.
+    let static_law = compared.law().filter(|_| request.by_likelihood && told.is_empty());
+    let diagnosis = match static_law {
+        Some(law) => run::diagnose_beside(&comparison, law, &options),
+        None => run::diagnose(&comparison, &options),
+    };
+    let mut diagnosis = diagnosis.map_err(|refusal| refused(&refusal, real))?;
     tell_measurement(&mut diagnosis, &warnings);
     stage("choosing what to record next");
     let advice = advice(&comparison, &diagnosis, joint, (&compared, real));

@@ -31,6 +31,7 @@ use relaxation::relaxation_time;
 use replay::ReplayedResidual;
 use residual_noise::{ResidualNoise, residual_noise};
 pub use simulated_effects::FindEffects;
+pub(crate) use simulated_effects::SimulatedEffect;
 use simulated_effects::{SimulatedEffects, simulated_effects};
 use turn_over::turn_over;
 

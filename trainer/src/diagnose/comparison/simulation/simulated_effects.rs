@@ -9,7 +9,7 @@ use crate::diagnose::measurement::signals::Signals;
 use crate::diagnose::preparation::gravity::give_body;
 use crate::diagnose::preparation::rows::Lock;
 use crate::diagnose::preparation::states::{Known, Prepared};
-use crate::numerics::least_squares::weighted;
+use crate::numerics::least_squares::{orthonormal, project_out, weighted};
 use crate::numerics::random::normal;
 use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState, Shape, catalogue};
@@ -71,6 +71,48 @@ pub(crate) fn simulated_effects(
     });
     let effects: Vec<SimulatedEffect> = found.collect();
     (!effects.is_empty()).then(|| SimulatedEffects { effects, beside: Box::new(law.clone()) })
+}
+
+impl InverseLaw {
+    /// The same with effects of the catalogue beside it that its simulation shows, learned anew. Effects whose torque beyond law and other effects,
+    /// root mean square, stays below `least` are left out one after the other, the smallest first. `None` where none is left, or where they
+    /// cannot be told from the law.
+    pub(crate) fn holding(
+        &self,
+        shown: impl Iterator<Item = SimulatedEffect>,
+        simulation: &Signals,
+        least: f64,
+    ) -> Option<Self> {
+        let prepared = Prepared::new(simulation, Known::of(simulation), Lock::Nothing);
+        let mut effects: Vec<SimulatedEffect> = shown.filter(|shown| belongs_to_the_state(shown.effect)).collect();
+        while !effects.is_empty() {
+            let simulated = SimulatedEffects { effects: effects.clone(), beside: Box::new(self.clone()) };
+            let law = Self { simulated: Some(simulated), ..self.clone() }.learned(&prepared).ok()?;
+            let sizes = law.sizes_of_effects(&effects, &prepared);
+            let (smallest, size) = sizes.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            if size >= least {
+                return Some(law);
+            }
+            effects.remove(smallest);
+        }
+        None
+    }
+
+    /// Torque of each of its effects behind the filter beyond all else of the law, root mean square over the rows of its simulation.
+    fn sizes_of_effects(&self, effects: &[SimulatedEffect], prepared: &Prepared) -> Vec<f64> {
+        let columns = prepared.filtered_all(&self.columns(&prepared.state));
+        let runs = prepared.open_runs();
+        let mut begin = self.friction_width() + self.rigid_body_width();
+        let size = |effect: &SimulatedEffect| {
+            let place = begin..begin + effect.width;
+            begin = place.end;
+            let others = [&columns[..place.start], &columns[place.end..]].concat();
+            let mut torque = weighted(&columns[place.clone()], &self.coefficients[place]);
+            project_out(&mut torque, &orthonormal(&others, &runs), &runs);
+            root_mean_square(&runs.iter().flat_map(|run| &torque[run.clone()]).copied().collect::<Vec<f64>>())
+        };
+        effects.iter().map(size).collect()
+    }
 }
 
 /// Adds white noise of a deviation behind the filter to the torque.

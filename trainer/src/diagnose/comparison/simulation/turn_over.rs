@@ -5,14 +5,16 @@
 //! it is ahead and the width of its turn depend on inertia and level. Smoothed signs of other simulators have a width and no lead.
 
 use super::InverseLaw;
-use crate::diagnose::comparison::turn_over::TurnOver;
+use crate::diagnose::comparison::turn_over::{SHOWN_BOTH_NATS, TurnOver};
+use crate::diagnose::noise::autoregression::{Noise, noise_features};
 use crate::diagnose::preparation::states::Prepared;
-use crate::numerics::least_squares::{explained_energy, orthonormal, project_out};
+use crate::numerics::least_squares::{dot, explained_energy, fit_residual, orthonormal, project_out};
 
 /// Least lead that is told from the sampling's own delay, samples: half a sample is the difference between the begin of a step and its mean.
 const LEAST_LEAD: f64 = 0.5;
 
-/// How the friction of a simulation turns over: what leaves least of it beside the other columns of a law.
+/// How the friction of a simulation turns over: what leaves least of it beside the other columns of a law; sharply where that does not show, as
+/// in a simulation that has no friction.
 pub(super) fn turn_over(law: &InverseLaw, prepared: &Prepared) -> TurnOver {
     let (state, runs) = (&prepared.state, prepared.open_runs());
     let least = state.sign_velocity;
@@ -30,6 +32,22 @@ pub(super) fn turn_over(law: &InverseLaw, prepared: &Prepared) -> TurnOver {
     };
     let sharp = TurnOver { lead_s: 0.0, width: least };
     let Some(found) = TurnOver::most_explained(least, f64::INFINITY, true, explained) else { return sharp };
+    let target = prepared.filtered(&prepared.torque);
+    let law_at = |at: TurnOver| {
+        let friction = prepared.filtered_all(&columns_at(at.lead_s, at.width)[..law.knots]);
+        friction.into_iter().chain(fixed.iter().cloned()).collect::<Vec<_>>()
+    };
+    let Some(left) = fit_residual(&law_at(found), &target, &runs) else { return sharp };
+    let noise = Noise::fit(&left, &runs, &noise_features(prepared));
+    let left_energy = |at: TurnOver| {
+        let columns: Vec<Vec<f64>> = law_at(at).iter().map(|column| noise.whitened(column, &runs)).collect();
+        let left = fit_residual(&columns, &noise.whitened(&target, &runs), &runs)?;
+        Some(dot(&left, &left, &runs))
+    };
+    let nats = left_energy(sharp).zip(left_energy(found)).map_or(0.0, |(sharp, found)| 0.5 * (sharp - found));
+    if nats < SHOWN_BOTH_NATS {
+        return sharp;
+    }
     let is_resolved = found.lead_s > LEAST_LEAD * state.period;
     TurnOver { lead_s: if is_resolved { found.lead_s } else { 0.0 }, ..found }
 }
