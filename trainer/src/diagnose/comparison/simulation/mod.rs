@@ -285,12 +285,7 @@ impl InverseLaw {
 
     /// Effects of the catalogue that the simulator holds, with shape and coefficients.
     pub fn effects(&self) -> impl Iterator<Item = (EffectId, &[f64], &[f64])> {
-        let mut begin = self.friction_width() + self.rigid_body_width();
-        self.simulated.iter().flat_map(|simulated| &simulated.effects).map(move |found| {
-            let place = begin..begin + found.width;
-            begin = place.end;
-            (found.effect, &found.shape[..], &self.coefficients[place])
-        })
+        self.placed_effects().map(|(found, place)| (found.effect, &found.shape[..], &self.coefficients[place]))
     }
 
     /// What the law leaves of the torque of its simulation, at each sample. Where friction turns over before the velocity the change of friction

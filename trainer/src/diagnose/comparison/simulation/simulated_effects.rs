@@ -15,6 +15,7 @@ use crate::numerics::statistics::root_mean_square;
 use crate::physics::{EffectId, JointState, Shape, catalogue};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use std::ops::Range;
 
 /// Finds the effects of the catalogue that a recording holds beside the law that it is compared with.
 pub type FindEffects<'f> = &'f dyn Fn(&Comparison) -> Vec<Fitted>;
@@ -88,8 +89,8 @@ impl InverseLaw {
         while !effects.is_empty() {
             let simulated = SimulatedEffects { effects: effects.clone(), beside: Box::new(self.clone()) };
             let law = Self { simulated: Some(simulated), ..self.clone() }.learned(&prepared).ok()?;
-            let sizes = law.sizes_of_effects(&effects, &prepared);
-            let (smallest, size) = sizes.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            let (smallest, size) =
+                law.sizes_of_effects(&prepared).into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
             if size >= least {
                 return Some(law);
             }
@@ -99,19 +100,26 @@ impl InverseLaw {
     }
 
     /// Torque of each of its effects behind the filter beyond all else of the law, root mean square over the rows of its simulation.
-    fn sizes_of_effects(&self, effects: &[SimulatedEffect], prepared: &Prepared) -> Vec<f64> {
+    fn sizes_of_effects(&self, prepared: &Prepared) -> Vec<f64> {
         let columns = prepared.filtered_all(&self.columns(&prepared.state));
         let runs = prepared.open_runs();
-        let mut begin = self.friction_width() + self.rigid_body_width();
-        let size = |effect: &SimulatedEffect| {
-            let place = begin..begin + effect.width;
-            begin = place.end;
+        let size = |place: Range<usize>| {
             let others = [&columns[..place.start], &columns[place.end..]].concat();
             let mut torque = weighted(&columns[place.clone()], &self.coefficients[place]);
             project_out(&mut torque, &orthonormal(&others, &runs), &runs);
             root_mean_square(&runs.iter().flat_map(|run| &torque[run.clone()]).copied().collect::<Vec<f64>>())
         };
-        effects.iter().map(size).collect()
+        self.placed_effects().map(|(_, place)| size(place)).collect()
+    }
+
+    /// Its effects, each with the place of its columns among those of the law.
+    pub(super) fn placed_effects(&self) -> impl Iterator<Item = (&SimulatedEffect, Range<usize>)> {
+        let mut begin = self.friction_width() + self.rigid_body_width();
+        self.simulated.iter().flat_map(|simulated| &simulated.effects).map(move |effect| {
+            let place = begin..begin + effect.width;
+            begin = place.end;
+            (effect, place)
+        })
     }
 }
 

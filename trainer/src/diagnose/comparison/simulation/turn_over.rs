@@ -23,31 +23,35 @@ pub(super) fn turn_over(law: &InverseLaw, prepared: &Prepared) -> TurnOver {
     // The hats over speed turn over; what follows but for the friction that differs between the directions does not.
     let fixed = law.with_nuisances(prepared, &columns_at(0.0, least)[law.knots + 1..]);
     let basis = orthonormal(&fixed, &runs);
-    let mut target = prepared.filtered(&prepared.torque);
+    let torque = prepared.filtered(&prepared.torque);
+    let mut target = torque.clone();
     project_out(&mut target, &basis, &runs);
+    let friction_at = |at: TurnOver| prepared.filtered_all(&columns_at(at.lead_s, at.width)[..law.knots]);
     let explained = |at: TurnOver| {
-        let mut columns = prepared.filtered_all(&columns_at(at.lead_s, at.width)[..law.knots]);
+        let mut columns = friction_at(at);
         columns.iter_mut().for_each(|column| project_out(column, &basis, &runs));
         explained_energy(&columns, &target, &runs)
     };
     let sharp = TurnOver { lead_s: 0.0, width: least };
     let Some(found) = TurnOver::most_explained(least, f64::INFINITY, true, explained) else { return sharp };
-    let target = prepared.filtered(&prepared.torque);
-    let law_at = |at: TurnOver| {
-        let friction = prepared.filtered_all(&columns_at(at.lead_s, at.width)[..law.knots]);
-        friction.into_iter().chain(fixed.iter().cloned()).collect::<Vec<_>>()
-    };
-    let Some(left) = fit_residual(&law_at(found), &target, &runs) else { return sharp };
-    let noise = Noise::fit(&left, &runs, &noise_features(prepared));
-    let left_energy = |at: TurnOver| {
-        let columns: Vec<Vec<f64>> = law_at(at).iter().map(|column| noise.whitened(column, &runs)).collect();
-        let left = fit_residual(&columns, &noise.whitened(&target, &runs), &runs)?;
-        Some(dot(&left, &left, &runs))
-    };
-    let nats = left_energy(sharp).zip(left_energy(found)).map_or(0.0, |(sharp, found)| 0.5 * (sharp - found));
-    if nats < SHOWN_BOTH_NATS {
+    let law_at = |at: TurnOver| [&friction_at(at)[..], &fixed].concat();
+    let nats = gained_nats([&law_at(sharp), &law_at(found)], &torque, prepared);
+    if nats.is_none_or(|nats| nats < SHOWN_BOTH_NATS) {
         return sharp;
     }
     let is_resolved = found.lead_s > LEAST_LEAD * state.period;
     TurnOver { lead_s: if is_resolved { found.lead_s } else { 0.0 }, ..found }
+}
+
+/// Log likelihood (nats) of a torque by `after` over that by `before`, columns each, with the noise that `after` leaves; `None` where either is
+/// singular.
+fn gained_nats([before, after]: [&[Vec<f64>]; 2], torque: &[f64], prepared: &Prepared) -> Option<f64> {
+    let runs = prepared.open_runs();
+    let noise = Noise::fit(&fit_residual(after, torque, &runs)?, &runs, &noise_features(prepared));
+    let energy = |columns: &[Vec<f64>]| {
+        let columns: Vec<Vec<f64>> = columns.iter().map(|column| noise.whitened(column, &runs)).collect();
+        let left = fit_residual(&columns, &noise.whitened(torque, &runs), &runs)?;
+        Some(dot(&left, &left, &runs))
+    };
+    Some(0.5 * (energy(before)? - energy(after)?))
 }
